@@ -1,0 +1,79 @@
+"""Errors that a person can mend.
+
+    EigenfieldError
+    ├── CaptureError   photographs, calibrations, masks
+    ├── ProxyError     the mesh and its atlas
+    ├── FormatError    a scene file that is damaged, newer or not ours
+    ├── OutputError    what is to be written: exists already, disk full, not writable
+    └── OptionError    an option, or a combination of them, that cannot be
+
+Each is one line: the file, what is wrong, the remedy. `code` is stable and meant for scripts. A bug is never one
+of these and is never caught: it keeps its traceback.
+"""
+
+from __future__ import annotations
+
+import os
+
+
+class EigenfieldError(Exception):
+    """One line for a person, and a stable `code` for a script.
+
+    code: short, stable, kebab-case ("image-truncated").
+    message: what is wrong, without a full stop.
+    path: the file or folder in question.
+    remedy: what to do about it, an imperative without a full stop.
+    """
+
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        *,
+        path: str | os.PathLike[str] | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        self.code = code
+        self.message = message
+        self.path = None if path is None else os.fspath(path)
+        self.remedy = remedy
+        super().__init__(code, message)
+
+    def __str__(self) -> str:
+        text = self.message if self.path is None else f"{self.path}: {self.message}"
+        return text if self.remedy is None else f"{text}; {self.remedy}"
+
+
+class CaptureError(EigenfieldError):
+    """Photographs, calibrations or masks that cannot be used."""
+
+
+class ProxyError(EigenfieldError):
+    """A mesh or an atlas that cannot be used."""
+
+
+class FormatError(EigenfieldError):
+    """A scene file that is damaged, newer or not ours.
+
+    where: a byte offset ("byte 20") or a JSON pointer ("/extensions/EIGENFIELD_eigen_textures/planes/0").
+    """
+
+    def __init__(
+        self,
+        code: str,
+        message: str,
+        *,
+        where: str,
+        path: str | os.PathLike[str] | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(code, f"{message} (at {where})", path=path, remedy=remedy)
+        self.where = where
+
+
+class OutputError(EigenfieldError):
+    """Something that cannot be written."""
+
+
+class OptionError(EigenfieldError):
+    """An option, or a combination of options, that cannot be."""

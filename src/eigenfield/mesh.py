@@ -1,0 +1,30 @@
+"""The proxy: the paper's {V, W, U}, a triangle mesh with one UV a vertex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """A triangle mesh.
+
+    vertices: V, (n, 3) float32 world positions.
+    faces: W, (m, 3) int32 indices into `vertices`; counter-clockwise seen from outside, where that is known.
+    uv: U, (n, 2) float32 in [0, 1], origin at the top left of the atlas and v down (glTF); None before unwrapping.
+    Vertices on a seam are doubled: a vertex has one UV.
+    """
+
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.int32]
+    uv: NDArray[np.float32] | None = None
+
+    def face_normals(self) -> NDArray[np.float64]:
+        """(m, 3) unit normals by the right-hand rule; zero for triangles without area."""
+        corners = self.vertices[self.faces].astype(np.float64)
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        length = np.linalg.norm(normal, axis=1, keepdims=True)
+        return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)

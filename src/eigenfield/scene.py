@@ -1,0 +1,100 @@
+"""An eigen-texture scene in memory: what `encode` makes, a file keeps and `render` draws."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.mesh import Mesh
+from eigenfield.viewplane import ViewPlane
+
+
+@dataclass(frozen=True, eq=False)
+class Basis:
+    """N eigen textures and what each encoded camera takes of them.
+
+    textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 codes as a file keeps them.
+    scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
+    weights: (Ne, N) float32, the paper's ω(c, j), a row for each encoded camera in the order of `Scene.names`.
+    """
+
+    textures: NDArray[Any]
+    scale: NDArray[np.float32]
+    zero: NDArray[np.float32]
+    weights: NDArray[np.float32]
+
+    @property
+    def count(self) -> int:
+        return int(self.textures.shape[0])
+
+    def values(self, first: int = 0, last: int | None = None) -> NDArray[np.float32]:
+        """(n, H, W, C) float32: the textures [first, last) as numbers."""
+        part = slice(first, last)
+        stored = self.textures[part].astype(np.float32)
+        return (stored - self.zero[part, None, None]) * self.scale[part, None, None]
+
+    def truncated(self, count: int) -> Basis:
+        """The first `count` components."""
+        return Basis(self.textures[:count], self.scale[:count], self.zero[:count], self.weights[:, :count])
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """Channels that share a mean and bases.
+
+    mean: (H, W, C) float32 in 0..1 (other attributes: any range).
+    bases: summed onto the mean one after the other.
+    """
+
+    mean: NDArray[np.float32]
+    bases: tuple[Basis, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """Everything needed to draw any viewpoint on the view plane.
+
+    mesh: the proxy, with UVs.
+    planes: one plane of three channels (R, G, B) from photographs; any channels from other attributes.
+    names, cameras: every capture camera, encoded or held out.
+    held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
+    reference: index into `cameras` of the one nearest the centre, or the one asked for.
+    view_plane, triangles: the plane, and (T, 3) int32 Delaunay triangles on it over the *encoded* cameras.
+    settings, scores: JSON objects: how it was made, and what `evaluate --store` measured.
+    generator: name and version of the program that made it.
+    """
+
+    mesh: Mesh
+    planes: tuple[Plane, ...]
+    names: tuple[str, ...]
+    cameras: tuple[Camera, ...]
+    held_out: NDArray[np.bool_]
+    reference: int
+    view_plane: ViewPlane
+    triangles: NDArray[np.int32]
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    scores: Mapping[str, Any] = field(default_factory=dict)
+    generator: str = ""
+
+    @property
+    def encoded(self) -> NDArray[np.int64]:
+        """(Ne,) indices into `cameras` of the encoded ones: the rows of the weights."""
+        return np.flatnonzero(~self.held_out)
+
+    @property
+    def textures(self) -> int:
+        """Number of eigen textures of the largest plane."""
+        return max((sum(basis.count for basis in plane.bases) for plane in self.planes), default=0)
+
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
+        """Write a `.glb`; the options are those of `eigenfield.format.save` (codec, quality, overwrite)."""
+        from eigenfield.format import save  # a convenience for people: the one import that points upwards
+
+        save(self, Path(path), **options)
