@@ -41,7 +41,9 @@ class Camera:
             )
         if k[0, 0] <= 0 or k[1, 1] <= 0:
             raise CaptureError(
-                "camera-focal", f"camera {name} has a focal length of {k[0, 0]:g} x {k[1, 1]:g}", remedy="mend its entry"
+                "camera-focal",
+                f"camera {name} has a focal length of {k[0, 0]:g} x {k[1, 1]:g}",
+                remedy="mend its entry",
             )
         if width < 1 or height < 1:
             raise CaptureError("camera-size", f"camera {name} has a size of {width}x{height}", remedy="mend its entry")
@@ -75,7 +77,9 @@ class Camera:
     def resized(self, width: int, height: int) -> Camera:
         """The same view on a `width` x `height` raster that it covers entirely: scaled evenly, centred, cropped."""
         scale = max(width / self.width, height / self.height)
-        shift = np.array([[1, 0, (width - scale * self.width) / 2], [0, 1, (height - scale * self.height) / 2], [0, 0, 1]])
+        shift = np.array(
+            [[1, 0, (width - scale * self.width) / 2], [0, 1, (height - scale * self.height) / 2], [0, 0, 1]]
+        )
         return Camera(shift @ np.diag([scale, scale, 1.0]) @ self.K, self.R, self.t, width, height)
 
     def rounded(self) -> Camera:

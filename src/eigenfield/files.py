@@ -25,10 +25,18 @@ def mended(path: str | os.PathLike[str]) -> Iterator[None]:
         yield
     except OSError as error:
         if error.errno in _FULL:
-            raise OutputError("disk-full", "no room left on the disk", path=path, remedy="free some or write elsewhere") from error
-        if isinstance(error, (PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError)) or error.errno == errno.EROFS:
             raise OutputError(
-                "not-writable", error.strerror or "cannot be written", path=path, remedy="name a place that can be written"
+                "disk-full", "no room left on the disk", path=path, remedy="free some or write elsewhere"
+            ) from error
+        if (
+            isinstance(error, (PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError))
+            or error.errno == errno.EROFS
+        ):
+            raise OutputError(
+                "not-writable",
+                error.strerror or "cannot be written",
+                path=path,
+                remedy="name a place that can be written",
             ) from error
         raise
 
@@ -57,11 +65,11 @@ def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]
                 yield file
                 file.flush()
                 os.fsync(file.fileno())
-            os.chmod(name, 0o666 & ~_umask())  # mkstemp's 0600 would hide the result from other users
-            os.replace(name, path)
+            Path(name).chmod(0o666 & ~_umask())  # mkstemp's 0600 would hide the result from other users
+            Path(name).replace(path)
         except BaseException:
             with contextlib.suppress(OSError):
-                os.unlink(name)
+                Path(name).unlink()
             raise
 
 

@@ -11,12 +11,12 @@ import hashlib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numba
 import platformdirs
 
-F = TypeVar("F", bound=Callable[..., Any])
+Kernel = Callable[..., Any]
 
 
 @cache
@@ -29,21 +29,21 @@ def _cache_folder() -> str:
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 
-def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[F], F]:
+def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
     """Decorator: compile with numba (nopython, nogil), keep the machine code between processes.
 
     fastmath: allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
     inline: for small functions that other kernels call in their inner loops.
     """
 
-    def decorate(function: F) -> F:
+    def decorate(function: Kernel) -> Kernel:
         options: dict[str, Any] = {"nogil": True, "fastmath": fastmath, "error_model": "numpy"}
         if inline:
             options["inline"] = "always"
         theirs = numba.config.CACHE_DIR
         numba.config.CACHE_DIR = theirs or _cache_folder()
         try:
-            compiled: F = numba.njit(cache=True, **options)(function)
+            compiled: Kernel = numba.njit(cache=True, **options)(function)
         except (RuntimeError, OSError):  # nowhere to write a cache
             compiled = numba.njit(**options)(function)
         finally:

@@ -3,7 +3,8 @@
 Two-dimensional homogeneous rasterisation (Olano and Greer, "Triangle Scan Conversion using 2D Homogeneous
 Coordinates", 1997): the edge functions come from the adjugate of the matrix of the three homogeneous corners, so
 triangles that reach behind the camera need no clipping, and their values at a pixel are proportional to the
-perspective-correct barycentric coordinates. Rows are drawn in fixed bands, each by one thread.
+perspective-correct barycentric coordinates. Triangles are sorted into fixed bands of rows, each drawn by one thread;
+within a row an edge is crossed once, so the pixels of a triangle are a run whose ends are solved for, not searched.
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_map, pieces
 
 BAND = 64  # rows a thread draws at a time
+SET_UP = 8192  # triangles a thread sets up at a time
 EDGE_SLACK = 1e-7  # of the sum of edge functions: a pixel centre on a shared edge belongs to both triangles
+BOUND_SLACK = 1e-6  # pixels by which a bounding box is widened
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +41,13 @@ class Raster:
 
 
 @kernel()
-def edge_functions(corners, faces, edges):  # type: ignore[no-untyped-def]
-    """corners (n, 3) homogeneous pixels (x w, y w, w); edges (m, 3, 3) out, zero for a triangle seen edge-on.
+def edge_functions(corners, faces, first, last, edges):  # type: ignore[no-untyped-def]
+    """Triangles [first, last) of corners (n, 3), homogeneous pixels (x w, y w, w), into edges (m, 3, 3).
 
-    With M = [c0 c1 c2], M b = (x, y, 1) / (1/w ...): b = M^-1 (x, y, 1) are barycentric coordinates over depth.
+    With M = [c0 c1 c2] and b the barycentric coordinates over depth, M b = (x, y, 1): b = M^-1 (x, y, 1). Zero for a
+    triangle that is seen edge-on, and for one that is wholly behind the camera.
     """
-    for f in range(faces.shape[0]):
+    for f in range(first, last):
         x0, y0, w0 = corners[faces[f, 0]]
         x1, y1, w1 = corners[faces[f, 1]]
         x2, y2, w2 = corners[faces[f, 2]]
@@ -57,7 +61,8 @@ def edge_functions(corners, faces, edges):  # type: ignore[no-untyped-def]
         a21 = x1 * w0 - x0 * w1
         a22 = x0 * y1 - x1 * y0
         determinant = x0 * a00 + y0 * a01 + w0 * a02
-        scale = 0.0 if determinant == 0 else 1.0 / determinant
+        behind = w0 <= 0 and w1 <= 0 and w2 <= 0
+        scale = 0.0 if determinant == 0 or behind else 1.0 / determinant
         edges[f, 0, 0] = a00 * scale
         edges[f, 0, 1] = a01 * scale
         edges[f, 0, 2] = a02 * scale
@@ -70,45 +75,102 @@ def edge_functions(corners, faces, edges):  # type: ignore[no-untyped-def]
 
 
 @kernel()
-def draw_band(corners, faces, edges, first, last, slack, face, inverse_depth):  # type: ignore[no-untyped-def]
-    """Rows [first, last) of all triangles into face and inverse_depth (H, W), nearest first kept; ties go to the
-    lower index. A triangle in front of the camera is bounded by its corners; one that reaches behind by the band."""
-    width = face.shape[1]
-    for f in range(faces.shape[0]):
-        i0, i1, i2 = faces[f]
-        w0, w1, w2 = corners[i0, 2], corners[i1, 2], corners[i2, 2]
-        if w0 <= 0 and w1 <= 0 and w2 <= 0:
-            continue
+def bound_faces(corners, faces, edges, width, height, slack, first, last, bounds):  # type: ignore[no-untyped-def]
+    """bounds (m, 4) int32 of triangles [first, last): the pixels [top, bottom) x [left, right) they may cover.
+
+    A triangle that reaches behind the camera is bounded by the picture; one that covers nothing gets zeros.
+    """
+    for f in range(first, last):
+        bounds[f, 0], bounds[f, 1], bounds[f, 2], bounds[f, 3] = 0, 0, 0, 0
         e = edges[f]
         if e[0, 0] == 0 and e[0, 1] == 0 and e[0, 2] == 0:
             continue
-        top, bottom, left, right = first, last, 0, width
+        i0, i1, i2 = faces[f]
+        w0, w1, w2 = corners[i0, 2], corners[i1, 2], corners[i2, 2]
         if w0 > 0 and w1 > 0 and w2 > 0:
             y0, y1, y2 = corners[i0, 1] / w0, corners[i1, 1] / w1, corners[i2, 1] / w2
-            low, high = min(y0, y1, y2), max(y0, y1, y2)
-            if high < first or low > last:
-                continue
-            top = max(top, int(np.ceil(low - 0.5 - 1e-6)))
-            bottom = min(bottom, int(np.floor(high - 0.5 + 1e-6)) + 1)
             x0, x1, x2 = corners[i0, 0] / w0, corners[i1, 0] / w1, corners[i2, 0] / w2
+            low, high = min(y0, y1, y2), max(y0, y1, y2)
+            top = int(np.ceil(min(max(low - 0.5 - slack, 0.0), float(height))))
+            bottom = int(np.floor(min(max(high + 0.5 + slack, 0.0), float(height))))
             low, high = min(x0, x1, x2), max(x0, x1, x2)
-            if high < 0 or low > width:
-                continue
-            left = max(left, int(np.ceil(low - 0.5 - 1e-6)))
-            right = min(right, int(np.floor(high - 0.5 + 1e-6)) + 1)
-        for row in range(top, bottom):
+            left = int(np.ceil(min(max(low - 0.5 - slack, 0.0), float(width))))
+            right = int(np.floor(min(max(high + 0.5 + slack, 0.0), float(width))))
+            if top < bottom and left < right:
+                bounds[f, 0], bounds[f, 1], bounds[f, 2], bounds[f, 3] = top, bottom, left, right
+        else:
+            bounds[f, 1], bounds[f, 3] = height, width
+
+
+@kernel()
+def sort_into_bands(bounds, band, starts):  # type: ignore[no-untyped-def]
+    """Triangles by band of `band` rows, in rising order: those of band b are listing[starts[b] : starts[b + 1]].
+
+    starts: (bands + 1,) int64 out.
+    """
+    starts[:] = 0
+    for f in range(bounds.shape[0]):
+        if bounds[f, 1] > bounds[f, 0]:
+            for b in range(bounds[f, 0] // band, (bounds[f, 1] - 1) // band + 1):
+                starts[b + 1] += 1
+    for b in range(1, starts.shape[0]):
+        starts[b] += starts[b - 1]
+    listing = np.empty(starts[-1], np.int32)
+    place = starts.copy()
+    for f in range(bounds.shape[0]):
+        if bounds[f, 1] > bounds[f, 0]:
+            for b in range(bounds[f, 0] // band, (bounds[f, 1] - 1) // band + 1):
+                listing[place[b]] = f
+                place[b] += 1
+    return listing
+
+
+@kernel()
+def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):  # type: ignore[no-untyped-def]
+    """Rows [first, last) of the triangles in `listing` into face and inverse_depth (H, W), nearest first kept; ties
+    go to the lower index.
+
+    A pixel is inside where b_i + slack q >= 0 for the three edge functions b_i and their sum q, all linear in x along
+    a row: each bounds the run from one side.
+    """
+    face[first:last] = -1
+    inverse_depth[first:last] = 0
+    for f in listing:
+        e = edges[f]
+        qx, qy, qc = e[0, 0] + e[1, 0] + e[2, 0], e[0, 1] + e[1, 1] + e[2, 1], e[0, 2] + e[1, 2] + e[2, 2]
+        ax, ay, ac = e[0, 0] + slack * qx, e[0, 1] + slack * qy, e[0, 2] + slack * qc
+        bx, by, bc = e[1, 0] + slack * qx, e[1, 1] + slack * qy, e[1, 2] + slack * qc
+        cx, cy, cc = e[2, 0] + slack * qx, e[2, 1] + slack * qy, e[2, 2] + slack * qc
+        a_root, b_root, c_root = -1.0 / ax, -1.0 / bx, -1.0 / cx
+        leftmost, rightmost = bounds[f, 2] + 0.5, bounds[f, 3] - 0.5
+        for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             y = row + 0.5
-            c0 = e[0, 1] * y + e[0, 2]
-            c1 = e[1, 1] * y + e[1, 2]
-            c2 = e[2, 1] * y + e[2, 2]
-            for column in range(left, right):
-                x = column + 0.5
-                b0 = e[0, 0] * x + c0
-                b1 = e[1, 0] * x + c1
-                b2 = e[2, 0] * x + c2
-                q = b0 + b1 + b2
-                limit = -slack * q
-                if q > 0 and b0 >= limit and b1 >= limit and b2 >= limit and q > inverse_depth[row, column]:
+            left, right = leftmost, rightmost
+            a, b, c = ay * y + ac, by * y + bc, cy * y + cc
+            if ax > 0:
+                left = max(left, a * a_root)
+            elif ax < 0:
+                right = min(right, a * a_root)
+            elif a < 0:
+                continue
+            if bx > 0:
+                left = max(left, b * b_root)
+            elif bx < 0:
+                right = min(right, b * b_root)
+            elif b < 0:
+                continue
+            if cx > 0:
+                left = max(left, c * c_root)
+            elif cx < 0:
+                right = min(right, c * c_root)
+            elif c < 0:
+                continue
+            if not left <= right:
+                continue
+            q_row = qy * y + qc
+            for column in range(int(np.ceil(left - 0.5)), int(np.floor(right - 0.5)) + 1):
+                q = np.float32(qx * (column + 0.5) + q_row)
+                if q > inverse_depth[row, column]:
                     inverse_depth[row, column] = q
                     face[row, column] = f
 
@@ -122,13 +184,24 @@ def homogeneous_corners(camera: Camera, vertices: NDArray[np.float32]) -> NDArra
 def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int, height: int) -> Raster:
     """Draw triangles given by (n, 3) homogeneous pixel corners; see `Raster` for what comes back."""
     edges = np.empty((len(faces), 3, 3))
-    edge_functions(corners, faces, edges)
-    face = np.full((height, width), -1, np.int32)
-    inverse_depth = np.zeros((height, width), np.float32)
-    parallel_map(
-        lambda band: draw_band(corners, faces, edges, band[0], band[1], EDGE_SLACK, face, inverse_depth),
-        pieces(height, BAND),
-    )
+    bounds = np.empty((len(faces), 4), np.int32)
+
+    def set_up(part: tuple[int, int]) -> None:
+        edge_functions(corners, faces, *part, edges)
+        bound_faces(corners, faces, edges, width, height, BOUND_SLACK, *part, bounds)
+
+    parallel_map(set_up, pieces(len(faces), SET_UP))
+    bands = pieces(height, BAND)
+    starts = np.empty(len(bands) + 1, np.int64)
+    listing = sort_into_bands(bounds, BAND, starts)
+    face = np.empty((height, width), np.int32)
+    inverse_depth = np.empty((height, width), np.float32)
+
+    def draw(band: int) -> None:
+        part = listing[starts[band] : starts[band + 1]]
+        draw_band(edges, bounds, part, *bands[band], EDGE_SLACK, face, inverse_depth)
+
+    parallel_map(draw, range(len(bands)))
     return Raster(face, inverse_depth, edges)
 
 

@@ -113,7 +113,7 @@ def _grid_of(points: NDArray[np.float64], rows: int, columns: int) -> Grid | Non
     x, y = placed[..., 0].mean(axis=0), placed[..., 1].mean(axis=1)
     step = (np.diff(x).min(initial=np.inf), np.diff(y).min(initial=np.inf))
     jitter = (np.abs(placed[..., 0] - x).max(), np.abs(placed[..., 1] - y[:, None]).max())
-    if rows == 1 and np.ptp(points[:, 1]) > 0 or columns == 1 and np.ptp(points[:, 0]) > 0:
+    if (rows == 1 and np.ptp(points[:, 1]) > 0) or (columns == 1 and np.ptp(points[:, 0]) > 0):
         return None
     if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True) if np.isfinite(s)):
         return None

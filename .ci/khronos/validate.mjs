@@ -1,0 +1,24 @@
+// node validate.mjs scene.glb…: what the Khronos glTF validator says; exit code 1 for any error or warning.
+
+import { readFile } from 'node:fs/promises';
+import validator from 'gltf-validator';
+
+const SEVERITIES = ['error', 'warning', 'information', 'hint'];
+const files = process.argv.slice(2);
+if (files.length === 0) {
+  console.error('usage: node validate.mjs scene.glb…');
+  process.exit(2);
+}
+
+let complaints = 0;
+for (const file of files) {
+  const bytes = new Uint8Array(await readFile(file));
+  const { issues, info } = await validator.validateBytes(bytes, { uri: file, format: 'glb', maxIssues: 1000 });
+  complaints += issues.numErrors + issues.numWarnings;
+  const counts = `${issues.numErrors} errors, ${issues.numWarnings} warnings, ${issues.numInfos} informations, ${issues.numHints} hints`;
+  console.log(`${file}: ${counts} (${info?.extensionsUsed?.join(', ') ?? 'not read'})`);
+  for (const { severity, code, pointer, message } of issues.messages) {
+    console.log(`  ${SEVERITIES[severity]} ${code} ${pointer ?? ''} ${message}`);
+  }
+}
+process.exit(complaints === 0 ? 0 : 1);

@@ -1,0 +1,29 @@
+"""python write_scenes.py FOLDER: small scenes of every codec and shape, for the Khronos validator to judge."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+
+from scenes import bumpy_square, tiny_scene
+
+SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
+
+
+def main(folder: Path) -> None:
+    """Write every combination, and one mesh that needs long indices."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for codec in ("png", "webp", "avif"):
+        for channels, textures in SHAPES:
+            scene = tiny_scene(channels, textures, cameras=6, held_out=(1,))
+            scene.save(folder / f"{codec}-{channels}-{textures}.glb", codec=codec, overwrite=True)
+    large = replace(tiny_scene(), mesh=bumpy_square(256))
+    large.save(folder / "large.glb", codec="png", overwrite=True)
+    tiny_scene(cameras=2).save(folder / "line.glb", overwrite=True)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))

@@ -1,0 +1,74 @@
+"""What the benchmarks share: a child process timed and weighed, and results that say where they come from."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+RESULTS = Path(__file__).parent / "results"
+
+
+def run(arguments: list[str]) -> dict[str, Any]:
+    """Run `python ARGUMENTS...`: wall seconds, peak anonymous memory (RssAnon, sampled 50 times a second; Linux only,
+    else None) and what it printed. File-backed pages, such as memory maps, are not anonymous."""
+    started = time.perf_counter()
+    process = subprocess.Popen([sys.executable, *arguments], stdout=subprocess.PIPE, text=True)
+    peak = 0
+    while process.poll() is None:
+        peak = max(peak, _anonymous(process.pid))
+        time.sleep(0.02)
+    seconds = time.perf_counter() - started
+    output = process.stdout.read() if process.stdout else ""
+    if process.returncode:
+        raise SystemExit(f"{' '.join(arguments)} ended with {process.returncode}")
+    return {"seconds": round(seconds, 2), "peak_anonymous_mb": round(peak / 1e6) or None, "output": output}
+
+
+def _anonymous(pid: int) -> int:
+    try:
+        status = Path(f"/proc/{pid}/status").read_text()
+    except OSError:
+        return 0
+    for line in status.splitlines():
+        if line.startswith("RssAnon:"):
+            return int(line.split()[1]) * 1024
+    return 0
+
+
+def commit() -> str:
+    """The commit that is measured, marked if the tree differs from it."""
+    try:
+        name, changes = (
+            subprocess.run(["git", *words], capture_output=True, text=True, check=True).stdout
+            for words in (["rev-parse", "--short", "HEAD"], ["status", "--porcelain", "-uno"])
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return name.strip() + ("+" if changes.strip() else "")
+
+
+def machine() -> dict[str, Any]:
+    """Processor, how many of them this process may use, memory, Python."""
+    model = platform.processor() or platform.machine()
+    memory = None
+    if Path("/proc/cpuinfo").exists():
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+        model = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), model)
+        memory = round(int(Path("/proc/meminfo").read_text().split()[1]) / 2**20)
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return {"processor": model, "cores": cores, "memory_gb": memory, "python": platform.python_version()}
+
+
+def store(name: str, figures: dict[str, Any]) -> Path:
+    """Write results/NAME.json: the figures, with command, commit and machine."""
+    RESULTS.mkdir(exist_ok=True)
+    path = RESULTS / f"{name}.json"
+    result = {"command": " ".join(["python", *sys.argv]), "commit": commit(), "machine": machine(), **figures}
+    path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    return path

@@ -1,0 +1,5 @@
+"""`python -m eigenfield`."""
+
+from eigenfield.cli import main
+
+main()

@@ -1,0 +1,96 @@
+"""What the readers hand on: one entry for each camera that a calibration lists, before any photograph is looked for."""
+
+from __future__ import annotations
+
+import math
+import unicodedata
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.capture.lens import Lens
+from eigenfield.errors import CaptureError
+
+
+def printable(text: str) -> str:
+    """A name from a file as one line that every terminal and JSON can hold: control characters and lone surrogates
+    (bytes that are no UTF-8) are written as escapes."""
+    return "".join(c.encode("unicode_escape").decode() if unicodedata.category(c) in ("Cc", "Cs") else c for c in text)
+
+
+@dataclass(frozen=True)
+class Intrinsics:
+    """Intrinsics as far as a calibration says them.
+
+    width, height: the size they are for; None where only the photograph knows.
+    focal: (fx, fy) pixels, or None when `angle` says it.
+    angle: (horizontal, vertical or None) full field of view, radians.
+    principal: (cx, cy) pixels, each None for the middle.
+    """
+
+    width: int | None
+    height: int | None
+    focal: tuple[float, float] | None
+    angle: tuple[float, float | None] | None
+    principal: tuple[float | None, float | None]
+
+    def matrix(self, width: int, height: int) -> NDArray[np.float64]:
+        """(3, 3) K at the size that the calibration is for."""
+        if self.focal is not None:
+            fx, fy = self.focal
+        else:
+            assert self.angle is not None
+            fx = width / (2 * math.tan(self.angle[0] / 2))
+            fy = fx if self.angle[1] is None else height / (2 * math.tan(self.angle[1] / 2))
+        cx = width / 2 if self.principal[0] is None else self.principal[0]
+        cy = height / 2 if self.principal[1] is None else self.principal[1]
+        return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """One camera of a calibration.
+
+    file: the photograph's path as the calibration writes it, with forward slashes.
+    label: what names the entry in messages.
+    R, centre: (3, 3) world-to-camera rotation with OpenCV axes, (3,) the camera's centre in the world; not yet checked.
+    mask: the mask's path as the calibration writes it.
+    """
+
+    file: str
+    label: str
+    intrinsics: Intrinsics
+    R: NDArray[np.float64]
+    centre: NDArray[np.float64]
+    lens: Lens | None = None
+    mask: str | None = None
+
+    def camera(self, width: int, height: int, path: Path) -> Camera:
+        """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
+        K = self.intrinsics.matrix(width, height)
+        try:
+            with np.errstate(invalid="ignore", over="ignore"):  # NaN and infinities are what `checked` looks for
+                camera = Camera.checked(K, self.R, -(self.R @ self.centre), width, height, self.label)
+        except CaptureError as error:
+            raise CaptureError(error.code, error.message, path=path, remedy=error.remedy) from None
+        # the centre is what a calibration knows well: keep it where checking snapped a rotation of few digits
+        return replace(camera, t=-(camera.R @ self.centre))
+
+
+@dataclass(frozen=True)
+class Calibration:
+    """All entries of one calibration.
+
+    path: the file or folder it was read from.
+    errors: entries that cannot be used, each an error of its own.
+    problems: lines for people.
+    """
+
+    path: Path
+    format: str
+    entries: tuple[Entry, ...]
+    errors: tuple[CaptureError, ...] = ()
+    problems: tuple[str, ...] = ()

@@ -1,0 +1,126 @@
+"""The light field: views whose photographs decode when they are asked for, one at a time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.capture.lens import Lens, remove_lens
+from eigenfield.capture.photographs import decode, decode_mask
+from eigenfield.errors import CaptureError
+
+
+@dataclass(frozen=True, eq=False)
+class Photograph:
+    """One decoded photograph, lens removed.
+
+    pixels: (H, W, 3) float32, 0..1, sRGB-coded.
+    mask: (H, W) float32, 0..1, 1 where the photograph counts; None when all of it does.
+    """
+
+    pixels: NDArray[np.float32]
+    mask: NDArray[np.float32] | None
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """One photograph and its camera.
+
+    name: unique in the capture: the file's name, or its relative path where file names alone are not unique.
+    camera: the pinhole camera of the photograph after lens removal, at the photograph's own size.
+    lens: the distortion that is removed on reading; None where there is none.
+    mask: a mask's file, white where the photograph counts.
+    upright: whether the photograph's EXIF orientation is applied on reading.
+    """
+
+    name: str
+    path: Path
+    camera: Camera
+    lens: Lens | None = None
+    mask: Path | None = None
+    upright: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class LightField:
+    """A capture: photographs with one camera each.
+
+    root: the folder that the photographs were looked for in.
+    views: in the natural order of their names.
+    problems: one line each, for people: what was left out or mended on reading.
+    format: "transforms" or "colmap".
+    """
+
+    root: Path
+    views: tuple[View, ...]
+    problems: tuple[str, ...]
+    format: str
+
+    def __len__(self) -> int:
+        return len(self.views)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(view.name for view in self.views)
+
+    @property
+    def cameras(self) -> tuple[Camera, ...]:
+        return tuple(view.camera for view in self.views)
+
+    def photograph(self, index: int) -> Photograph:
+        """Decode one photograph now; nothing is kept. May be called from any thread.
+
+        Raises CaptureError (`image-missing`, `image-unreadable`, `image-truncated`, `image-kind`, `image-too-large`,
+        `image-size`, `mask-size`, `mask-dark`) that names the file.
+        """
+        view = self.views[index]
+        camera = view.camera
+        pixels, mask = decode(view.path, view.upright)
+        if pixels.shape[:2] != (camera.height, camera.width):
+            raise CaptureError(
+                "image-size",
+                f"is {pixels.shape[1]}x{pixels.shape[0]} now, but was {camera.width}x{camera.height} when the capture "
+                "was opened",
+                path=view.path,
+                remedy="open the capture again",
+            )
+        if view.mask is not None:
+            other = decode_mask(view.mask)
+            if other.shape != pixels.shape[:2]:
+                raise CaptureError(
+                    "mask-size",
+                    f"the mask is {other.shape[1]}x{other.shape[0]}, its photograph {camera.width}x{camera.height}",
+                    path=view.mask,
+                    remedy="a mask has the size of its photograph: make it anew",
+                )
+            mask = other if mask is None else np.minimum(mask, other)
+        if view.lens is not None:
+            try:
+                pixels, mask = remove_lens(pixels, mask, camera.K, view.lens)
+            except CaptureError as error:
+                raise CaptureError(error.code, error.message, path=view.path, remedy=error.remedy) from None
+        if mask is not None and mask.min() >= 1:
+            mask = None
+        return Photograph(pixels, mask)
+
+    def subset(self, indices: Iterable[int]) -> LightField:
+        """The same capture with some of its views, in the order given."""
+        return replace(self, views=tuple(self.views[i] for i in indices))
+
+    def bytes(self, index: int) -> int:
+        """The size of the photograph's file on disk."""
+        path = self.views[index].path
+        try:
+            return path.stat().st_size
+        except OSError as error:
+            raise CaptureError(
+                "image-missing",
+                error.strerror or "cannot be read",
+                path=path,
+                remedy="put it back, or open the capture again",
+            ) from error

@@ -1,0 +1,122 @@
+"""What a capture is, in figures: sizes, files, the array, the cone of its viewing directions."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.photographs import read_header
+from eigenfield.errors import CaptureError
+from eigenfield.parallel import parallel_stream
+from eigenfield.progress import Progress, track
+from eigenfield.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
+
+PARALLEL = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
+
+
+@dataclass(frozen=True, eq=False)
+class Array:
+    """The cameras' arrangement.
+
+    plane: the view plane; width and height of the array are twice its extent, in world units.
+    thickness: the greatest distance of a camera from the plane, world units.
+    spacing: the median distance from a camera to its nearest neighbour, world units.
+    grid: the regular grid, if there is one.
+    focus: (3,) the point nearest to all rays through the pictures' middles, or None where they are parallel.
+    distance: the mean distance of the cameras from the focus, world units.
+    cone: the greatest angle between two cameras seen from the focus, degrees.
+    """
+
+    plane: ViewPlane
+    thickness: float
+    spacing: float
+    grid: Grid | None
+    focus: NDArray[np.float64] | None
+    distance: float | None
+    cone: float | None
+
+
+def measure_array(cameras: Sequence[Camera]) -> Array:
+    """The arrangement of at least two cameras."""
+    from scipy.spatial import KDTree
+
+    centres = np.array([camera.centre for camera in cameras])
+    plane = fit_view_plane(cameras)
+    normal = np.cross(plane.right, plane.up)
+    nearest = np.asarray(KDTree(centres).query(centres, k=2)[0])[:, 1]
+    coordinates = plane.coordinates(centres)
+    grid = find_grid(coordinates) if plane.extent[0] > 0 else None
+    focus = find_focus(cameras)
+    distance = cone = None
+    if focus is not None:
+        rays = centres - focus
+        lengths = np.linalg.norm(rays, axis=1)
+        distance = float(lengths.mean())
+        unit = rays / np.maximum(lengths, 1e-300)[:, None]
+        cone = float(np.degrees(np.arccos(np.clip(min((unit @ u).min() for u in unit), -1, 1))))
+    return Array(
+        plane,
+        float(np.abs((centres - plane.origin) @ normal).max()),
+        float(np.median(nearest)),
+        grid,
+        focus,
+        distance,
+        cone,
+    )
+
+
+def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:
+    """The point p with the least sum of squared distances to the rays through the pictures' middles:
+    sum (I - d d^T) p = sum (I - d d^T) c. None where the rays are parallel, or meet behind the cameras."""
+    normal, right = np.zeros((3, 3)), np.zeros(3)
+    directions = []
+    for camera in cameras:
+        ray = camera.R.T @ np.linalg.solve(camera.K, [camera.width / 2, camera.height / 2, 1.0])
+        ray = ray / np.linalg.norm(ray)
+        across = np.eye(3) - np.outer(ray, ray)
+        normal += across
+        right += across @ camera.centre
+        directions.append(ray)
+    if np.linalg.eigvalsh(normal)[0] < PARALLEL * len(cameras):
+        return None
+    focus = np.asarray(np.linalg.solve(normal, right), dtype=np.float64)
+    ahead = [(focus - camera.centre) @ ray for camera, ray in zip(cameras, directions, strict=True)]
+    return focus if np.median(ahead) > 0 else None
+
+
+def file_kinds(light_field: LightField) -> list[tuple[str, int, bool, int]]:
+    """(format, bits a channel, alpha, number of views), the most frequent first."""
+    kinds: Counter[tuple[str, int, bool]] = Counter()
+    for view in light_field.views:
+        header = read_header(view.path)
+        kinds[header.format, header.depth, header.alpha] += 1
+    return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
+
+
+def decode_all(light_field: LightField, progress: Progress | None = None) -> list[CaptureError]:
+    """Decode every photograph and mask once; what cannot be decoded, in the order of the views."""
+
+    def attempt(index: int) -> CaptureError | None:
+        try:
+            light_field.photograph(index)
+        except CaptureError as error:
+            return error
+        return None
+
+    total = len(light_field)
+    outcomes = track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress)
+    return [outcome for outcome in outcomes if outcome is not None]
+
+
+def corners_and_centre(cameras: Sequence[Camera]) -> list[int]:
+    """The cameras nearest the array's top left, top right, centre, bottom left and bottom right; each once."""
+    plane = fit_view_plane(cameras)
+    places = plane.coordinates([camera.centre for camera in cameras])
+    wanted = [(-1, 1), (1, 1), (0, 0), (-1, -1), (1, -1)]
+    return list(dict.fromkeys(int(((places - place) ** 2).sum(axis=1).argmin()) for place in wanted))

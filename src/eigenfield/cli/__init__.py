@@ -1,0 +1,90 @@
+"""The command line: one file a verb, loaded when it is called."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import logging
+import signal
+import sys
+from types import FrameType
+
+import click
+
+from eigenfield import __version__
+from eigenfield.errors import EigenfieldError
+
+VERBS = {
+    "demo": "Make a capture, encode it, draw and measure it: the whole way in one command.",
+    "inspect": "Say what a capture holds, and what is wrong with it.",
+    "encode": "Turn a calibrated capture and a proxy mesh into one .glb.",
+    "render": "Draw a viewpoint, a captured camera, or a fly-through.",
+    "evaluate": "Measure a scene against its photographs.",
+    "info": "Show what a scene file holds: bytes by part, settings, scores.",
+    "validate": "Check a scene file and list every finding.",
+}
+
+
+class _Verbs(click.Group):
+    """Loads a verb's module only when it is asked for, so that `--help` and errors come at once."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        return list(VERBS)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        if name not in VERBS:
+            return None
+        command: click.Command = importlib.import_module(f"eigenfield.cli.{name}").command
+        return command
+
+    def format_commands(self, context: click.Context, formatter: click.HelpFormatter) -> None:
+        with formatter.section("Commands"):
+            formatter.write_dl(list(VERBS.items()))
+
+
+@click.command(
+    cls=_Verbs,
+    epilog="""\b
+Examples:
+  eigenfield demo
+  eigenfield encode photos/ --proxy mesh.ply -o scene.glb
+  eigenfield render scene.glb --at 0.3,-0.2 -o view.png
+  eigenfield evaluate scene.glb photos/""",
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
+)
+@click.version_option(__version__, prog_name="eigenfield")
+def group() -> None:
+    """Light fields as eigen textures: photographs from a camera array in, one small .glb out."""
+
+
+def _terminated(number: int, frame: FrameType | None) -> None:
+    raise KeyboardInterrupt
+
+
+def main() -> None:
+    """Entry point: exit code 0, 2 for an error that a person can mend, 130 when interrupted; a bug keeps its
+    traceback and exits with 1."""
+    logging.basicConfig(format="%(message)s", level=logging.WARNING)
+    with contextlib.suppress(ValueError):  # not in the main thread
+        signal.signal(signal.SIGTERM, _terminated)  # clean up as for Ctrl-C
+    context: dict[str, object] = {}
+    try:
+        with group.make_context("eigenfield", sys.argv[1:]) as root:
+            context = root.meta
+            group.invoke(root)
+    except click.exceptions.Exit as error:
+        sys.exit(error.exit_code)
+    except click.ClickException as error:
+        error.show()
+        sys.exit(2)
+    except EigenfieldError as error:
+        if context.get("traceback"):
+            raise
+        click.echo(f"eigenfield: {error}", err=True)
+        sys.exit(2)
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("eigenfield: interrupted", err=True)
+        sys.exit(130)
+    except BrokenPipeError:
+        sys.stderr.close()
+        sys.exit(141)

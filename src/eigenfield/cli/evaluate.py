@@ -1,0 +1,193 @@
+"""`eigenfield evaluate`: a scene against its photographs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from eigenfield.cli.common import common_options, echo_json, note, progress_bars
+
+COLUMNS = (  # key, heading, format
+    ("psnr", "PSNR", "{:.2f}"),
+    ("ssim", "SSIM", "{:.4f}"),
+    ("psnr_luma", "PSNR luma", "{:.2f}"),
+    ("psnr_full", "PSNR full", "{:.2f}"),
+    ("ssim_full", "SSIM full", "{:.4f}"),
+    ("coverage", "coverage", "{:.1%}"),
+)
+LABEL = 22
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eigenfield evaluate scene.glb capture/
+  eigenfield evaluate scene.glb photos/ --calibration refined.json --curve --plots plots/
+  eigenfield evaluate scene.glb capture/ --json > figures.json
+  eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json"""
+)
+@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("capture", type=click.Path(path_type=Path))
+@click.option(
+    "--calibration",
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="A transforms.json or COLMAP model that lies elsewhere than the photographs.",
+)
+@click.option(
+    "--masks", type=click.Path(path_type=Path), metavar="FOLDER", help="Masks named as the photographs; white counts."
+)
+@click.option("--json", "as_json", is_flag=True, help="The figures as JSON on standard output, every camera's too.")
+@click.option("--curve", is_flag=True, help="The UV measure for every number of eigen textures up to the file's.")
+@click.option(
+    "--plots",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Write plots and a contact sheet as PNG into DIR, which is made if need be.",
+)
+@click.option("--overwrite", is_flag=True, help="Replace plots that exist.")
+@click.option("--store", is_flag=True, help="Write the figures into the scene file (eigenfield info shows them).")
+@click.option(
+    "--exclude-circles",
+    type=click.Path(path_type=Path),
+    metavar="FILE",
+    help='Also measure outside the circles of a JSON file {"circles": {photograph: {"cx", "cy", "r"}}}, in pixels.',
+)
+@click.option(
+    "--filter",
+    "drawing_filter",
+    type=click.Choice(["bicubic", "bilinear"]),
+    default="bicubic",
+    show_default=True,
+    help="Texture filter of the drawn pictures.",
+)
+@click.option(
+    "--weights",
+    type=click.Choice(["delaunay", "nearest3", "bilinear"]),
+    default="delaunay",
+    show_default=True,
+    help="View weights of held-out cameras.",
+)
+@click.option("--textures", "-n", type=int, metavar="N", help="Use the first N eigen textures only.")
+@click.option(
+    "--png-maps",
+    type=click.Choice(["all", "sample", "none"]),
+    default="all",
+    show_default=True,
+    help="Pack every texture map as PNG for the ratio to them, or 16 and scale up, or none.",
+)
+@common_options
+def command(
+    scene: Path,
+    capture: Path,
+    calibration: Path | None,
+    masks: Path | None,
+    as_json: bool,
+    curve: bool,
+    plots: Path | None,
+    overwrite: bool,
+    store: bool,
+    exclude_circles: Path | None,
+    drawing_filter: str,
+    weights: str,
+    textures: int | None,
+    png_maps: str,
+    quiet: bool,
+) -> None:
+    """Measure the file SCENE against the photographs of CAPTURE, matched by name.
+
+    docs/measures.md defines every figure. With --json all figures go to standard output, otherwise a table does.
+    """  # fmt: skip
+    from eigenfield.capture import open_capture
+    from eigenfield.evaluation import evaluate, read_circles, stored_scores
+    from eigenfield.files import refuse_existing
+    from eigenfield.format import load, store_scores
+
+    if plots is not None:
+        from eigenfield.evaluation.plots import refuse_existing_plots
+
+        refuse_existing_plots(plots, overwrite)
+    loaded = load(scene)
+    if store:
+        refuse_existing(scene, overwrite=True)  # says now, not after the work, that the folder cannot be written to
+    light_field = open_capture(capture, calibration=calibration, masks=masks)
+    circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.names)
+    with progress_bars(quiet) as progress:
+        figures = evaluate(
+            loaded, light_field, path=scene, curve=curve, textures=textures, filter=drawing_filter, weights=weights,
+            circles=circles, png_maps=png_maps, progress=progress,
+        )  # fmt: skip
+    if plots is not None:
+        from eigenfield.evaluation.plots import write_plots
+
+        for path in write_plots(figures, loaded, light_field, plots, overwrite=overwrite):
+            note(f"wrote {path}", quiet)
+    if as_json:
+        echo_json(figures)
+    else:
+        click.echo("\n".join(table(scene.name, figures)))
+    if store:
+        store_scores(scene, stored_scores(figures))
+
+
+def table(name: str, figures: Mapping[str, Any]) -> list[str]:
+    """The figures as lines for a person."""
+    lines = [f"{name}: {figures['textures']} eigen textures, drawn {figures['filter']}, {figures['seconds']:.0f} s", ""]
+    lines.append(" " * LABEL + "".join(f"{heading:>11}" for _, heading, _ in COLUMNS))
+    uv = figures["uv"]
+    lines += _rows("texture maps (UV)", uv) if uv else [f"{'texture maps (UV)':{LABEL}}not measured"]
+    for key, label in (("encoded", "encoded"), ("held_out", "held out")):
+        part = figures["image"][key]
+        if part is None:
+            lines.append(f"{label:{LABEL}}none")
+            continue
+        lines += _rows(f"{label} ({part['cameras']})", part)
+        if "outside" in part:
+            lines += _rows("  outside circles", part["outside"])
+    if figures["missing"]:
+        lines += ["", f"{len(figures['missing'])} cameras have no photograph here: {_some(figures['missing'])}"]
+    lines += _bytes(figures)
+    if figures.get("curve"):
+        lines += ["", f"{'eigen textures':>14}{'UV SSIM':>11}{'UV PSNR':>11}"]
+        for point in figures["curve"]:
+            ssim, psnr = _cell(point["uv_ssim"], "{:.4f}"), _cell(point["uv_psnr"], "{:.2f}")
+            lines.append(f"{point['textures']:14}{ssim:>11}{psnr:>11}")
+    return lines
+
+
+def _rows(label: str, part: Mapping[str, Any]) -> list[str]:
+    """A line of means and a line of the worst cameras' values."""
+    lows = {key: None if worst is None else worst["value"] for key, worst in part["worst"].items()}
+    named = part["worst"].get("psnr")
+    mean = "".join(f"{_cell(part.get(key), form):>11}" for key, _, form in COLUMNS)
+    low = "".join(f"{_cell(lows.get(key), form):>11}" for key, _, form in COLUMNS)
+    return [f"{label:{LABEL}}{mean}", f"{'  worst':{LABEL}}{low}   {'' if named is None else named['camera']}".rstrip()]
+
+
+def _cell(value: float | None, form: str) -> str:
+    return "" if value is None else form.format(value)
+
+
+def _bytes(figures: Mapping[str, Any]) -> list[str]:
+    sizes, ratio = figures["bytes"], figures["ratio"]
+    if sizes is None or ratio is None:
+        return []
+    rest = ", ".join(f"{key} {sizes[key]:,}" for key in sizes if key != "total")
+    lines = ["", f"{sizes['total']:,} bytes: {rest}"]
+    maps = figures["png_maps"]
+    estimate = maps is not None and maps["packed"] < maps["of"]
+    about = f" (estimated from {maps['packed']} of {maps['of']} maps)" if estimate else ""
+    known = {
+        "photographs": "the photographs' files",
+        "texture_maps_png": f"the texture maps as PNG{about}",
+        "raw": "their raw pixels",
+    }
+    return lines + [f"{ratio[key]:10.1f} times smaller than {label}" for key, label in known.items() if ratio.get(key)]
+
+
+def _some(names: list[str], most: int = 5) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

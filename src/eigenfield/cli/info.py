@@ -1,0 +1,152 @@
+"""`eigenfield info`: what a scene file holds."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eigenfield.cli.common import common_options, echo_json
+
+if TYPE_CHECKING:
+    from eigenfield.format.layout import Layout, PlaneLayout
+
+AXES = (
+    "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "
+    "the proxy's node turns its axes to glTF's (Y up, the array looking along -Z)"
+)
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eigenfield info scene.glb
+  eigenfield info --json scene.glb"""
+)
+@click.argument("file", type=click.Path(path_type=Path))
+@click.option("--json", "as_json", is_flag=True, help="The same as JSON.")
+@common_options
+def command(file: Path, as_json: bool, quiet: bool) -> None:
+    """Show what a scene FILE holds: bytes by part, textures, cameras, view plane, settings and scores."""
+    from eigenfield.format import describe
+
+    layout, parts = describe(file)
+    facts = _facts(layout, parts)
+    if as_json:
+        echo_json({"file": str(file), **facts})
+        return
+    click.echo(f"{file}: {parts['total']:,} bytes, format {layout.version}, by {json.dumps(layout.generator)}")
+    for line in _lines(facts):
+        click.echo(line)
+
+
+def _facts(layout: Layout, parts: dict[str, int]) -> dict[str, Any]:
+    cameras, mesh, plane = layout.cameras, layout.mesh, layout.view_plane
+    assert cameras is not None and mesh is not None and plane is not None and layout.reference is not None
+    held_out = [name for name, held in zip(cameras.names, cameras.held_out, strict=True) if held]
+    sizes = Counter((camera.width, camera.height) for camera in cameras.cameras)
+    return {
+        "format": layout.version,
+        "generator": layout.generator,
+        "bytes": parts,
+        "planes": [_plane_facts(entry) for entry in layout.planes or ()],
+        "proxy": {"vertices": len(mesh.vertices), "triangles": len(mesh.faces)},
+        "cameras": {
+            "count": len(cameras.names),
+            "encoded": cameras.encoded,
+            "held_out": held_out,
+            "reference": cameras.names[layout.reference],
+            "sizes": [{"size": list(size), "count": count} for size, count in sizes.most_common()],
+        },
+        "view_plane": {
+            "width": 2 * float(plane.extent[0]),
+            "height": 2 * float(plane.extent[1]),
+            "origin": plane.origin.tolist(),
+            "right": plane.right.tolist(),
+            "up": plane.up.tolist(),
+        },
+        "axes": AXES,
+        "settings": layout.settings,
+        "scores": layout.scores,
+    }
+
+
+def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
+    mean = plane.mean
+    return {
+        "channels": mean.channels,
+        "mean": {"size": [mean.width, mean.height], "type": mean.mime},
+        "bases": [
+            {
+                "textures": len(basis.textures),
+                "size": list(basis.size),
+                "types": sorted({texture.mime for texture in basis.textures}),
+            }
+            for basis in plane.bases
+        ],
+    }
+
+
+def _lines(facts: dict[str, Any]) -> list[str]:
+    total = facts["bytes"]["total"]
+    lines = ["bytes"]
+    for name, count in facts["bytes"].items():
+        lines.append(f"  {name:10}{count:14,}{100 * count / total:8.1f} %")
+    for plane in facts["planes"]:
+        mean = plane["mean"]
+        channels = f"{plane['channels']} channel{'' if plane['channels'] == 1 else 's'}"
+        lines.append(f"mean          {_size(mean['size'])}, {channels}, {mean['type']}")
+        for basis in plane["bases"]:
+            types = f", {', '.join(basis['types'])}" if basis["types"] else ""
+            lines.append(f"textures      {basis['textures']} of {_size(basis['size'])}, {channels}{types}")
+    lines.append(f"proxy         {facts['proxy']['vertices']:,} vertices, {facts['proxy']['triangles']:,} triangles")
+    cameras = facts["cameras"]
+    sizes = ", ".join(f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"])
+    lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")
+    if cameras["held_out"]:
+        lines.append(f"held out      {_some(cameras['held_out'])}")
+    lines.append(f"reference     {cameras['reference']}")
+    plane = facts["view_plane"]
+    shape = f"{plane['width']:g} x {plane['height']:g}" if plane["height"] else f"a line of {plane['width']:g}"
+    lines.append(f"view plane    {shape}; X from -1 to 1 to the right, Y from -1 to 1 upwards, as the cameras see it")
+    lines.append(f"              0,0 at {_vector(plane['origin'])}, X along {_vector(plane['right'])}, "
+                 f"Y along {_vector(plane['up'])}")  # fmt: skip
+    lines.append(f"axes          {facts['axes']}")
+    for name in ("settings", "scores"):
+        lines.append(name if facts[name] else f"{name:14}none")
+        lines.extend(_tree(facts[name], "  "))
+    return lines
+
+
+def _size(size: list[int]) -> str:
+    return f"{size[0]}x{size[1]}"
+
+
+def _vector(numbers: list[float]) -> str:
+    return "(" + ", ".join(f"{number:.4g}" for number in numbers) + ")"
+
+
+def _some(names: list[str], most: int = 8) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
+
+
+def _tree(value: dict[str, Any], indent: str) -> list[str]:
+    """A JSON object as indented lines, an entry each; strings stay quoted, for they come from a file."""
+    lines = []
+    for key, entry in value.items():
+        name = json.dumps(key)[1:-1]
+        if isinstance(entry, dict):
+            lines.append(f"{indent}{name}")
+            lines.extend(_tree(entry, indent + "  "))
+        else:
+            lines.append(f"{indent}{name:{max(1, 26 - len(indent))}} {_leaf(entry)}")
+    return lines
+
+
+def _leaf(entry: Any) -> str:
+    text = f"{entry:.6g}" if isinstance(entry, float) else json.dumps(entry)
+    return text if len(text) <= 100 else text[:100] + "…"

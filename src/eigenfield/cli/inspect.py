@@ -1,0 +1,241 @@
+"""`eigenfield inspect`: what a capture holds, and what is wrong with it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eigenfield.cli.common import common_options, echo_json, note, progress_bars
+from eigenfield.errors import OptionError
+
+if TYPE_CHECKING:
+    from eigenfield.capture import LightField
+    from eigenfield.capture.survey import Array
+    from eigenfield.errors import CaptureError
+    from eigenfield.mesh import Mesh
+
+SCHEMA = "eigenfield.inspect/1"
+
+
+@click.command(
+    "inspect",
+    epilog="""\b
+Examples:
+  eigenfield inspect capture/
+  eigenfield inspect photos/ --calibration refined.json --json
+  eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
+)
+@click.argument("capture", type=click.Path(path_type=Path))
+@click.option(
+    "--calibration",
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="A transforms.json or a COLMAP model that lies elsewhere than the photographs.",
+)
+@click.option(
+    "--masks",
+    type=click.Path(path_type=Path),
+    metavar="FOLDER",
+    help="Masks named as the photographs, white where they count.",
+)
+@click.option("--proxy", type=click.Path(path_type=Path), metavar="MESH", help="The proxy mesh to draw with --overlay.")
+@click.option(
+    "--overlay",
+    type=click.Path(path_type=Path),
+    metavar="PNG",
+    help="Draw the proxy's outline over the photographs at the array's corners and centre.",
+)
+@click.option("--overwrite", is_flag=True, help="Replace an existing overlay.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON; docs/captures.md says what is in it.")
+@common_options  # fmt: skip
+def command(
+    capture: Path,
+    calibration: Path | None,
+    masks: Path | None,
+    proxy: Path | None,
+    overlay: Path | None,
+    overwrite: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Say what CAPTURE holds: views, sizes, grid, extent, problems.
+
+    Every photograph is decoded once, so that damaged ones are listed all together. Finding problems is success:
+    the exit code is 0 unless the capture cannot be opened at all.
+    """
+    if overlay is not None and proxy is None:
+        raise OptionError(
+            "overlay-needs-proxy", "--overlay draws a mesh over the photographs", remedy="name it with --proxy"
+        )
+    if overlay is not None:
+        from eigenfield.files import refuse_existing
+
+        refuse_existing(overlay, overwrite)
+
+    from eigenfield.capture.opening import open_capture
+    from eigenfield.capture.survey import decode_all
+
+    light_field = open_capture(capture, calibration=calibration, masks=masks, strict=False)
+    mesh = None
+    if proxy is not None:
+        from eigenfield.proxy import read_mesh
+
+        mesh = read_mesh(proxy)
+    with progress_bars(quiet) as progress:
+        damaged = decode_all(light_field, progress)
+    report = describe(light_field, damaged)
+    if mesh is not None:
+        report["proxy"] = _proxy(mesh, light_field, damaged, overlay, overwrite)
+        if overlay is not None:
+            note(f"overlay written to {overlay}", quiet)
+    if as_json:
+        echo_json(report)
+    else:
+        click.echo("\n".join(in_words(report)))
+
+
+def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, Any]:
+    """The report, as `--json` prints it; `docs/captures.md` documents the keys."""
+    from eigenfield.capture.survey import file_kinds, measure_array
+
+    views = light_field.views
+    sizes = Counter((view.camera.width, view.camera.height) for view in views)
+    problems = list(light_field.problems)
+    if len(sizes) > 1:
+        problems.append(f"the photographs have {len(sizes)} different sizes")
+    if len(views) < 3:
+        problems.append(f"{len(views)} photographs with a camera are too few, at least 3 are needed")
+    array = measure_array(light_field.cameras) if len(views) >= 3 else None
+    if array is not None and array.plane.extent[0] == 0:
+        problems.append("all cameras stand in one place")
+    return {
+        "schema": SCHEMA,
+        "root": str(light_field.root),
+        "format": light_field.format,
+        "views": len(views),
+        "bytes": sum(light_field.bytes(i) for i in range(len(views))),
+        "sizes": [{"width": w, "height": h, "views": n} for (w, h), n in sizes.most_common()],
+        "files": [{"format": f, "depth": d, "alpha": a, "views": n} for f, d, a, n in file_kinds(light_field)],
+        "distorted": sum(view.lens is not None for view in views),
+        "masks": sum(view.mask is not None for view in views),
+        "array": None if array is None else _array(array),
+        "problems": problems + [str(error) for error in damaged],
+        "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
+        "cameras": [_camera(light_field, i) for i in range(len(views))],
+        "proxy": None,
+    }
+
+
+def _array(array: Array) -> dict[str, Any]:
+    width, height = (2 * array.plane.extent).tolist()
+    return {
+        "width": width,
+        "height": height,
+        "thickness": array.thickness,
+        "spacing": array.spacing,
+        "line": array.plane.is_line,
+        "grid": None if array.grid is None else {"rows": array.grid.rows, "columns": array.grid.columns},
+        "origin": array.plane.origin.tolist(),
+        "right": array.plane.right.tolist(),
+        "up": array.plane.up.tolist(),
+        "focus": None if array.focus is None else array.focus.tolist(),
+        "distance": array.distance,
+        "cone": array.cone,
+    }
+
+
+def _camera(light_field: LightField, index: int) -> dict[str, Any]:
+    view = light_field.views[index]
+    K = view.camera.K
+    return {
+        "name": view.name,
+        "file": str(view.path),
+        "width": view.camera.width,
+        "height": view.camera.height,
+        "focal": [float(K[0, 0]), float(K[1, 1])],
+        "principal": [float(K[0, 2]), float(K[1, 2])],
+        "centre": view.camera.centre.tolist(),
+        "forward": view.camera.R[2].tolist(),
+        "lens": None if view.lens is None else {"model": view.lens.model, "coefficients": list(view.lens.coefficients)},
+        "mask": None if view.mask is None else str(view.mask),
+    }
+
+
+def _proxy(
+    mesh: Mesh, light_field: LightField, damaged: list[CaptureError], overlay: Path | None, overwrite: bool
+) -> dict[str, Any]:
+    from eigenfield.capture.overlay import draw_overlay
+    from eigenfield.capture.survey import corners_and_centre
+    from eigenfield.files import write_bytes
+
+    bad = {error.path for error in damaged}
+    sound = [i for i, view in enumerate(light_field.views) if not bad & {str(view.path), str(view.mask)}]
+    chosen = [sound[i] for i in corners_and_centre([light_field.views[i].camera for i in sound])] if sound else []
+    coverage: list[float] = []
+    if chosen:
+        picture, coverage = draw_overlay(light_field, mesh, chosen)
+        if overlay is not None:
+            write_bytes(overlay, picture, overwrite=overwrite)
+    return {
+        "vertices": len(mesh.vertices),
+        "triangles": len(mesh.faces),
+        "uv": mesh.uv is not None,
+        "low": mesh.vertices.min(axis=0).tolist(),
+        "high": mesh.vertices.max(axis=0).tolist(),
+        "coverage": {light_field.views[i].name: part for i, part in zip(chosen, coverage, strict=True)},
+    }
+
+
+def in_words(report: dict[str, Any]) -> list[str]:
+    """The report as lines for people."""
+    sizes = ", ".join(f"{s['width']}x{s['height']} ({s['views']})" for s in report["sizes"])
+    files = ", ".join(
+        f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
+    )
+    lines = [
+        f"{report['root']}: {report['views']} views from {report['format']}",
+        f"  sizes      {sizes or 'none'}",
+        f"  files      {files or 'none'}, {report['bytes']:,} bytes",
+        f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading",
+        f"  masks      {report['masks']} files",
+    ]
+    if report["array"] is not None:
+        lines += _array_in_words(report["array"])
+    if report["proxy"] is not None:
+        lines += _proxy_in_words(report["proxy"])
+    if not report["problems"]:
+        return [*lines, "  problems   none"]
+    return [*lines, f"  problems   {len(report['problems'])}", *(f"    - {problem}" for problem in report["problems"])]
+
+
+def _array_in_words(array: dict[str, Any]) -> list[str]:
+    grid = array["grid"]
+    shape = "cameras on a line" if array["line"] else "no regular grid"
+    if grid is not None:
+        shape = f"grid of {grid['rows']} rows x {grid['columns']} columns"
+    width, height, thickness = array["width"], array["height"], array["thickness"]
+    lines = [
+        f"  array      {shape}",
+        f"  extent     {width:.4g} x {height:.4g} world units, up to {thickness:.3g} off its plane",
+        f"  baseline   {array['spacing']:.4g} to the nearest camera (median)",
+    ]
+    if array["focus"] is None:
+        return [*lines, "  cone       none: the cameras look in parallel or apart"]
+    place = ", ".join(f"{v:.4g}" for v in array["focus"])
+    return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
+
+
+def _proxy_in_words(proxy: dict[str, Any]) -> list[str]:
+    low, high = (", ".join(f"{v:.4g}" for v in proxy[key]) for key in ("low", "high"))
+    uv = "with UVs" if proxy["uv"] else "no UVs"
+    lines = [
+        f"  proxy      {proxy['vertices']} vertices, {proxy['triangles']} triangles, {uv}",
+        f"  box        ({low}) to ({high})",
+    ]
+    parts = ", ".join(f"{name} {part:.0%}" for name, part in proxy["coverage"].items())
+    if not any(proxy["coverage"].values()):
+        return [*lines, "  coverage   none: no view looked at sees the proxy; is it in the cameras' frame?"]
+    return [*lines, f"  coverage   {parts}"]

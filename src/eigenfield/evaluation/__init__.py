@@ -1,0 +1,19 @@
+"""How good a scene is: PSNR and SSIM in UV and image space, bytes by part, plots (docs/measures.md)."""
+
+from eigenfield.evaluation.exclusion import Circle, read_circles
+from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
+from eigenfield.evaluation.uv import reconstructions
+from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, ssim
+
+__all__ = [
+    "PSNR_CAP",
+    "SCHEMA",
+    "Circle",
+    "evaluate",
+    "psnr",
+    "psnr_luma",
+    "read_circles",
+    "reconstructions",
+    "ssim",
+    "stored_scores",
+]

@@ -1,0 +1,214 @@
+"""A scene beside its photographs: what is measured of one camera."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.basis import METHODS, align_map
+from eigenfield.capture import LightField, Photograph
+from eigenfield.errors import CaptureError, OptionError
+from eigenfield.evaluation.exclusion import Circle
+from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
+from eigenfield.evaluation.uv import MapFigures, measure_map
+from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.scene import Scene
+from eigenfield.texturing import FILTERS, Atlas, make_atlas, texture_map
+
+log = logging.getLogger("eigenfield.evaluation")
+
+PNG_MAPS = ("all", "sample", "none")
+WHOLE = 0.999  # of a pixel's samples
+SAMPLE = 16  # maps that `sample` packs
+SAME_CAMERA = 0.5  # pixels by which two calibrations may differ without a warning
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """What one camera gave. outside, texture: None where not asked for, or held out."""
+
+    image: Figures
+    outside: Figures | None
+    texture: MapFigures | None
+
+
+@dataclass(frozen=True, eq=False)
+class Session:
+    """A scene beside its photographs, ready to be measured; shared by all threads.
+
+    photographs: index of a scene's camera to the index of its view in the capture.
+    counts: numbers of eigen textures for the UV measure, rising; the last is the one that pictures are drawn with.
+    reference: the texture map and visibility that maps are aligned to, None without alignment.
+    packed: indices of cameras whose filled maps are written as PNG.
+    """
+
+    scene: Scene
+    capture: LightField
+    photographs: Mapping[int, int]
+    renderer: Renderer
+    counts: Sequence[int]
+    filter: str
+    weights: str
+    resampling: str
+    align: str | None
+    atlas: Atlas | None
+    reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
+    circles: Mapping[str, Circle] | None
+    packed: frozenset[int]
+
+    def photograph(self, index: int) -> Photograph:
+        """Camera `index`'s photograph; raises CaptureError `photograph-size` when it is not the camera's size."""
+        view, camera = self.capture.views[self.photographs[index]], self.scene.cameras[index]
+        picture = self.capture.photograph(self.photographs[index])
+        height, width = picture.pixels.shape[:2]
+        if (width, height) != (camera.width, camera.height):
+            raise CaptureError(
+                "photograph-size",
+                f"is {width}x{height}, the scene's camera of that name {camera.width}x{camera.height}",
+                path=view.path,
+                remedy="evaluate with the photographs that were encoded",
+            )
+        return picture
+
+    def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
+        """The picture drawn from camera `index`, (H, W, 3), and (H, W) where the proxy puts surface: on all samples of
+        a pixel, since one that it covers in part has the background mixed in."""
+        row = camera_weights(self.scene, index, self.weights)
+        picture = self.renderer.draw(self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1])
+        return picture.image, picture.coverage > WHOLE
+
+    def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+        """Camera `index`'s texture map as `encode` made it: (n, 3) values and (n,) visibility."""
+        assert self.atlas is not None
+        values, seen = texture_map(
+            self.atlas, self.scene.cameras[index], photograph.pixels, photograph.mask, self.resampling
+        )
+        if self.align is None or self.reference is None or index == self.scene.reference:
+            return values, seen
+        return align_map(self.atlas, values, seen, *self.reference, self.align)
+
+    def measure(self, index: int) -> Measured:
+        """All figures of one camera."""
+        photograph = self.photograph(index)
+        drawn, surface = self.draw(index)
+        figures = measure_picture(drawn, surface, photograph.pixels, photograph.mask)
+        outside = None
+        if self.circles is not None:
+            circle = self.circles.get(self.scene.names[index])
+            outside = measure_outside(drawn, surface, photograph.pixels, photograph.mask, circle)
+        texture = None
+        if self.atlas is not None and not self.scene.held_out[index]:
+            values, seen = self.texture(index, photograph)
+            row = int(np.searchsorted(self.scene.encoded, index))
+            texture = measure_map(
+                self.scene.planes[0], row, self.atlas, values, seen, self.counts, index in self.packed
+            )
+        return Measured(figures, outside, texture)
+
+
+def start_session(
+    scene: Scene,
+    capture: LightField,
+    *,
+    curve: bool = False,
+    textures: int | None = None,
+    filter: str = "bicubic",
+    weights: str = "delaunay",
+    circles: Mapping[str, Circle] | None = None,
+    png_maps: str = "none",
+) -> Session:
+    """Check that scene and photographs belong together, and prepare what all cameras share. See `evaluate`."""
+    if png_maps not in PNG_MAPS:
+        raise OptionError("png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAPS)}")
+    if len(scene.planes) != 1 or scene.planes[0].mean.shape[2] != 3:
+        raise OptionError(
+            "not-photographs",
+            "the scene is not of photographs (one plane of R, G, B)",
+            remedy="evaluate those that are",
+        )
+    photographs = _match(scene, capture)
+    resampling, align = _recorded(scene)
+    encoded = [int(index) for index in scene.encoded if int(index) in photographs]
+    if align is not None and scene.reference not in photographs:
+        log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])
+        encoded = []
+    height, width = scene.planes[0].mean.shape[:2]
+    packed = {"all": encoded, "sample": _spread(encoded, SAMPLE), "none": []}[png_maps]
+    count = _count(scene, textures)
+    session = Session(
+        scene=scene,
+        capture=capture,
+        photographs=photographs,
+        renderer=Renderer(scene),
+        counts=tuple(range(count + 1)) if curve else (count,),
+        filter=filter,
+        weights=weights,
+        resampling=resampling,
+        align=align,
+        atlas=make_atlas(scene.mesh, width, height) if encoded else None,
+        reference=None,
+        circles=circles,
+        packed=frozenset(packed),
+    )
+    if align is None or not encoded:
+        return session
+    reference = session.texture(scene.reference, session.photograph(scene.reference))
+    return replace(session, reference=reference)
+
+
+def _match(scene: Scene, capture: LightField) -> dict[int, int]:
+    """Scene camera to view of the capture, by name."""
+    views = {view.name: index for index, view in enumerate(capture.views)}
+    photographs = {index: views[name] for index, name in enumerate(scene.names) if name in views}
+    if not photographs:
+        theirs = capture.views[0].name if capture.views else "none"
+        raise CaptureError(
+            "no-photographs",
+            f"no photograph has the name of a camera of the scene (here {theirs}, there {scene.names[0]})",
+            path=capture.root,
+            remedy="evaluate with the capture that was encoded",
+        )
+    for index, view in photographs.items():
+        K, other = scene.cameras[index].K, capture.views[view].camera.K
+        if np.abs(K - other).max() > SAME_CAMERA:
+            log.warning(
+                "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
+                scene.names[index],
+            )
+            break
+    return photographs
+
+
+def _recorded(scene: Scene) -> tuple[str, str | None]:
+    """The resampling filter and the alignment that the maps were made with, from the scene's settings."""
+    resampling, align = scene.settings.get("resampling", "bicubic"), scene.settings.get("align")
+    if resampling not in list(FILTERS) or align not in [None, *METHODS]:  # a file may hold anything here
+        raise OptionError(
+            "settings-unknown",
+            f"the scene was made with resampling {resampling!r} and alignment {align!r}, which this version has not",
+            remedy="evaluate with the version that encoded it",
+        )
+    return resampling, align
+
+
+def _count(scene: Scene, textures: int | None) -> int:
+    if textures is None:
+        return scene.textures
+    if not 0 <= textures <= scene.textures:
+        raise OptionError(
+            "textures",
+            f"{textures} textures were asked for, the scene has {scene.textures}",
+            remedy=f"ask for 0 to {scene.textures}",
+        )
+    return textures
+
+
+def _spread(indices: Sequence[int], count: int) -> list[int]:
+    """`count` of the indices, evenly spread; all of them where there are no more."""
+    if len(indices) <= count:
+        return list(indices)
+    return [indices[i] for i in np.rint(np.linspace(0, len(indices) - 1, count)).astype(int)]

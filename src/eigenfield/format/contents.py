@@ -1,0 +1,79 @@
+"""What a file consists of, and its scores: read and rewritten without touching a picture."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from eigenfield.errors import FormatError
+from eigenfield.files import atomic_writer
+from eigenfield.format import limits
+from eigenfield.format.container import front, json_bytes, parse_glb, read_file
+from eigenfield.format.document import Document
+from eigenfield.format.layout import Layout, find_extension
+from eigenfield.format.read import naming, open_layout
+from eigenfield.format.strict_json import Value
+
+
+def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
+    """The checked layout of a file and its bytes by part (see `parts`). Raises FormatError."""
+    with naming(path):
+        document, layout = open_layout(Path(path))
+        return layout, _parts(document)
+
+
+def parts(path: str | os.PathLike[str]) -> dict[str, int]:
+    """Bytes by part: total, mean, textures, weights, mesh, other; the last five sum to the first.
+
+    mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices.
+    other: JSON, calibration, triangles, headers and padding. Raises FormatError.
+    """
+    return describe(path)[1]
+
+
+def _parts(document: Document) -> dict[str, int]:
+    root = document.root
+    extension = root["extensions"][limits.EXTENSION]
+    primitive = root["meshes"].at(0)["primitives"].at(0)
+    planes = list(extension["planes"].items(limits.MAX_PLANES))
+    bases = [basis for plane in planes for basis in plane["bases"].items(limits.MAX_BASES)]
+    pictures = [root["images"].at(0)["bufferView"]] if root.has("images") else []
+    pictures += [plane["mean"]["bufferView"] for plane in planes if plane.has("mean")]
+    textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
+    weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]
+    attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
+    mesh = [_view_of(document, reference) for reference in attributes]
+    counted: set[int] = set()
+    made = {"total": document.glb.size}
+    for name, references in (("mean", pictures), ("textures", textures), ("weights", weights), ("mesh", mesh)):
+        views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
+        counted |= views.keys()
+        made[name] = sum(views.values())
+    made["other"] = made["total"] - sum(made[name] for name in ("mean", "textures", "weights", "mesh"))
+    return made
+
+
+def _view_of(document: Document, accessor: Value) -> Value:
+    return document.root["accessors"].at(accessor.integer(0, 2**31))["bufferView"]
+
+
+def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:
+    """Replace a file's `scores` by a JSON object; everything else, unknown keys too, stays as it is.
+
+    Only the JSON chunk is written anew: textures keep their bytes. Atomic. Raises FormatError, OutputError.
+    """
+    target = Path(os.path.realpath(path))  # a link stays a link
+    with naming(path):
+        data = read_file(target)
+        glb = parse_glb(data)
+        find_extension(Document(glb))
+    glb.json["extensions"][limits.EXTENSION]["scores"] = dict(scores)
+    text = json_bytes(glb.json)
+    if len(text) > limits.MAX_JSON:
+        raise FormatError("json-size", f"the scores make {len(text)} bytes of JSON", where="/extensions", path=path)
+    head = front(text, len(data) - glb.rest, path)
+    with atomic_writer(target, overwrite=True) as file:
+        file.write(head)
+        file.write(memoryview(data)[glb.rest :])

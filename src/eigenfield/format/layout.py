@@ -1,0 +1,399 @@
+"""What a scene file says, every number checked, its pictures not yet decoded.
+
+Each check raises FormatError. `load` stops at the first; `validate` notes it and goes on with the next part: the same
+code, through `Findings.part`.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.errors import FormatError
+from eigenfield.format import limits, pictures
+from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
+from eigenfield.format.findings import Findings
+from eigenfield.format.quantise import Affine
+from eigenfield.format.strict_json import Value, printable, quoted
+from eigenfield.mesh import Mesh
+from eigenfield.viewplane import ViewPlane
+
+_LARGEST = 1e30  # of scales, zeros and lengths: squares and products stay finite
+_KEYS = {
+    "version", "needs", "planes", "cameras", "viewPlane", "reference", "settings", "scores", "generator"
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """Codes in the file.
+
+    width, height, channels: of the array that it decodes to.
+    affine: the way back to numbers, per channel; None: code / 255.
+    """
+
+    data: memoryview
+    mime: str
+    width: int
+    height: int
+    channels: int
+    affine: Affine | None
+    where: str
+
+    def decode(self) -> NDArray[np.uint8]:
+        """(height, width, channels) uint8. FormatError: see `pictures.decode`."""
+        return pictures.decode(self.data, self.mime, self.width, self.height, self.channels, self.where)
+
+
+@dataclass(frozen=True, eq=False)
+class BasisLayout:
+    """size: (width, height). weights: (Ne, N) float32."""
+
+    size: tuple[int, int]
+    textures: tuple[Picture, ...]
+    weights: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneLayout:
+    mean: Picture
+    bases: tuple[BasisLayout, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class CameraList:
+    names: tuple[str, ...]
+    cameras: tuple[Camera, ...]
+    held_out: NDArray[np.bool_]
+
+    @property
+    def encoded(self) -> int:
+        return int((~self.held_out).sum())
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """A whole file; a part that could not be read is None (only while validating)."""
+
+    version: str
+    mesh: Mesh | None
+    planes: tuple[PlaneLayout, ...] | None
+    cameras: CameraList | None
+    view_plane: ViewPlane | None
+    triangles: NDArray[np.int32] | None
+    reference: int | None
+    settings: Mapping[str, Any]
+    scores: Mapping[str, Any]
+    generator: str
+
+
+def read_layout(document: Document, findings: Findings) -> Layout | None:
+    """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
+    extension = None
+    with findings.part():
+        extension = find_extension(document)
+    if extension is None:
+        return None
+    version = extension["version"].text()
+    if version != limits.VERSION:
+        findings.note(
+            "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
+        )
+    for key in sorted(extension.mapping().keys() - _KEYS):
+        findings.note("information", "unknown-key", extension.where, f"{quoted(key)} is ignored")
+    if limits.EXTENSION not in _names(document, "extensionsUsed"):
+        findings.note("warning", "extension-not-used", "/extensionsUsed", f"does not name {limits.EXTENSION}")
+    if limits.EXTENSION in _names(document, "extensionsRequired"):
+        findings.note(
+            "warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean"
+        )
+    mesh = cameras = planes = view_plane = triangles = reference = None
+    settings: Mapping[str, Any] = {}
+    scores: Mapping[str, Any] = {}
+    generator = ""
+    with findings.part():
+        document.check_buffer()
+    with findings.part():
+        document.check_overlap()
+    with findings.part():
+        mesh = read_mesh(document)
+    with findings.part():
+        cameras = read_cameras(document, extension["cameras"])
+    with findings.part():
+        planes = read_planes(document, extension["planes"], cameras, findings)
+    with findings.part():
+        view_plane = read_view_plane(extension["viewPlane"])
+    with findings.part():
+        triangles = read_triangles(document, extension["viewPlane"], cameras)
+    with findings.part():
+        count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
+        reference = extension["reference"].integer(0, count - 1)
+    with findings.part():
+        settings = extension["settings"].mapping() if extension.has("settings") else {}
+    with findings.part():
+        scores = extension["scores"].mapping() if extension.has("scores") else {}
+    with findings.part():
+        generator = extension["generator"].text() if extension.has("generator") else ""
+    return Layout(version, mesh, planes, cameras, view_plane, triangles, reference, settings, scores, generator)
+
+
+def find_extension(document: Document) -> Value:
+    """Our root extension, of a version and with needs that this reader knows.
+
+    FormatError: `gltf-version`, `not-a-scene`, `version`, `needs`.
+    """
+    root = document.root
+    asset = root["asset"]["version"]
+    if not re.fullmatch(r"2\.\d+", asset.text()):
+        asset.fail("gltf-version", f"glTF {quoted(asset.value)}, 2.x expected")
+    if not root.has("extensions") or not root["extensions"].has(limits.EXTENSION):
+        raise FormatError(
+            "not-a-scene",
+            f"a glTF file without {limits.EXTENSION}: no eigen-texture scene",
+            where="/extensions",
+            remedy="name a file that `eigenfield encode` made",
+        )
+    extension = root["extensions"][limits.EXTENSION]
+    version = extension["version"]
+    if not re.fullmatch(r"1\.\d{1,9}", version.text()):
+        raise FormatError(
+            "version",
+            f"version {quoted(version.value)} of {limits.EXTENSION}, 1.x is read here",
+            where=version.where,
+            remedy="use a later eigenfield",
+        )
+    if extension.has("needs"):
+        for need in extension["needs"].items(limits.MAX_VIEWS):
+            if need.text() not in limits.FEATURES:
+                raise FormatError(
+                    "needs",
+                    f"needs the unknown feature {quoted(need.value)}",
+                    where=need.where,
+                    remedy="use a later eigenfield",
+                )
+    return extension
+
+
+def _names(document: Document, key: str) -> list[Any]:
+    found = document.root.mapping().get(key, [])
+    return found if isinstance(found, list) else []
+
+
+def read_mesh(document: Document) -> Mesh:
+    """The proxy: meshes[0].primitives[0]. FormatError: `mesh-*`, `accessor-*`."""
+    primitive = document.root["meshes"].at(0)["primitives"].at(0)
+    if primitive.has("mode") and primitive["mode"].integer(0, 6) != 4:
+        primitive.fail("mesh-mode", "the primitive does not consist of triangles")
+    attributes = primitive["attributes"]
+    vertices = document.array(attributes["POSITION"], "VEC3", (FLOAT,), limits.MAX_VERTICES)
+    uv = document.array(attributes["TEXCOORD_0"], "VEC2", (FLOAT,), limits.MAX_VERTICES)
+    indices = document.array(primitive["indices"], "SCALAR", (UINT8, UINT16, UINT32), 3 * limits.MAX_TRIANGLES)
+    if len(uv) != len(vertices):
+        attributes["TEXCOORD_0"].fail("mesh-uv", f"{len(uv)} texture coordinates for {len(vertices)} vertices")
+    if not _all_finite(vertices, _LARGEST):
+        attributes["POSITION"].fail("mesh-not-finite", "a vertex is NaN, infinite or beyond 1e30")
+    if not _all_finite(uv, _LARGEST):
+        attributes["TEXCOORD_0"].fail("mesh-uv", "a texture coordinate is NaN, infinite or beyond 1e30")
+    if len(indices) % 3:
+        primitive["indices"].fail("mesh-index", f"{len(indices)} indices are no whole number of triangles")
+    if indices.max() >= len(vertices):
+        primitive["indices"].fail("mesh-index", f"index {indices.max()} with {len(vertices)} vertices")
+    return Mesh(vertices, indices.astype(np.int32).reshape(-1, 3), uv)
+
+
+def _all_finite(array: NDArray[Any], largest: float) -> bool:
+    return bool((np.abs(array) <= largest).all())  # False for NaN
+
+
+def read_cameras(document: Document, entry: Value) -> CameraList:
+    """FormatError: `camera-*`, `accessor-*`."""
+    names: list[str] = []
+    for name in entry["names"].items(limits.MAX_CAMERAS, 1):
+        if not printable(name.text()):
+            name.fail("camera-name", "a name with control characters")
+        names.append(name.value)
+    if len(set(names)) < len(names):
+        entry["names"].fail("camera-name", "two cameras have one name")
+    count = len(names)
+    held_out = np.zeros(count, bool)
+    if entry.has("heldOut"):
+        for index in entry["heldOut"].items(count):
+            held_out[index.integer(0, count - 1)] = True
+        if held_out.sum() < len(entry["heldOut"].value):
+            entry["heldOut"].fail("camera-held-out", "a camera is named twice")
+    if held_out.all():
+        entry["heldOut"].fail("camera-held-out", "every camera is held out")
+    intrinsics = _table(document, entry["intrinsics"], FLOAT, count, 5)
+    poses = _table(document, entry["poses"], FLOAT, count, 12)
+    sizes = _table(document, entry["sizes"], UINT32, count, 2).astype(np.int64)
+    _check_calibration(entry, names, intrinsics, poses.reshape(count, 3, 4), sizes)
+    K = np.zeros((count, 3, 3))
+    K[:, 0, 0], K[:, 1, 1], K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = intrinsics.T
+    K[:, 2, 2] = 1
+    matrices = poses.reshape(count, 3, 4).astype(np.float64)
+    cameras = tuple(
+        Camera(k, np.ascontiguousarray(m[:, :3]), m[:, 3].copy(), int(w), int(h))
+        for k, m, (w, h) in zip(K, matrices, sizes, strict=True)
+    )
+    return CameraList(tuple(names), cameras, held_out)
+
+
+def _table(document: Document, reference: Value, component: int, rows: int, columns: int) -> NDArray[Any]:
+    array = document.array(reference, "SCALAR", (component,), 12 * limits.MAX_CAMERAS)
+    if len(array) != rows * columns:
+        reference.fail("camera-count", f"{len(array)} numbers, {columns} for each of {rows} cameras expected")
+    return array.reshape(rows, columns)
+
+
+def _check_calibration(
+    entry: Value, names: list[str], intrinsics: NDArray[Any], poses: NDArray[Any], sizes: NDArray[np.int64]
+) -> None:
+    def refuse(key: str, bad: NDArray[np.bool_], what: str) -> None:
+        if bad.any():
+            entry[key].fail(f"camera-{key}", f"camera {quoted(names[int(np.flatnonzero(bad)[0])])} {what}")
+
+    inside = np.abs(intrinsics) <= _LARGEST
+    refuse(
+        "intrinsics",
+        ~inside.all(axis=1) | (intrinsics[:, :2] <= 1e-6).any(axis=1),
+        "has no valid focal length or centre",
+    )
+    refuse("poses", ~(np.abs(poses) <= _LARGEST).all(axis=(1, 2)), "has a pose that is not finite")
+    rotations = poses[:, :, :3].astype(np.float64)
+    refuse("poses", np.abs(rotations).max(axis=(1, 2)) > 2, "has a pose that is no rotation")
+    off = np.abs(rotations @ rotations.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))
+    refuse("poses", (off > limits.ORTHONORMAL) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation")
+    area = sizes[:, 0] * sizes[:, 1]
+    bad = (sizes < 1).any(axis=1) | (sizes > limits.MAX_CAMERA_SIDE).any(axis=1) | (area > limits.MAX_CAMERA_PIXELS)
+    refuse("sizes", bad, "has an impossible size")
+
+
+def read_planes(
+    document: Document, entry: Value, cameras: CameraList | None, findings: Findings
+) -> tuple[PlaneLayout, ...]:
+    """FormatError: `plane-*`, `decoded-size`, `weights-*`, `view-*`."""
+    planes = tuple(
+        _read_plane(document, plane, index, cameras, findings)
+        for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
+    )
+    count = sum(len(basis.textures) for plane in planes for basis in plane.bases)
+    if count > limits.MAX_COMPONENTS:
+        entry.fail("plane-components", f"{count} eigen textures, {limits.MAX_COMPONENTS} are allowed")
+    total = sum(
+        4 * plane.mean.width * plane.mean.height * plane.mean.channels
+        + sum(basis.size[0] * basis.size[1] * plane.mean.channels * len(basis.textures) for basis in plane.bases)
+        for plane in planes
+    )
+    if total > limits.MAX_DECODED:
+        entry.fail("decoded-size", f"would decode to {total} bytes, {limits.MAX_DECODED} are allowed")
+    return planes
+
+
+def _read_plane(
+    document: Document, entry: Value, index: int, cameras: CameraList | None, findings: Findings
+) -> PlaneLayout:
+    channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
+    if entry.has("mean"):
+        size = _size(entry["mean"]["size"], channels)
+        mean = _picture(document, entry["mean"], size, channels, bare=True)
+    elif index == 0 and channels in (1, 3):
+        mean = read_image(document, channels)
+    else:
+        raise FormatError("plane-mean", "the plane has no mean", where=f"{entry.where}/mean")
+    bases = tuple(
+        _read_basis(document, basis, channels, cameras, findings) for basis in entry["bases"].items(limits.MAX_BASES)
+    )
+    return PlaneLayout(mean, bases)
+
+
+def read_image(document: Document, channels: int) -> Picture:
+    """`images[0]` as a picture of `channels`; its size is what its header says."""
+    image = document.root["images"].at(0)
+    if not image.has("bufferView"):
+        image.fail("plane-mean", "the picture lies in another file")
+    data, mime = document.picture(image["bufferView"]), image["mimeType"].text()
+    width, height = pictures.dimensions(data, mime, image.where)
+    return Picture(data, mime, width, height, channels, None, image.where)
+
+
+def _read_basis(
+    document: Document, entry: Value, channels: int, cameras: CameraList | None, findings: Findings
+) -> BasisLayout:
+    size = _size(entry["size"], channels)
+    textures: list[Picture] = []
+    for texture in entry["textures"].items(limits.MAX_COMPONENTS):
+        with findings.part():
+            textures.append(_picture(document, texture, size, channels, bare=False))
+    count = len(entry["textures"].value)
+    rows = 0 if cameras is None else cameras.encoded
+    weights = np.zeros((rows, 0), np.float32)
+    if count:
+        with findings.part():
+            weights = _read_weights(document, entry["weights"], rows, count)
+    return BasisLayout(size, tuple(textures), weights)
+
+
+def _read_weights(document: Document, reference: Value, rows: int, count: int) -> NDArray[np.float32]:
+    flat = document.array(reference, "SCALAR", (FLOAT,), limits.MAX_WEIGHTS)
+    if not _all_finite(flat, _LARGEST):
+        reference.fail("weights-not-finite", "a weight is NaN, infinite or beyond 1e30")
+    if rows == 0:  # only while validating a file whose cameras are damaged
+        return np.zeros((0, count), np.float32)
+    if len(flat) != rows * count:
+        reference.fail("weights-count", f"{len(flat)} weights, {rows} encoded cameras x {count} textures expected")
+    return flat.reshape(rows, count)
+
+
+def _size(entry: Value, channels: int) -> tuple[int, int]:
+    width, height = (item.integer(1, limits.MAX_SIDE) for item in entry.items(2, 2))
+    w, h = pictures.picture_size(width, height, channels)
+    if h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
+        entry.fail("picture-limit", f"a picture of {w}x{h}, {limits.MAX_TEXELS} texels are allowed")
+    return width, height
+
+
+def _picture(document: Document, entry: Value, size: tuple[int, int], channels: int, *, bare: bool) -> Picture:
+    """bare: scale and zero may be absent."""
+    data, mime = document.picture(entry["bufferView"]), entry["mimeType"].text()
+    affine = None
+    if not bare or entry.has("scale") or entry.has("zero"):
+        affine = Affine(*(np.array(_affine(entry[key], channels)) for key in ("scale", "zero")))
+    pictures.check_header(data, mime, *size, channels, entry.where)
+    return Picture(data, mime, *size, channels, affine, entry.where)
+
+
+def _affine(entry: Value, channels: int) -> list[float]:
+    return [item.number(_LARGEST) for item in entry.items(channels, channels)]
+
+
+def read_view_plane(entry: Value) -> ViewPlane:
+    """FormatError: `view-plane`."""
+    origin, right, up = (
+        np.array([n.number(_LARGEST) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
+    )
+    extent = np.array([n.number(_LARGEST) for n in entry["extent"].items(2, 2)])
+    gram = np.array([right @ right, up @ up, right @ up])
+    if not np.abs(gram - (1, 1, 0)).max() <= limits.ORTHONORMAL:
+        entry.fail("view-plane", "right and up are not of length 1 and at right angles")
+    if extent.min() < 0:
+        entry["extent"].fail("view-plane", "a negative extent")
+    return ViewPlane(origin, right, up, extent)
+
+
+def read_triangles(document: Document, entry: Value, cameras: CameraList | None) -> NDArray[np.int32]:
+    """(T, 3) indices of encoded cameras. FormatError: `view-plane-triangles`, `accessor-*`."""
+    if not entry.has("triangles"):
+        return np.zeros((0, 3), np.int32)
+    flat = document.array(entry["triangles"], "SCALAR", (UINT32,), 6 * limits.MAX_CAMERAS)
+    if len(flat) % 3:
+        entry["triangles"].fail("view-plane-triangles", f"{len(flat)} indices are no whole number of triangles")
+    most = limits.MAX_CAMERAS if cameras is None else cameras.encoded
+    if flat.max() >= most:
+        entry["triangles"].fail("view-plane-triangles", f"index {flat.max()} with {most} encoded cameras")
+    return flat.astype(np.int32).reshape(-1, 3)

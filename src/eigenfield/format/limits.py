@@ -1,0 +1,32 @@
+"""Limits of the format, checked before anything is allocated. `docs/format.md` states the same numbers."""
+
+from __future__ import annotations
+
+EXTENSION = "EIGENFIELD_eigen_textures"
+VERSION = "1.0"  # a reader takes any 1.x
+FEATURES: frozenset[str] = frozenset()  # what an entry of "needs" may be
+
+MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
+MAX_JSON = 64 * 2**20  # bytes of the JSON chunk
+MAX_DEPTH = 64  # of nested objects and arrays
+MAX_CHUNKS = 64
+MAX_VIEWS = 16_384  # buffer views, and accessors
+
+MAX_SIDE = 16_384  # texels of an atlas along one axis
+MAX_STACKED = 32_768  # rows of a picture whose channels are stacked
+MAX_TEXELS = 2**27  # of one picture, stacked channels counted
+MAX_CHANNELS = 64
+MAX_PLANES = 16
+MAX_BASES = 64  # of one plane
+MAX_COMPONENTS = 4_096  # eigen textures, of all planes together
+MAX_DECODED = 8 * 2**30  # bytes of all means (float32) and textures (uint8)
+
+MAX_CAMERAS = 100_000
+MAX_CAMERA_SIDE = 65_535  # pixels
+MAX_CAMERA_PIXELS = 2**29
+MAX_NAME = 1_024  # characters of a camera's name
+MAX_VERTICES = 2**26
+MAX_TRIANGLES = 2**27
+MAX_WEIGHTS = 2**28
+
+ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

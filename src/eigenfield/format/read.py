@@ -1,0 +1,172 @@
+"""GLB to scene: `load` refuses a file at its first error, `validate` lists them all; both run the same checks."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.errors import FormatError
+from eigenfield.format import limits
+from eigenfield.format.container import parse_glb, read_file
+from eigenfield.format.document import Document
+from eigenfield.format.findings import Finding, Findings
+from eigenfield.format.layout import BasisLayout, Layout, Picture, PlaneLayout, read_image, read_layout
+from eigenfield.format.quantise import mean_values
+from eigenfield.parallel import parallel_map
+from eigenfield.scene import Basis, Plane, Scene
+
+
+@contextlib.contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the file's name into every FormatError, and turn a lack of memory into one."""
+    try:
+        yield
+    except FormatError as error:
+        error.path = os.fspath(path)
+        raise
+    except MemoryError as error:
+        raise FormatError(
+            "memory", "does not fit into memory", where="byte 0", path=path, remedy="open it on a larger machine"
+        ) from error
+
+
+def open_layout(path: Path) -> tuple[Document, Layout]:
+    """Container and checked layout, pictures not decoded. Raises FormatError."""
+    document = Document(parse_glb(read_file(path)))
+    layout = read_layout(document, Findings(strict=True))
+    assert layout is not None
+    return document, layout
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene: float32 means, uint8 textures with their scale and zero.
+
+    Raises FormatError (a stable `code`, and `where`) for anything that is not as docs/format.md says; limits are
+    checked before memory is taken. Never another exception for what is in the file.
+    """
+    with naming(path):
+        _, layout = open_layout(Path(path))
+        planes = tuple(_decode_plane(plane) for plane in layout.planes or ())
+        assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
+        assert layout.triangles is not None and layout.reference is not None
+        return Scene(
+            mesh=layout.mesh,
+            planes=planes,
+            names=layout.cameras.names,
+            cameras=layout.cameras.cameras,
+            held_out=layout.cameras.held_out,
+            reference=layout.reference,
+            view_plane=layout.view_plane,
+            triangles=layout.triangles,
+            settings=layout.settings,
+            scores=layout.scores,
+            generator=layout.generator,
+        )
+
+
+def _decode_plane(plane: PlaneLayout) -> Plane:
+    mean = mean_values(plane.mean.decode(), plane.mean.affine)
+    return Plane(mean, tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases))
+
+
+def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
+    width, height = basis.size
+    count = len(basis.textures)
+    textures = np.zeros((count, height, width, channels), np.uint8)
+
+    def decode(index: int) -> None:
+        textures[index] = basis.textures[index].decode()
+
+    parallel_map(decode, range(count))
+    scale, zero = np.ones((count, channels), np.float32), np.zeros((count, channels), np.float32)
+    for index, picture in enumerate(basis.textures):
+        if picture.affine is not None:
+            scale[index], zero[index] = picture.affine.scale, picture.affine.zero
+    return Basis(textures, scale, zero, basis.weights)
+
+
+def validate(path: str | os.PathLike[str]) -> list[Finding]:
+    """Every finding in a file, in the order of the file's parts; an empty list for a file as specified.
+
+    Reads and decodes everything that `load` would, one picture at a time, and looks at what `load` does not need: the
+    picture and the nodes for other viewers, buffer views without use. Never raises for what is in the file.
+    """
+    findings = Findings(strict=False)
+    with findings.part(), naming(path):
+        document = Document(parse_glb(read_file(Path(path))))
+        layout = read_layout(document, findings)
+        if layout is not None:
+            _check_pictures(layout, findings)
+            _check_preview(document, findings)
+            _check_bounds(document, layout, findings)
+            _check_use(document, findings)
+    return findings.found
+
+
+def _check_pictures(layout: Layout, findings: Findings) -> None:
+    for plane in layout.planes or ():
+        for picture in [plane.mean, *(texture for basis in plane.bases for texture in basis.textures)]:
+            with findings.part():
+                picture.decode()
+
+
+def _check_preview(document: Document, findings: Findings) -> None:
+    """What a viewer without our extension shows: images[0] through the proxy's unlit material."""
+    with findings.part():
+        image = read_image(document, 3)
+        if image.mime not in ("image/png", "image/jpeg"):
+            findings.note("warning", "preview-type", image.where, f"{image.mime} is not glTF's PNG or JPEG")
+        elif image.width * image.height * 3 <= limits.MAX_DECODED:
+            _decode_any(image)
+    with findings.part():
+        primitive = document.root["meshes"].at(0)["primitives"].at(0)
+        material = document.root["materials"].at(primitive["material"].integer(0, 2**31))
+        texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"].integer(0, 2**31)
+        source = document.root["textures"].at(texture)["source"]
+        if source.integer(0, 2**31) != 0:
+            findings.note("warning", "preview-material", source.where, "the proxy's material does not show images[0]")
+
+
+def _decode_any(image: Picture) -> None:
+    try:
+        image.decode()
+    except FormatError as error:
+        if error.code != "picture-channels":
+            raise
+        replace(image, channels=1).decode()  # grey is as good for a preview
+
+
+def _check_bounds(document: Document, layout: Layout, findings: Findings) -> None:
+    """glTF wants the bounds of POSITION to be exact: viewers place their camera by them."""
+    if layout.mesh is None:
+        return
+    with findings.part():
+        position = document.root["meshes"].at(0)["primitives"].at(0)["attributes"]["POSITION"]
+        accessor = document.root["accessors"].at(position.integer(0, 2**31))
+        for key, found in (("min", layout.mesh.vertices.min(axis=0)), ("max", layout.mesh.vertices.max(axis=0))):
+            stated = np.array(accessor[key].numbers(3), np.float32)
+            if not np.array_equal(stated, found):
+                findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
+
+
+def _check_use(document: Document, findings: Findings) -> None:
+    """Buffer views that nothing names: bytes without use."""
+    used: set[int] = set()
+    todo = [document.glb.json]
+    while todo:
+        item = todo.pop()
+        if isinstance(item, dict):
+            if isinstance(item.get("bufferView"), int):
+                used.add(item["bufferView"])
+            todo.extend(item.values())
+        elif isinstance(item, list):
+            todo.extend(item)
+    with findings.part():
+        for view in document.root["bufferViews"].items(limits.MAX_VIEWS):
+            if int(view.where.rpartition("/")[2]) not in used:
+                findings.note("information", "view-unused", view.where, "no one names these bytes")

@@ -1,0 +1,232 @@
+"""The stages in order: a calibrated capture and a proxy in, an eigen-texture scene out."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield import __version__
+from eigenfield.basis import (
+    Mean,
+    Spectrum,
+    align_maps,
+    component_count,
+    eigen_textures,
+    gram_matrix,
+    mean_map,
+    smallest_count,
+    spectrum,
+    weights_of,
+)
+from eigenfield.camera import Camera
+from eigenfield.capture import LightField
+from eigenfield.errors import CaptureError, OptionError
+from eigenfield.holdout import held_out_cameras
+from eigenfield.mesh import Mesh
+from eigenfield.progress import Progress
+from eigenfield.proxy import prepare_proxy
+from eigenfield.rendering import delaunay_triangles
+from eigenfield.scene import Basis, Plane, Scene
+from eigenfield.texturing import (
+    FILTERS,
+    SIDE_LIMIT,
+    Spreader,
+    TextureMaps,
+    atlas_side,
+    make_atlas,
+    make_spreader,
+    texels_per_pixel,
+    texture_maps,
+    write_maps,
+)
+from eigenfield.viewplane import fit_view_plane
+
+log = logging.getLogger("eigenfield.encode")
+
+DEFAULT_TEXTURES = 15
+DEFAULT_DENSITY = 1.5
+ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
+
+
+@dataclass(frozen=True)
+class Options:
+    """What `encode` was asked for; each is described there."""
+
+    textures: int = DEFAULT_TEXTURES
+    uv_ssim: float | None = None
+    density: float = DEFAULT_DENSITY
+    atlas: int | tuple[int, int] | None = None
+    align: str | None = None
+    reference: str | None = None
+    hold_out: str | None = None
+    resampling: str = "bicubic"
+
+    def __post_init__(self) -> None:
+        if self.textures < 0:
+            raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
+        if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
+            raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
+        if self.resampling not in FILTERS:
+            raise OptionError(
+                "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
+            )
+        if self.atlas is not None:
+            sides = (self.atlas,) if isinstance(self.atlas, int) else self.atlas
+            if not all(1 <= side <= SIDE_LIMIT for side in sides):
+                raise OptionError(
+                    "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"stay within {SIDE_LIMIT}"
+                )
+
+
+def encode(
+    capture: LightField,
+    proxy: str | os.PathLike[str] | Mesh,
+    *,
+    textures: int = DEFAULT_TEXTURES,
+    uv_ssim: float | None = None,
+    density: float = DEFAULT_DENSITY,
+    atlas: int | tuple[int, int] | None = None,
+    triangles: int | None = None,
+    align: str | None = None,
+    reference: str | None = None,
+    hold_out: str | None = None,
+    resampling: str = "bicubic",
+    keep_maps: str | os.PathLike[str] | None = None,
+    work: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Scene:
+    """Encode a light field on a proxy mesh (the paper's sections 3.2 and 3.3).
+
+    textures: N, at most one less than there are encoded cameras. uv_ssim: instead, the smallest N whose UV measure
+    reaches this. density: atlas texels per photograph pixel along one axis, in the camera nearest the centre; the side
+    is at most 4096. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many; without
+    it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to the
+    reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
+    "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". keep_maps: folder for the
+    filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x cameras x texels).
+
+    Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
+    """
+    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling)
+    names = [view.name for view in capture.views]
+    cameras = [view.camera.rounded() for view in capture.views]
+    plane = fit_view_plane(cameras)
+    coordinates = plane.coordinates([camera.centre for camera in cameras])
+    held = held_out_cameras(hold_out, names, coordinates)
+    encoded = np.flatnonzero(~held)
+    centre = _reference(options.reference, names, coordinates, encoded)
+
+    mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
+    width, height = _atlas_size(options, mesh, cameras[centre])
+    layout = make_atlas(mesh, width, height)
+    shown = capture.subset(encoded.tolist())
+
+    def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+        picture = shown.photograph(index)
+        return picture.pixels, picture.mask
+
+    used = [cameras[i] for i in encoded]
+    with texture_maps(
+        layout, used, photograph, resampling=resampling, work=None if work is None else Path(work), progress=progress
+    ) as maps:
+        scene_basis, mean, spreader = _decompose(maps, options, int(np.searchsorted(encoded, centre)), progress)
+        if keep_maps is not None:
+            write_maps(maps, mean.values, spreader, [names[i] for i in encoded], Path(keep_maps), progress=progress)
+    settings = {
+        "textures": scene_basis.count,
+        "uvSsim": uv_ssim,
+        "atlas": [width, height],
+        "density": round(float(np.sqrt(width * height)) * texels_per_pixel(mesh, cameras[centre]), 4),
+        "align": align,
+        "holdOut": hold_out,
+        "resampling": resampling,
+        "photographs": {
+            "count": len(encoded),
+            "bytes": sum(capture.bytes(int(i)) for i in encoded),
+            "pixels": sum(camera.width * camera.height for camera in used),
+        },
+    }
+    return Scene(
+        mesh=mesh,
+        planes=(Plane(spreader(mean.values), (scene_basis,)),),
+        names=tuple(names),
+        cameras=tuple(cameras),
+        held_out=held,
+        reference=centre,
+        view_plane=plane,
+        triangles=delaunay_triangles(coordinates[encoded]),
+        settings=settings,
+        generator=f"eigenfield {__version__}",
+    )
+
+
+def _decompose(
+    maps: TextureMaps, options: Options, reference: int, progress: Progress | None
+) -> tuple[Basis, Mean, Spreader]:
+    if options.align is not None:
+        align_maps(maps, reference, options.align, progress)
+    mean = mean_map(maps, progress)
+    if not mean.seen.any():
+        raise CaptureError(
+            "nothing-seen",
+            "no camera sees any texel of the proxy",
+            remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
+        )
+    decomposition = spectrum(gram_matrix(maps, mean, progress))
+    count = _count(maps, mean, decomposition, options, progress)
+    weights = weights_of(decomposition, count)
+    compact = eigen_textures(maps, mean, weights, progress)
+    spreader = make_spreader(maps.atlas, mean.seen)
+    pictures = np.zeros((count, maps.atlas.height, maps.atlas.width, maps.channels), np.float32)
+    for index in range(count):
+        pictures[index] = spreader(compact[index])
+    ones, zeros = np.ones((count, maps.channels), np.float32), np.zeros((count, maps.channels), np.float32)
+    return Basis(pictures, ones, zeros, weights), mean, spreader
+
+
+def _count(maps: TextureMaps, mean: Mean, decomposition: Spectrum, options: Options, progress: Progress | None) -> int:
+    if options.uv_ssim is None:
+        return component_count(options.textures, maps.cameras)
+    return smallest_count(maps, mean, decomposition, options.uv_ssim, progress)
+
+
+def _reference(
+    name: str | None, names: Sequence[str], coordinates: NDArray[np.float64], encoded: NDArray[np.int64]
+) -> int:
+    if name is None:
+        return int(encoded[np.argmin(np.linalg.norm(coordinates[encoded], axis=1))])
+    if name not in names:
+        raise OptionError("reference", f"no camera is called {name}", remedy="eigenfield inspect lists the names")
+    index = names.index(name)
+    if index not in encoded:
+        raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")
+    return index
+
+
+def _atlas_size(options: Options, mesh: Mesh, camera: Camera) -> tuple[int, int]:
+    if options.atlas is None:
+        side = atlas_side(mesh, camera, options.density)
+        reached = side * texels_per_pixel(mesh, camera)
+        if reached < 0.98 * options.density:
+            log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)
+        return side, side
+    return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+
+
+def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:
+    """A world far from its origin loses pixels when its numbers become float32."""
+    points = mesh.vertices[:: max(1, len(mesh.vertices) // 100)]
+    worst = 0.0
+    for before, after in zip(exact, kept, strict=True):
+        (first, depth), (second, _) = before.project(points), after.project(points)
+        moved = np.abs(first - second)[depth > 0]
+        worst = max(worst, float(moved.max(initial=0.0)))
+    if worst > ROUNDING_LIMIT:
+        log.warning("float32 cameras move the mesh by %.2f px: shift the world's origin to the array", worst)

@@ -1,0 +1,34 @@
+"""Viewpoints into pictures: view weights, novel cameras, and the software renderer."""
+
+from __future__ import annotations
+
+from eigenfield.rendering.drawing import FILTERS
+from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.renderer import (
+    Renderer,
+    at_resolution,
+    camera_index,
+    draw_texture,
+    render,
+    renderer_of,
+    viewpoint,
+)
+from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights
+
+__all__ = [
+    "FILTERS",
+    "MODES",
+    "Picture",
+    "Renderer",
+    "at_resolution",
+    "camera_index",
+    "camera_weights",
+    "delaunay_triangles",
+    "draw_texture",
+    "novel_camera",
+    "render",
+    "renderer_of",
+    "view_weights",
+    "viewpoint",
+]

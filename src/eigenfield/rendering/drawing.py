@@ -1,0 +1,168 @@
+"""A mesh under a texture, as a camera sees it: rasterise, say which tiles are needed, shade."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.errors import OptionError
+from eigenfield.mesh import Mesh
+from eigenfield.parallel import parallel_map, pieces
+from eigenfield.raster import (
+    BAND,
+    BOUND_SLACK,
+    EDGE_SLACK,
+    SET_UP,
+    bound_faces,
+    draw_band,
+    edge_functions,
+    sort_into_bands,
+)
+from eigenfield.rendering.kernels import TILE, mark_tiles, shade_rows, shading_planes
+
+FILTERS = ("bilinear", "bicubic")
+MARGIN = 2  # texels that the widest filter reaches
+SAMPLES_LIMIT = 4  # along a side of a pixel, when chosen automatically
+SAMPLE_TEXELS = 2.0  # texels a pixel beyond which one sample is not enough
+FOOTPRINTS = 2048  # triangles from which the median footprint is taken
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """A mesh prepared for an atlas of H x W texels.
+
+    vertices: (n, 3) float64. faces: (m, 3) int32. texels: (n, 2) float64, UV in texels, whole at texel centres.
+    reach: (m, 4) int32, the tiles [top, bottom] x [left, right] that a triangle's filter touches.
+    used: (tile rows, tile columns) bool, whether any does.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int32]
+    texels: NDArray[np.float64]
+    reach: NDArray[np.int32]
+    used: NDArray[np.bool_]
+
+
+def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
+    """Prepare a mesh, which must have UVs, for textures of `height` x `width`."""
+    assert mesh.uv is not None, "a mesh without UVs cannot be textured"
+    texels = mesh.uv.astype(np.float64) * (width, height) - 0.5
+    last = np.array([width - 1, height - 1])
+    corners = texels[mesh.faces]
+    low = np.clip(np.floor(corners.min(axis=1)) - MARGIN, 0, last).astype(np.int32) // TILE
+    high = np.clip(np.ceil(corners.max(axis=1)) + MARGIN, 0, last).astype(np.int32) // TILE
+    reach = np.stack([low[:, 1], high[:, 1], low[:, 0], high[:, 0]], axis=1)
+    used = np.zeros((-(-height // TILE), -(-width // TILE)), np.bool_)
+    for top, bottom, left, right in np.unique(reach, axis=0):
+        used[top : bottom + 1, left : right + 1] = True
+    faces = np.ascontiguousarray(mesh.faces, dtype=np.int32)
+    return Surface(mesh.vertices.astype(np.float64), faces, texels, np.ascontiguousarray(reach), used)
+
+
+class Frame:
+    """The buffers of one picture in the making, used again for the next."""
+
+    def __init__(self, surface: Surface, height: int, width: int) -> None:
+        count = len(surface.faces)
+        self.edges = np.empty((count, 3, 3))
+        self.bounds = np.empty((count, 4), np.int32)
+        self.planes = np.empty((count, 3, 3))
+        self.face = np.empty((height, width), np.int32)
+        self.inverse_depth = np.empty((height, width), np.float32)
+        self.seen = np.empty(count, np.uint8)
+        self.needed = np.empty(surface.used.shape, np.uint8)
+
+
+def cover(surface: Surface, camera: Camera, frame: Frame) -> None:
+    """Rasterise into the frame's `face`, `planes` and `needed`; the frame has the camera's size."""
+    matrix = camera.matrix
+    corners = surface.vertices @ matrix[:, :3].T
+    corners += matrix[:, 3]
+    height, width = frame.face.shape
+    frame.seen[:] = 0
+    frame.needed[:] = 0
+
+    def set_up(part: tuple[int, int]) -> None:
+        edge_functions(corners, surface.faces, *part, frame.edges)
+        bound_faces(corners, surface.faces, frame.edges, width, height, BOUND_SLACK, *part, frame.bounds)
+        shading_planes(frame.edges, surface.faces, surface.texels, *part, frame.planes)
+
+    parallel_map(set_up, pieces(len(surface.faces), SET_UP))
+    bands = pieces(height, BAND)
+    starts = np.empty(len(bands) + 1, np.int64)
+    listing = sort_into_bands(frame.bounds, BAND, starts)
+
+    def draw(band: int) -> None:
+        first, last = bands[band]
+        part = listing[starts[band] : starts[band + 1]]
+        draw_band(frame.edges, frame.bounds, part, first, last, EDGE_SLACK, frame.face, frame.inverse_depth)
+        mark_tiles(frame.face, first, last, surface.reach, frame.seen, frame.needed)
+
+    parallel_map(draw, range(len(bands)))
+
+
+def shade(
+    frame: Frame,
+    texture: NDArray[np.float32],
+    filter: str,
+    background: NDArray[np.float32],
+    samples: int,
+    picture: NDArray[np.uint8] | NDArray[np.float32],
+    coverage: NDArray[np.float32],
+) -> None:
+    """Fill picture (H, W, C) and coverage (H, W) from a covered frame of `samples` times that size."""
+    parallel_map(
+        lambda rows: shade_rows(
+            frame.face, frame.planes, texture, filter == "bicubic", samples, background, *rows, picture, coverage
+        ),
+        pieces(picture.shape[0], BAND),
+    )
+
+
+def check_filter(filter: str) -> None:
+    """Raise OptionError `filter` unless it is one of `FILTERS`."""
+    if filter not in FILTERS:
+        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
+
+
+def sample_count(surface: Surface, camera: Camera, asked: int | None) -> int:
+    """k of k x k samples a pixel: what is asked for, else from the median footprint of the triangles in view.
+
+    Up to two texels a pixel along a side one sample does, since the filters themselves reach over two; beyond, half
+    as many samples as texels, at most `SAMPLES_LIMIT`. Raises OptionError `samples` outside 1..16.
+    """
+    if asked is not None:
+        if not 1 <= asked <= 16:
+            raise OptionError("samples", f"{asked} x {asked} samples a pixel", remedy="ask for 1 to 16")
+        return asked
+    footprint = median_footprint(surface, camera)
+    return 1 if footprint <= SAMPLE_TEXELS else min(int(np.ceil(footprint / 2)), SAMPLES_LIMIT)
+
+
+def median_footprint(surface: Surface, camera: Camera) -> float:
+    """Texels a pixel along a side, the median over picture area of (some of) the triangles in view; 0 if there are
+    none."""
+    faces = surface.faces[:: max(1, len(surface.faces) // FOOTPRINTS)]
+    pixels, depth = camera.project(surface.vertices[faces].reshape(-1, 3))
+    corners = np.where((depth > 0)[:, None], pixels, np.nan).reshape(-1, 3, 2)
+    middle = corners.mean(axis=1)
+    shown = ((middle >= 0) & (middle < (camera.width, camera.height))).all(axis=1)
+    screen = _areas(corners[shown])
+    atlas = _areas(surface.texels[faces[shown]])
+    kept = screen > 0
+    if not kept.any():
+        return 0.0
+    screen, atlas = screen[kept], atlas[kept]
+    footprints = np.sqrt(atlas / screen)
+    order = np.argsort(footprints, kind="stable")
+    total = np.cumsum(screen[order])
+    return float(footprints[order[np.searchsorted(total, total[-1] / 2)]])
+
+
+def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(T,) areas of (T, 3, 2) triangles."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

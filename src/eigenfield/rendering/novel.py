@@ -1,0 +1,39 @@
+"""A camera that nobody held: what stands at a viewpoint between the captured ones."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.rendering.weights import view_weights
+from eigenfield.scene import Scene
+
+
+def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
+    """The camera at view-plane coordinates `at` (clamped to the array's [-1, 1]), as large as the reference camera.
+
+    Its centre is the point of the view plane; K and R are the captured ones', with Delaunay weights. K linearly: in a
+    rectified array the principal point moves with the camera, and so does this one's, which keeps the plane of zero
+    parallax where it is. R is the weighted mean, made a rotation again.
+    """
+    weights = view_weights(scene, at)
+    x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
+    reference = scene.cameras[scene.reference]
+    K, R = np.zeros((3, 3)), np.zeros((3, 3))
+    for index, weight in zip(scene.encoded, weights, strict=True):
+        if weight != 0:
+            camera = scene.cameras[index].resized(reference.width, reference.height)
+            K += weight * camera.K
+            R += weight * camera.R
+    rotation = nearest_rotation(R)
+    centre = scene.view_plane.point(float(x), float(y))
+    return Camera(K, rotation, -rotation @ centre, reference.width, reference.height)
+
+
+def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) the rotation nearest to a matrix, least squares (polar decomposition)."""
+    u, _, vt = np.linalg.svd(matrix)
+    turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
+    rotation: NDArray[np.float64] = (u * turn) @ vt
+    return rotation

@@ -1,0 +1,245 @@
+"""The software renderer: a viewpoint in, a picture out (equations 7 and 8)."""
+
+from __future__ import annotations
+
+import difflib
+import threading
+import weakref
+from collections import deque
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.errors import FormatError, OptionError
+from eigenfield.mesh import Mesh
+from eigenfield.rendering.drawing import Frame, Surface, check_filter, cover, make_surface, sample_count, shade
+from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.tiles import compose, tile_plane
+from eigenfield.rendering.weights import camera_weights, view_weights
+from eigenfield.scene import Scene
+
+BLACK = (0.0, 0.0, 0.0)
+SPARE_FRAMES = 4  # sets of buffers kept for the next picture
+
+
+class Renderer:
+    """Draws a scene; prepared once, then callable from any number of threads at a time.
+
+    Raises FormatError `unsupported-layout` for scenes whose planes or bases differ in size.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        sizes = {plane.mean.shape[:2] for plane in scene.planes}
+        if len(sizes) != 1:
+            raise FormatError(
+                "unsupported-layout",
+                "planes of different sizes cannot be drawn yet",
+                where="planes",
+                remedy="encode with one size",
+            )
+        self.height, self.width = sizes.pop()
+        self.channels = sum(plane.mean.shape[2] for plane in scene.planes)
+        self._surface = make_surface(scene.mesh, self.height, self.width)
+        self._planes = tuple(tile_plane(plane, self._surface.used) for plane in scene.planes)
+        self._number = np.full(self._surface.used.shape, -1, np.int64)
+        self._number[self._surface.used] = np.arange(self._surface.used.sum())
+        self._spare: deque[tuple[Frame, NDArray[np.float32]]] = deque(maxlen=SPARE_FRAMES)
+
+    def draw(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        *,
+        filter: str = "bicubic",
+        background: Sequence[float] = BLACK,
+        textures: int | None = None,
+        samples: int | None = None,
+    ) -> Picture:
+        """The view of `camera` with view weights (Ne,) over the encoded cameras.
+
+        filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
+        textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel, None to choose k from
+        the texels a pixel covers. Raises OptionError (`filter`, `samples`, `textures`, `background`).
+        """
+        image = np.empty((camera.height, camera.width, self.channels), np.float32)
+        coverage = np.empty((camera.height, camera.width), np.float32)
+        self._draw(camera, weights, filter, background, textures, samples, image, coverage)
+        return Picture(image, coverage)
+
+    def draw_uint8(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        *,
+        filter: str = "bicubic",
+        background: Sequence[float] = BLACK,
+        textures: int | None = None,
+        samples: int | None = None,
+    ) -> NDArray[np.uint8]:
+        """(H, W, C) uint8: `draw(...).to_uint8()` without the way through floats."""
+        image = np.empty((camera.height, camera.width, self.channels), np.uint8)
+        coverage = np.empty((camera.height, camera.width), np.float32)
+        self._draw(camera, weights, filter, background, textures, samples, image, coverage)
+        return image
+
+    def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
+        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
+        texture = np.zeros((self.height, self.width, self.channels), np.float32)
+        self._compose(np.asarray(weights, np.float64), textures, self._surface.used, texture)
+        return texture
+
+    def _draw(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        filter: str,
+        background: Sequence[float],
+        textures: int | None,
+        samples: int | None,
+        image: NDArray[Any],
+        coverage: NDArray[np.float32],
+    ) -> None:
+        check_filter(filter)
+        if textures is not None and textures < 0:
+            raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+        behind = background_of(background, self.channels)
+        k = sample_count(self._surface, camera, samples)
+        shape = (camera.height * k, camera.width * k)
+        frame, texture = self._take(shape)
+        cover(self._surface, camera.resized(shape[1], shape[0]) if k > 1 else camera, frame)
+        self._compose(np.asarray(weights, np.float64), textures, frame.needed != 0, texture)
+        shade(frame, texture, filter, behind, k, image, coverage)
+        self._spare.append((frame, texture))
+
+    def _compose(
+        self,
+        weights: NDArray[np.float64],
+        textures: int | None,
+        needed: NDArray[np.bool_],
+        texture: NDArray[np.float32],
+    ) -> None:
+        tiles = self._number[needed & self._surface.used]
+        at = 0
+        for plane in self._planes:
+            omega = weights @ plane.weights if plane.weights.size else np.zeros(0)
+            compose(plane, omega[:textures], tiles, texture, at)
+            at += plane.channels
+
+    def _take(self, shape: tuple[int, int]) -> tuple[Frame, NDArray[np.float32]]:
+        """Buffers for a picture of `shape`: spare ones of that size, or new ones."""
+        for _ in range(len(self._spare)):
+            try:
+                spare = self._spare.pop()
+            except IndexError:  # another thread was faster
+                break
+            if spare[0].face.shape == shape:
+                return spare
+        padded = max(4, self.channels)  # a texel of four floats never straddles cache lines
+        return Frame(self._surface, *shape), np.zeros((self.height, self.width, padded), np.float32)
+
+
+def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
+    """(C,) float32; one number stands for all channels. Raises OptionError `background`."""
+    values = np.atleast_1d(np.asarray(background, np.float32))
+    if values.shape == (3,) and channels != 3 and not values.any():
+        values = values[:1]  # the default, for attributes that are no colours
+    if values.shape not in ((1,), (channels,)) or not np.isfinite(values).all():
+        raise OptionError(
+            "background", f"the background has {values.size} values", remedy=f"give 1 or {channels} finite ones"
+        )
+    return np.ascontiguousarray(np.broadcast_to(values, (channels,)))
+
+
+def draw_texture(
+    mesh: Mesh,
+    texture: NDArray[np.float32],
+    camera: Camera,
+    *,
+    filter: str = "bicubic",
+    background: Sequence[float] = BLACK,
+    samples: int | None = None,
+) -> Picture:
+    """One plain texture (H, W, C) float32 on a mesh with UVs: a camera's own texture map, or the mean."""
+    check_filter(filter)
+    height, width, channels = texture.shape
+    surface: Surface = make_surface(mesh, height, width)
+    k = sample_count(surface, camera, samples)
+    frame = Frame(surface, camera.height * k, camera.width * k)
+    cover(surface, camera.resized(camera.width * k, camera.height * k) if k > 1 else camera, frame)
+    image = np.empty((camera.height, camera.width, channels), np.float32)
+    coverage = np.empty((camera.height, camera.width), np.float32)
+    values = np.ascontiguousarray(texture, dtype=np.float32)
+    shade(frame, values, filter, background_of(background, channels), k, image, coverage)
+    return Picture(image, coverage)
+
+
+_renderers: weakref.WeakKeyDictionary[Scene, Renderer] = weakref.WeakKeyDictionary()
+_lock = threading.Lock()
+
+
+def renderer_of(scene: Scene) -> Renderer:
+    """The scene's renderer, made on the first call and kept as long as the scene."""
+    with _lock:
+        found = _renderers.get(scene)
+        if found is None:
+            found = _renderers[scene] = Renderer(scene)
+        return found
+
+
+def render(
+    scene: Scene,
+    *,
+    at: tuple[float, float] | None = None,
+    camera: str | None = None,
+    resolution: tuple[int, int] | None = None,
+    weights: str = "delaunay",
+    filter: str = "bicubic",
+    background: Sequence[float] = BLACK,
+    textures: int | None = None,
+    samples: int | None = None,
+) -> Picture:
+    """Draw the view at view-plane coordinates `at` (X right, Y up, ±1 at the array's edges), or that of the capture
+    camera named `camera`; the reference camera's if neither is given.
+
+    resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. The rest as
+    `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is not there
+    `unknown-camera`.
+    """
+    view, mix = viewpoint(scene, at=at, camera=camera, weights=weights)
+    if resolution is not None:
+        view = at_resolution(view, resolution)
+    return renderer_of(scene).draw(
+        view, mix, filter=filter, background=background, textures=textures, samples=samples
+    )
+
+
+def viewpoint(
+    scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None, weights: str = "delaunay"
+) -> tuple[Camera, NDArray[np.float64]]:
+    """The camera and the view weights (Ne,) of `at`, of a capture camera by name, or of the reference camera."""
+    if at is not None and camera is not None:
+        raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
+    if at is not None:
+        return novel_camera(scene, at), view_weights(scene, at, weights)
+    index = scene.reference if camera is None else camera_index(scene, camera)
+    return scene.cameras[index], camera_weights(scene, index, weights)
+
+
+def camera_index(scene: Scene, name: str) -> int:
+    """Where `name` stands in `scene.names`. Raises OptionError `unknown-camera`, with the names most like it."""
+    if name in scene.names:
+        return scene.names.index(name)
+    near = difflib.get_close_matches(name, scene.names, n=3, cutoff=0.0)
+    raise OptionError("unknown-camera", f"no camera is called {name!r}", remedy=f"nearest are {', '.join(near)}")
+
+
+def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
+    """`camera.resized`, refusing what cannot be: OptionError `resolution`."""
+    width, height = resolution
+    if not (1 <= width <= 16384 and 1 <= height <= 16384):
+        raise OptionError("resolution", f"a picture of {width}x{height}", remedy="give 1x1 to 16384x16384")
+    return camera.resized(width, height)

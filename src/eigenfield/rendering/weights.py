@@ -1,0 +1,195 @@
+"""View weights: how much of each encoded camera a viewpoint takes (equation 7 and its continuous relatives)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.errors import OptionError
+from eigenfield.scene import Scene
+from eigenfield.viewplane import find_grid
+
+MODES = ("delaunay", "nearest3", "bilinear")
+FLAT = 1e-6  # triangles whose area is below this part of their longest side squared count as a line
+
+
+def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> NDArray[np.float64]:
+    """(Ne,) weights over the encoded cameras at view-plane coordinates `at`, clamped to the array's [-1, 1]; sum 1.
+
+    `nearest3` is equation 7 as printed: barycentric coordinates in the triangle of the three nearest cameras, which
+    jump where the third nearest changes and are negative outside the triangle. `delaunay` takes the triangle of the
+    scene's triangulation that holds `at`, outside the hull its nearest point. `bilinear` needs a grid.
+    Raises OptionError (`weights-mode`, `no-grid`, `viewpoint`).
+    """
+    x, y = float(at[0]), float(at[1])
+    if not (np.isfinite(x) and np.isfinite(y)):
+        raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two numbers from -1 to 1")
+    point = np.clip([x, y], -1.0, 1.0)
+    places = _coordinates(scene)
+    if scene.view_plane.is_line:
+        point[1] = 0.0
+    if mode == "delaunay":
+        return _delaunay(point, places, scene.triangles)
+    if mode == "nearest3":
+        return _nearest3(point, places)
+    if mode == "bilinear":
+        return _bilinear(point, places)
+    raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(MODES)}")
+
+
+def camera_weights(scene: Scene, index: int, mode: str = "delaunay") -> NDArray[np.float64]:
+    """(Ne,) weights of a capture camera: its own row for an encoded one, else those of where it stands."""
+    if not scene.held_out[index]:
+        return (scene.encoded == index).astype(np.float64)
+    x, y = scene.view_plane.coordinates(scene.cameras[index].centre)[0]
+    return view_weights(scene, (float(x), float(y)), mode)
+
+
+def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
+    """(T, 3) int32 triangles over (n, 2) view-plane coordinates; none for cameras on a line or fewer than three.
+
+    Grids have four cameras on each circle; the choice of diagonal is Qhull's, and the same for the same numbers.
+    """
+    from scipy.spatial import Delaunay, QhullError
+
+    points = np.asarray(coordinates, dtype=np.float64).reshape(-1, 2)
+    if len(points) < 3:
+        return np.zeros((0, 3), np.int32)
+    centred = points - points.mean(axis=0)
+    spread = np.linalg.svd(centred, compute_uv=False)
+    if spread[1] <= FLAT * spread[0]:
+        return np.zeros((0, 3), np.int32)
+    try:
+        found = Delaunay(points)
+    except QhullError:
+        return np.zeros((0, 3), np.int32)
+    triangles = found.simplices.astype(np.int32)
+    return np.ascontiguousarray(triangles[_area(points[triangles]) > FLAT])
+
+
+def _coordinates(scene: Scene) -> NDArray[np.float64]:
+    centres = np.array([scene.cameras[i].centre for i in scene.encoded])
+    return scene.view_plane.coordinates(centres)
+
+
+def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(T,) twice the area of (T, 3, 2) triangles over their longest side squared."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    longest = np.maximum(np.maximum((a**2).sum(1), (b**2).sum(1)), ((a - b) ** 2).sum(1))
+    cross = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
+    return np.divide(cross, longest, out=np.zeros(len(cross)), where=longest > 0)
+
+
+def _barycentric(point: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(T, 3) barycentric coordinates of (2,) in (T, 3, 2), which must have area."""
+    a, b, p = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0], point - corners[:, 0]
+    area = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    second = (p[:, 0] * b[:, 1] - p[:, 1] * b[:, 0]) / area
+    third = (a[:, 0] * p[:, 1] - a[:, 1] * p[:, 0]) / area
+    return np.stack([1 - second - third, second, third], axis=1)
+
+
+def _delaunay(
+    point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    if len(triangles) == 0:
+        return _along_line(point, places)
+    weights = np.zeros(len(places))
+    inside = _barycentric(point, places[triangles])
+    best = int(np.argmax(inside.min(axis=1)))
+    if inside[best].min() >= 0:
+        weights[triangles[best]] = inside[best]
+        return weights
+    return _on_segments(point, places, _hull(triangles))
+
+
+def _hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+    """(E, 2) edges that belong to one triangle only."""
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    unique, count = np.unique(edges, axis=0, return_counts=True)
+    return unique[count == 1]
+
+
+def _on_segments(
+    point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """Linear weights on the nearest point of (E, 2) segments; ties go to the first."""
+    start, along = places[segments[:, 0]], places[segments[:, 1]] - places[segments[:, 0]]
+    length = (along**2).sum(axis=1)
+    part = np.divide(((point - start) * along).sum(axis=1), length, out=np.zeros(len(length)), where=length > 0)
+    part = np.clip(part, 0.0, 1.0)
+    nearest = int(np.argmin(((start + part[:, None] * along - point) ** 2).sum(axis=1)))
+    weights = np.zeros(len(places))
+    weights[segments[nearest, 0]] = 1.0 - part[nearest]
+    weights[segments[nearest, 1]] += part[nearest]
+    return weights
+
+
+def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Cameras on a line, in the order of their positions along it: linear between neighbours, clamped at the ends."""
+    if len(places) == 1:
+        return np.ones(1)
+    axis = np.linalg.svd(places - places.mean(axis=0))[2][0]
+    order = np.argsort(places @ axis, kind="stable").astype(np.int32)
+    return _on_segments(point, places, np.stack([order[:-1], order[1:]], axis=1))
+
+
+def _nearest3(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    near = np.argsort(((places - point) ** 2).sum(axis=1), kind="stable")[:3].astype(np.int32)
+    if len(near) < 3 or _area(places[near][None])[0] <= FLAT:
+        return _along_some(point, places, near)
+    weights = np.zeros(len(places))
+    weights[near] = _barycentric(point, places[near][None])[0]
+    return weights
+
+
+def _along_some(
+    point: NDArray[np.float64], places: NDArray[np.float64], chosen: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    weights = np.zeros(len(places))
+    weights[chosen] = _along_line(point, places[chosen])
+    return weights
+
+
+def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Between the four cameras of the grid cell; on a jittering grid the cell's quadrilateral is inverted exactly."""
+    grid = find_grid(places)
+    if grid is None:
+        raise OptionError(
+            "no-grid", "bilinear view weights need cameras on a regular grid", remedy="use --weights delaunay"
+        )
+    if min(grid.index.shape) == 1:
+        return _along_line(point, places)
+    index = grid.index.astype(np.int32)
+    cells = np.stack([index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]], axis=-1).reshape(-1, 4)
+    corners = places[cells]
+    ahead, towards = np.roll(corners, -1, axis=1) - corners, point - corners
+    inside = (ahead[..., 0] * towards[..., 1] - ahead[..., 1] * towards[..., 0]).min(axis=1)
+    best = int(np.argmax(inside))
+    if inside[best] < 0:
+        rim = np.concatenate([index[0], index[1:, -1], index[-1, -2::-1], index[-2::-1, 0]])
+        return _on_segments(point, places, np.stack([rim[:-1], rim[1:]], axis=1))
+    s, t = _in_cell(point, corners[best])
+    weights = np.zeros(len(places))
+    weights[cells[best]] = (1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t
+    return weights
+
+
+def _in_cell(point: NDArray[np.float64], corners: NDArray[np.float64]) -> tuple[float, float]:
+    """s, t in 0..1 with point = (1-s)(1-t) A + s(1-t) B + s t C + (1-s) t D in a convex quadrilateral A, B, C, D.
+
+    With h = point - A, e = B - A, g = D - A and k = A - B + C - D, (h - t g) x (e + t k) = 0 is a quadratic in t;
+    of its roots the one that stays finite as the cell becomes a parallelogram.
+    """
+    a, b, c, d = corners
+    h, e, g, k = point - a, b - a, d - a, a - b + c - d
+    constant, linear, square = _cross(h, e), _cross(h, k) - _cross(g, e), -_cross(g, k)
+    root = np.sqrt(max(linear * linear - 4 * constant * square, 0.0))
+    t = float(np.clip(-2 * constant / (linear + np.copysign(root, linear)), 0.0, 1.0))
+    across = e + t * k
+    s = float(np.clip((h - t * g) @ across / (across @ across), 0.0, 1.0))
+    return s, t
+
+
+def _cross(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])

@@ -1,0 +1,182 @@
+"""The whole way: capture and proxy in, scene out, drawn again."""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+import pytest
+import reference
+from captures import write_capture
+from scenes import row_grid
+
+import eigenfield as ef
+from eigenfield.camera import Camera
+from eigenfield.parallel import set_threads
+from eigenfield.rendering import camera_weights, renderer_of
+from eigenfield.texturing import make_atlas, texture_map
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return write_capture(tmp_path_factory.mktemp("capture with space") / "nine")
+
+
+@pytest.fixture(scope="module")
+def capture(folder):
+    return ef.open_capture(folder)
+
+
+@pytest.fixture(scope="module")
+def scene(folder, capture):
+    return ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=2.0)
+
+
+def psnr(a, b, covered):
+    return -10 * np.log10(np.mean(np.square(a - b)[covered]))
+
+
+def test_all_textures_redraw_the_photographs(capture, scene):
+    """What is left is resampling."""
+    for index, view in enumerate(capture.views):
+        photograph = capture.photograph(index).pixels
+        picture = ef.render(scene, camera=view.name)
+        assert psnr(picture.image, photograph, picture.coverage > 0.5) > 38
+
+
+def test_fewer_textures_are_worse_and_the_mean_is_worst(capture, scene):
+    errors = []
+    for count in (0, 1, 3, 8):
+        drawn = [ef.render(scene, camera=view.name, textures=count) for view in capture.views]
+        errors.append(
+            np.mean([psnr(d.image, capture.photograph(i).pixels, d.coverage > 0.5) for i, d in enumerate(drawn)])
+        )
+    assert errors == sorted(errors) and errors[-1] > errors[0] + 6
+
+
+def test_scene_is_what_the_reference_makes_of_the_maps(folder, capture, scene):
+    """Equations 1 to 6 on the very maps: mean, textures and weights at the chart texels."""
+    height, width = scene.planes[0].mean.shape[:2]
+    atlas = make_atlas(scene.mesh, width, height)
+    maps = [texture_map(atlas, c, capture.photograph(i).pixels) for i, c in enumerate(scene.cameras)]
+    T, v = np.stack([m[0] for m in maps]).astype(float), np.stack([m[1] for m in maps])
+    mean, textures, weights = reference.decomposition(T, v, 8)
+    seen = v.any(axis=0)
+    flat = scene.planes[0].mean.reshape(-1, 3)[atlas.texel]
+    np.testing.assert_allclose(flat[seen], mean[seen], atol=1e-5)
+    basis = scene.planes[0].bases[0]
+    for index in range(4):  # later ones are nearly equal in size, their order is noise
+        made = basis.textures[index].reshape(-1, 3)[atlas.texel]
+        assert np.abs(made - textures[index])[seen].max() < 1e-4 * np.abs(textures[index]).max() + 1e-6
+        np.testing.assert_allclose(basis.weights[:, index], weights[:, index], atol=1e-3)
+    filled = reference.filled_maps(T, v)
+    whole = mean + np.einsum("cj,jnk->cnk", weights, textures)
+    assert np.abs(whole - filled).max() * 255 < 1e-3
+
+
+def test_saved_and_loaded_it_draws_the_same(scene, tmp_path):
+    scene.save(tmp_path / "scene.glb", codec="png")
+    again = ef.load(tmp_path / "scene.glb")
+    assert again.names == scene.names and again.settings["atlas"] == scene.settings["atlas"]
+    for at in ((0, 0), (0.4, -0.7)):
+        difference = np.abs(ef.render(again, at=at).image - ef.render(scene, at=at).image)
+        assert difference.max() * 255 < 6 and difference.mean() * 255 < 1
+
+
+def test_same_bytes_at_any_number_of_threads(folder, capture, tmp_path):
+    files = []
+    for count in (1, 2):
+        set_threads(count)
+        try:
+            made = ef.encode(capture, proxy=folder / "proxy.ply", textures=5, atlas=64, align="dis")
+            made.save(tmp_path / f"{count}.glb")
+        finally:
+            set_threads(None)
+        files.append((tmp_path / f"{count}.glb").read_bytes())
+    assert files[0] == files[1]
+
+
+def test_held_out_cameras_take_no_part(folder, capture, tmp_path):
+    """The file is the same whatever the held-out photographs show."""
+    kept = ef.encode(capture, proxy=folder / "proxy.ply", textures=2, atlas=64, hold_out="odd")
+    assert kept.held_out.sum() == 5 and kept.planes[0].bases[0].weights.shape == (4, 2)
+    assert not kept.held_out[kept.reference]
+    alone = ef.encode(
+        capture.subset(np.flatnonzero(~kept.held_out).tolist()), proxy=folder / "proxy.ply", textures=2, atlas=64
+    )
+    np.testing.assert_array_equal(alone.planes[0].mean, kept.planes[0].mean)
+    np.testing.assert_array_equal(alone.planes[0].bases[0].textures, kept.planes[0].bases[0].textures)
+    held = int(np.flatnonzero(kept.held_out)[0])
+    weights = camera_weights(kept, held)
+    assert weights.shape == (4,) and weights.sum() == pytest.approx(1)
+    picture = renderer_of(kept).draw(kept.cameras[held], weights)
+    photograph = capture.photograph(held).pixels
+    assert psnr(picture.image, photograph, picture.coverage > 0.5) > 20
+
+
+def test_cameras_on_a_line_are_no_error(tmp_path):
+    K = np.array([[50.0, 0, 32], [0, 50, 28], [0, 0, 1]])
+    line = tuple(Camera(K, np.eye(3), -np.array([0.3 * i - 0.6, 0, -3.0]), 64, 56) for i in range(5))
+    folder = write_capture(tmp_path / "line", line)
+    made = ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", textures=4, atlas=64)
+    assert made.view_plane.is_line and len(made.triangles) == 0
+    made.save(tmp_path / "line.glb")
+    left, middle = ef.render(ef.load(tmp_path / "line.glb"), at=(-0.9, 0)), ef.render(made, at=(-0.9, 0.8))
+    assert np.abs(left.image - middle.image).mean() * 255 < 3
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [({"textures": -1}, "0 or more"), ({"uv_ssim": 1.5}, "in \\(0, 1\\]"), ({"resampling": "best"}, "bicubic"),
+     ({"reference": "lost.png"}, "no camera is called lost"), ({"align": "best"}, "dis"), ({"atlas": 0}, "stay within"),
+     ({"density": 0.0, "atlas": None}, "ask for one between"), ({"hold_out": "every:0"}, "2 or more"),
+     ({"hold_out": "odd", "reference": "view_01.png"}, "is held out")],
+)  # fmt: skip
+def test_impossible_options_are_refused(folder, capture, change, says):
+    with pytest.raises(ef.OptionError, match=says):
+        ef.encode(capture, proxy=folder / "proxy.ply", **{"atlas": 64, **change})
+
+
+def test_a_proxy_in_another_frame_is_refused(folder, capture):
+    mesh = ef.Mesh(*(lambda m: (m.vertices * [1, 1, -1] - [0, 0, 9], m.faces, m.uv))(read(folder)))
+    with pytest.raises(ef.ProxyError) as caught:
+        ef.encode(capture, proxy=ef.Mesh(mesh.vertices.astype(np.float32), mesh.faces, mesh.uv), atlas=64)
+    assert caught.value.code == "proxy-not-seen"
+
+
+def read(folder):
+    from eigenfield.proxy import read_mesh
+
+    return read_mesh(folder / "proxy.ply")
+
+
+def test_a_world_far_from_its_origin_is_said(caplog):
+    from eigenfield.pipeline import _warn_of_rounding
+
+    far = np.array([500_000.37, 4_000_000.61, 100.0])
+    cameras = [Camera(c.K, c.R, c.t - c.R @ far, c.width, c.height) for c in row_grid(4)]
+    mesh = ef.Mesh((np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]) + far).astype(np.float32), np.array([[0, 1, 2]]))
+    with caplog.at_level(logging.WARNING):
+        _warn_of_rounding(cameras, [camera.rounded() for camera in cameras], mesh)
+    assert "origin" in caplog.text
+
+
+def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
+    for target in (0.9, 0.97, 0.999):
+        made = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, uv_ssim=target)
+        count = made.textures
+        assert ef.evaluate(made, capture)["uv"]["ssim"] >= target or count == 8
+        if count > 1:
+            fewer = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, textures=count - 1)
+            assert ef.evaluate(fewer, capture)["uv"]["ssim"] < target
+
+
+def test_progress_is_told_from_start_to_end(folder, capture):
+    told = {}
+    ef.encode(
+        capture, proxy=folder / "proxy.ply", atlas=64, textures=2,
+        progress=lambda stage, done, total: told.setdefault(stage, []).append((done, total)),
+    )  # fmt: skip
+    assert {"texture maps", "mean", "inner products", "eigen textures"} <= set(told)
+    for steps in told.values():
+        assert steps[0][0] == 0 and steps[-1][0] == steps[-1][1]
