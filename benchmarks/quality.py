@@ -18,6 +18,13 @@ from pathlib import Path
 from typing import Any
 
 import measure
+import numpy as np
+from avif_maps import maps_at_equal_ssim
+
+import eigenfield as ef
+from eigenfield.demo import draw_demo_capture
+from eigenfield.evaluation import read_circles
+from eigenfield.viewplane import find_grid, fit_view_plane
 
 
 def data() -> Path:
@@ -67,18 +74,22 @@ def coded(name: str, demo: Path, options: list[str]) -> dict[str, Any]:
         figures = json.loads(
             measure.run(["-m", "eigenfield", "evaluate", str(output), *where, "--json", "--quiet", *exclude])["output"]
         )
+        if not options:
+            capture = open_capture(where)
+            figures["maps_as_avif"] = maps_at_equal_ssim(output, capture, figures["uv"]["ssim"])
     for key in ("cameras", "schema", "missing", "png_maps"):
         figures.pop(key, None)
     figures["encode"] = {key: encoded[key] for key in ("seconds", "peak_anonymous_mb")}
     return figures
 
 
-def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
-    import eigenfield as ef
-    from eigenfield.evaluation import read_circles
+def open_capture(where: Sequence[str]) -> ef.LightField:
+    return ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
 
+
+def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
     where, how, circles = capture_arguments(name, demo)
-    capture = ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+    capture = open_capture(where)
     atlas = int(how[3]) if "--atlas" in how else None
     scene = ef.encode(capture, how[1], **{"atlas": atlas, **options})
     figures = ef.evaluate(
@@ -95,8 +106,6 @@ def main() -> None:
     results: dict[str, Any] = {}
     for name in arguments.captures or list(CASES):
         if name == "demo" and not (arguments.demo / "capture").exists():
-            from eigenfield.demo import draw_demo_capture
-
             draw_demo_capture(arguments.demo / "capture")
         results[name] = {label: coded(name, arguments.demo, options) for label, options in CASES[name]}
         if name == "tarot":
@@ -110,11 +119,6 @@ def main() -> None:
 
 def exact(demo: Path) -> dict[str, Any]:
     """What resampling alone costs: every second row and column of the demo's capture, with all their textures."""
-    import numpy as np
-
-    import eigenfield as ef
-    from eigenfield.viewplane import find_grid, fit_view_plane
-
     capture = ef.open_capture(demo / "capture")
     cameras = [view.camera for view in capture.views]
     grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))

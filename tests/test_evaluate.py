@@ -434,22 +434,3 @@ def test_plots_of_scenes_with_little_to_show(tmp_path):
         "cameras.png",
         "contact-sheet.png",
     ]
-
-
-@pytest.mark.slow
-def test_tarot_held_out_reaches_what_was_measured_before_building(data):
-    """Before coding, atlas 1024, 15 textures, bicubic: 28.7 dB, and 32.3 outside the ball."""
-    import eigenfield as ef
-
-    folder = data / "tarot_17x17_512"
-    capture = ef.open_capture(folder / "images", calibration=folder / "calibration" / "refined.json")
-    scene = ef.encode(capture, folder / "calibration" / "proxy.ply", atlas=1024, textures=15, hold_out="odd")
-    circles = read_circles(folder / "ball.json", scene.names)
-    assert len(circles) == 289
-    figures = evaluate(scene, capture, circles=circles, png_maps="none")
-    held = figures["image"]["held_out"]
-    assert held["cameras"] == 208
-    assert held["psnr"] >= 28.7
-    assert held["outside"]["psnr"] >= 32.3
-    assert figures["image"]["encoded"]["coverage"] > 0.999
-    assert figures["uv"]["ssim"] > 0.95

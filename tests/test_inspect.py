@@ -22,10 +22,11 @@ from eigenfield.capture.survey import corners_and_centre, find_focus, measure_ar
 from eigenfield.cli.inspect import command
 from eigenfield.errors import CaptureError, EigenfieldError, OptionError, OutputError
 from eigenfield.mesh import Mesh
+from eigenfield.proxy import write_ply
 
 KEYS = {
-    "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems", "damaged",
-    "cameras", "proxy",
+    "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems",
+    "damaged", "cameras", "proxy",
 }  # fmt: skip
 
 
@@ -92,18 +93,18 @@ def test_too_few_views_are_a_problem_here_and_not_an_error(tmp_path):
 
 
 def test_overlay(capture, tmp_path):
-    target = tmp_path / "over lay.png"
-    result = inspect(capture, "--proxy", capture / "proxy.ply", "--overlay", target)
+    target, proxy = tmp_path / "over lay.png", tmp_path / "small.ply"
+    mesh = bumpy_square()
+    write_ply(Mesh(mesh.vertices * np.float32(0.5), mesh.faces, mesh.uv), proxy)  # inside every picture
+    result = inspect(capture, "--proxy", proxy, "--overlay", target)
     assert "triangles, with UVs" in result.stdout and "view_04.png" in result.stdout
     with Image.open(target) as sheet:
         pixels = np.asarray(sheet).astype(int)
     magenta = (pixels == [255, 0, 191]).all(axis=-1)
     assert 500 < magenta.sum() < 0.1 * magenta.size
-    assert (
-        inspect(capture, "--proxy", capture / "proxy.ply", "--overlay", target, fails=OutputError).code
-        == "output-exists"
-    )
-    inspect(capture, "--proxy", capture / "proxy.ply", "--overlay", target, "--overwrite")
+    error = inspect(capture, "--proxy", proxy, "--overlay", target, fails=OutputError)
+    assert error.code == "output-exists"
+    inspect(capture, "--proxy", proxy, "--overlay", target, "--overwrite")
 
 
 def test_overlay_without_a_proxy_says_so(capture, tmp_path):

@@ -7,6 +7,8 @@ perspective-correct barycentric coordinates. Triangles are sorted into fixed ban
 within a row an edge is crossed once, so the pixels of a triangle are a run whose ends are solved for, not searched.
 """
 
+# mypy: disable-error-code="no-untyped-def,no-untyped-call"
+
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -23,6 +25,7 @@ BAND = 64  # rows a thread draws at a time
 SET_UP = 8192  # triangles a thread sets up at a time
 EDGE_SLACK = 1e-7  # of the sum of edge functions: a pixel centre on a shared edge belongs to both triangles
 BOUND_SLACK = 1e-6  # pixels by which a bounding box is widened
+FAR = 1e30  # pixels
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +44,7 @@ class Raster:
 
 
 @kernel()
-def edge_functions(corners, faces, first, last, edges):  # type: ignore[no-untyped-def]
+def edge_functions(corners, faces, first, last, edges):
     """Triangles [first, last) of corners (n, 3), homogeneous pixels (x w, y w, w), into edges (m, 3, 3).
 
     With M = [c0 c1 c2] and b the barycentric coordinates over depth, M b = (x, y, 1): b = M^-1 (x, y, 1). Zero for a
@@ -75,7 +78,7 @@ def edge_functions(corners, faces, first, last, edges):  # type: ignore[no-untyp
 
 
 @kernel()
-def bound_faces(corners, faces, edges, width, height, slack, first, last, bounds):  # type: ignore[no-untyped-def]
+def bound_faces(corners, faces, edges, width, height, slack, first, last, bounds):
     """bounds (m, 4) int32 of triangles [first, last): the pixels [top, bottom) x [left, right) they may cover.
 
     A triangle that reaches behind the camera is bounded by the picture; one that covers nothing gets zeros.
@@ -103,7 +106,7 @@ def bound_faces(corners, faces, edges, width, height, slack, first, last, bounds
 
 
 @kernel()
-def sort_into_bands(bounds, band, starts):  # type: ignore[no-untyped-def]
+def sort_into_bands(bounds, band, starts):
     """Triangles by band of `band` rows, in rising order: those of band b are listing[starts[b] : starts[b + 1]].
 
     starts: (bands + 1,) int64 out.
@@ -126,7 +129,44 @@ def sort_into_bands(bounds, band, starts):  # type: ignore[no-untyped-def]
 
 
 @kernel()
-def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):  # type: ignore[no-untyped-def]
+def run_end(slope, along, constant):
+    """Where slope x + along y + constant >= 0 on row y: x >= a y + b and x <= c y + d, returned as a, b, c, d.
+
+    An edge bounds the run on one side; the other is left far away. One that runs along the rows takes all or nothing.
+    """
+    if slope > 0:
+        root = -1.0 / slope
+        return along * root, constant * root, 0.0, FAR
+    if slope < 0:
+        root = -1.0 / slope
+        return 0.0, -FAR, along * root, constant * root
+    return -FAR * along, -FAR * constant, 0.0, FAR
+
+
+@kernel()
+def run_ends(e, slack):
+    """Of the edge functions b_i in e (3, 3) with sum q: `run_end` of b_i + slack q for each, and q's coefficients."""
+    qx, qy, qc = e[0, 0] + e[1, 0] + e[2, 0], e[0, 1] + e[1, 1] + e[2, 1], e[0, 2] + e[1, 2] + e[2, 2]
+    return (
+        run_end(e[0, 0] + slack * qx, e[0, 1] + slack * qy, e[0, 2] + slack * qc),
+        run_end(e[1, 0] + slack * qx, e[1, 1] + slack * qy, e[1, 2] + slack * qc),
+        run_end(e[2, 0] + slack * qx, e[2, 1] + slack * qy, e[2, 2] + slack * qc),
+        (qx, qy, qc),
+    )
+
+
+@kernel()
+def run_of(a, b, c, y, first, last):
+    """The columns [left, right) within [first, last) of the row at y, from the `run_ends` a, b, c."""
+    left = max(max(a[0] * y + a[1], b[0] * y + b[1]), max(c[0] * y + c[1], first + 0.5))
+    right = min(min(a[2] * y + a[3], b[2] * y + b[3]), min(c[2] * y + c[3], last - 0.5))
+    if not left <= right:
+        return first, first
+    return int(np.ceil(left - 0.5)), int(np.floor(right + 0.5))
+
+
+@kernel()
+def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):
     """Rows [first, last) of the triangles in `listing` into face and inverse_depth (H, W), nearest first kept; ties
     go to the lower index.
 
@@ -136,42 +176,15 @@ def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth): 
     face[first:last] = -1
     inverse_depth[first:last] = 0
     for f in listing:
-        e = edges[f]
-        qx, qy, qc = e[0, 0] + e[1, 0] + e[2, 0], e[0, 1] + e[1, 1] + e[2, 1], e[0, 2] + e[1, 2] + e[2, 2]
-        ax, ay, ac = e[0, 0] + slack * qx, e[0, 1] + slack * qy, e[0, 2] + slack * qc
-        bx, by, bc = e[1, 0] + slack * qx, e[1, 1] + slack * qy, e[1, 2] + slack * qc
-        cx, cy, cc = e[2, 0] + slack * qx, e[2, 1] + slack * qy, e[2, 2] + slack * qc
-        a_root, b_root, c_root = -1.0 / ax, -1.0 / bx, -1.0 / cx
-        leftmost, rightmost = bounds[f, 2] + 0.5, bounds[f, 3] - 0.5
+        a, b, c, q = run_ends(edges[f], slack)
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             y = row + 0.5
-            left, right = leftmost, rightmost
-            a, b, c = ay * y + ac, by * y + bc, cy * y + cc
-            if ax > 0:
-                left = max(left, a * a_root)
-            elif ax < 0:
-                right = min(right, a * a_root)
-            elif a < 0:
-                continue
-            if bx > 0:
-                left = max(left, b * b_root)
-            elif bx < 0:
-                right = min(right, b * b_root)
-            elif b < 0:
-                continue
-            if cx > 0:
-                left = max(left, c * c_root)
-            elif cx < 0:
-                right = min(right, c * c_root)
-            elif c < 0:
-                continue
-            if not left <= right:
-                continue
-            q_row = qy * y + qc
-            for column in range(int(np.ceil(left - 0.5)), int(np.floor(right - 0.5)) + 1):
-                q = np.float32(qx * (column + 0.5) + q_row)
-                if q > inverse_depth[row, column]:
-                    inverse_depth[row, column] = q
+            start = q[1] * y + q[2]
+            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            for column in range(left, right):
+                near = np.float32(q[0] * (column + 0.5) + start)
+                if near > inverse_depth[row, column]:
+                    inverse_depth[row, column] = near
                     face[row, column] = f
 
 

@@ -14,6 +14,8 @@ from eigenfield.camera import Camera
 from eigenfield.capture.lens import Lens
 from eigenfield.errors import CaptureError
 
+LARGEST = 1e30  # of focal lengths and positions: products of two of them stay finite, and a file keeps float32
+
 
 def printable(text: str) -> str:
     """A name from a file as one line that every terminal and JSON can hold: control characters and lone surrogates
@@ -71,6 +73,13 @@ class Entry:
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
         K = self.intrinsics.matrix(width, height)
+        if max(np.abs(K).max(), np.abs(self.centre).max()) > LARGEST:  # False for NaN: `checked` finds those
+            raise CaptureError(
+                "camera-not-finite",
+                f"camera {self.label} has entries beyond {LARGEST:g}",
+                path=path,
+                remedy="mend or remove its entry",
+            )
         try:
             with np.errstate(invalid="ignore", over="ignore"):  # NaN and infinities are what `checked` looks for
                 camera = Camera.checked(K, self.R, -(self.R @ self.centre), width, height, self.label)

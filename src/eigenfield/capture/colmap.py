@@ -90,7 +90,7 @@ def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path
         )
     intrinsics, lens = cameras[shot.camera]
     q, t = np.array(shot.quaternion), np.array(shot.translation)
-    length = float(np.linalg.norm(q))
+    length = math.hypot(*q)
     if not np.isfinite(t).all() or not math.isfinite(length):
         raise CaptureError(
             "camera-not-finite",
@@ -106,7 +106,9 @@ def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path
             remedy="mend or remove its entry",
         )
     R = _rotation(q / length)
-    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, -R.T @ t, lens)
+    with np.errstate(over="ignore", invalid="ignore"):
+        centre = -R.T @ t
+    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens)
 
 
 def _rotation(q: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -32,7 +32,8 @@ MASK_MIDDLE = 0.5
 
 # what Pillow's decoders are known to raise on damaged bytes
 DAMAGE = (
-    OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError, struct.error, zlib.error
+    OSError, SyntaxError, ValueError, EOFError, IndexError, KeyError, TypeError, RuntimeError, struct.error, zlib.error,
+    Image.DecompressionBombError,
 )  # fmt: skip
 
 
@@ -125,6 +126,17 @@ def _unreadable(path: Path, why: str) -> CaptureError:
     )
 
 
+def _damaged(path: Path, error: Exception) -> CaptureError:
+    """What a decoder of Pillow's raised, in our words."""
+    if isinstance(error, Image.DecompressionBombError):  # some plug-ins ask for Pillow's own limit all the same
+        return CaptureError("image-too-large", _one_line(error), path=path, remedy="make it smaller")
+    if "truncated" in str(error).lower():
+        return CaptureError(
+            "image-truncated", "is cut short", path=path, remedy="copy it again, or take it out of the capture"
+        )
+    return _unreadable(path, _one_line(error))
+
+
 def _identify(file: Any, path: Path) -> tuple[str, Image.Image]:
     """Format by content, not by name, and Pillow's image, not decoded.
 
@@ -144,7 +156,7 @@ def _identify(file: Any, path: Path) -> tuple[str, Image.Image]:
         if start[4:8] == b"ftyp" and start[8:12] in (b"avif", b"avis", b"mif1", b"miaf"):
             return "AVIF", AvifImagePlugin.AvifImageFile(file)
     except DAMAGE as error:
-        raise _unreadable(path, _one_line(error)) from error
+        raise _damaged(path, error) from error
     if not start:
         raise _unreadable(path, "it is empty")
     raise CaptureError(
@@ -185,7 +197,7 @@ def _header(name: str, image: Image.Image, file: Any, path: Path) -> Header:
         if name == "AVIF":
             depth = _avif_depth(_at(file, 0, HEAD))
     except DAMAGE as error:
-        raise _unreadable(path, _one_line(error)) from error
+        raise _damaged(path, error) from error
     if orientation not in range(1, 9):
         orientation = 1
     if name == "TIFF" and orientation >= 5:
@@ -238,11 +250,7 @@ def _stored(path: Path, upright: bool) -> tuple[NDArray[np.float32], bytes | Non
         image.load()
         profile = image.info.get("icc_profile")
     except DAMAGE as error:
-        if "truncated" in str(error).lower():
-            raise CaptureError(
-                "image-truncated", "is cut short", path=path, remedy="copy it again, or take it out of the capture"
-            ) from error
-        raise _unreadable(path, _one_line(error)) from error
+        raise _damaged(path, error) from error
     values = _deep(data, header, image, path) if header.depth > 8 else None
     if values is None:
         image, profile = _plain(image, profile, path)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from eigenfield.rendering.drawing import FILTERS
 from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.paths import PATHS, path_points
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.renderer import (
     Renderer,
@@ -14,11 +15,13 @@ from eigenfield.rendering.renderer import (
     renderer_of,
     viewpoint,
 )
+from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights
 
 __all__ = [
     "FILTERS",
     "MODES",
+    "PATHS",
     "Picture",
     "Renderer",
     "at_resolution",
@@ -27,8 +30,10 @@ __all__ = [
     "delaunay_triangles",
     "draw_texture",
     "novel_camera",
+    "path_points",
     "render",
     "renderer_of",
     "view_weights",
     "viewpoint",
+    "write_video",
 ]

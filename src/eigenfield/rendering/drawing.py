@@ -1,8 +1,11 @@
 """A mesh under a texture, as a camera sees it: rasterise, say which tiles are needed, shade."""
 
+# mypy: disable-error-code="no-untyped-call"
+
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,17 +20,16 @@ from eigenfield.raster import (
     EDGE_SLACK,
     SET_UP,
     bound_faces,
-    draw_band,
     edge_functions,
     sort_into_bands,
 )
-from eigenfield.rendering.kernels import TILE, mark_tiles, shade_rows, shading_planes
+from eigenfield.rendering.kernels import DEPTH, TILE, draw_texels, mark_tiles, shade_rows
 
 FILTERS = ("bilinear", "bicubic")
 MARGIN = 2  # texels that the widest filter reaches
 SAMPLES_LIMIT = 4  # along a side of a pixel, when chosen automatically
 SAMPLE_TEXELS = 2.0  # texels a pixel beyond which one sample is not enough
-FOOTPRINTS = 2048  # triangles from which the median footprint is taken
+FOOTPRINTS = 256  # triangles from which the median footprint is taken
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +39,7 @@ class Surface:
     vertices: (n, 3) float64. faces: (m, 3) int32. texels: (n, 2) float64, UV in texels, whole at texel centres.
     reach: (m, 4) int32, the tiles [top, bottom] x [left, right] that a triangle's filter touches.
     used: (tile rows, tile columns) bool, whether any does.
+    size: H, W.
     """
 
     vertices: NDArray[np.float64]
@@ -44,6 +47,7 @@ class Surface:
     texels: NDArray[np.float64]
     reach: NDArray[np.int32]
     used: NDArray[np.bool_]
+    size: tuple[int, int]
 
 
 def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
@@ -59,7 +63,7 @@ def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
     for top, bottom, left, right in np.unique(reach, axis=0):
         used[top : bottom + 1, left : right + 1] = True
     faces = np.ascontiguousarray(mesh.faces, dtype=np.int32)
-    return Surface(mesh.vertices.astype(np.float64), faces, texels, np.ascontiguousarray(reach), used)
+    return Surface(mesh.vertices.astype(np.float64), faces, texels, np.ascontiguousarray(reach), used, (height, width))
 
 
 class Frame:
@@ -69,26 +73,24 @@ class Frame:
         count = len(surface.faces)
         self.edges = np.empty((count, 3, 3))
         self.bounds = np.empty((count, 4), np.int32)
-        self.planes = np.empty((count, 3, 3))
-        self.face = np.empty((height, width), np.int32)
-        self.inverse_depth = np.empty((height, width), np.float32)
+        self.inverse_depth = np.zeros((height, width), np.float32)
+        self.column_of = np.zeros((height, width), np.float32)  # never NaN, even where nothing was drawn yet
+        self.row_of = np.zeros((height, width), np.float32)
         self.seen = np.empty(count, np.uint8)
         self.needed = np.empty(surface.used.shape, np.uint8)
 
 
 def cover(surface: Surface, camera: Camera, frame: Frame) -> None:
-    """Rasterise into the frame's `face`, `planes` and `needed`; the frame has the camera's size."""
+    """Rasterise: where each sample lands in the atlas, and which tiles are needed. The frame has the camera's size."""
     matrix = camera.matrix
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
-    height, width = frame.face.shape
+    height, width = frame.inverse_depth.shape
     frame.seen[:] = 0
-    frame.needed[:] = 0
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, surface.faces, *part, frame.edges)
         bound_faces(corners, surface.faces, frame.edges, width, height, BOUND_SLACK, *part, frame.bounds)
-        shading_planes(frame.edges, surface.faces, surface.texels, *part, frame.planes)
 
     parallel_map(set_up, pieces(len(surface.faces), SET_UP))
     bands = pieces(height, BAND)
@@ -96,30 +98,38 @@ def cover(surface: Surface, camera: Camera, frame: Frame) -> None:
     listing = sort_into_bands(frame.bounds, BAND, starts)
 
     def draw(band: int) -> None:
-        first, last = bands[band]
         part = listing[starts[band] : starts[band + 1]]
-        draw_band(frame.edges, frame.bounds, part, first, last, EDGE_SLACK, frame.face, frame.inverse_depth)
-        mark_tiles(frame.face, first, last, surface.reach, frame.seen, frame.needed)
+        draw_texels(
+            surface.faces, surface.texels, frame.edges, frame.bounds, part, *bands[band], EDGE_SLACK,
+            frame.inverse_depth, frame.column_of, frame.row_of, frame.seen,
+        )  # fmt: skip
 
     parallel_map(draw, range(len(bands)))
+    mark_tiles(frame.seen, surface.reach, frame.needed)
 
 
 def shade(
+    surface: Surface,
     frame: Frame,
-    texture: NDArray[np.float32],
+    layers: NDArray[np.float32],
     filter: str,
     background: NDArray[np.float32],
     samples: int,
-    picture: NDArray[np.uint8] | NDArray[np.float32],
+    picture: NDArray[Any],
     coverage: NDArray[np.float32],
 ) -> None:
-    """Fill picture (H, W, C) and coverage (H, W) from a covered frame of `samples` times that size."""
+    """Fill picture (H, W, C), uint8 or float32, and coverage (H, W) from a covered frame of `samples` times that
+    size, a texture in `layers` and a background (C,)."""
+    height, width = surface.size
+    behind = np.zeros((len(layers), DEPTH), np.float32)
+    behind.reshape(-1)[: len(background)] = background
     parallel_map(
         lambda rows: shade_rows(
-            frame.face, frame.planes, texture, filter == "bicubic", samples, background, *rows, picture, coverage
+            frame.inverse_depth, frame.column_of, frame.row_of, layers, width, height, filter == "bicubic", samples,
+            behind, picture.dtype == np.uint8, *rows, picture, coverage,
         ),
         pieces(picture.shape[0], BAND),
-    )
+    )  # fmt: skip
 
 
 def check_filter(filter: str) -> None:

@@ -1,192 +1,250 @@
-"""Kernels of the renderer: composing a texture (equation 8), finding what a view needs of it, and shading."""
+"""Kernels of the renderer: where samples land in the atlas, composing a texture (equation 8), filtering.
+
+A texture is kept tile by tile and three channels to a layer, (layers, tile rows * tile columns, AREA, 4) float32: a
+tile is one page, written in one go, and a texel's address is the sum of a part for its row and one for its column.
+"""
+
+# mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
 from __future__ import annotations
 
 import numpy as np
 
 from eigenfield.jit import kernel
+from eigenfield.raster import run_ends, run_of
 
 TILE = 16  # texels along a side of a tile
 AREA = TILE * TILE
+LANES = 16  # texels whose codes of four components lie together
+DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 
 
 @kernel()
-def shading_planes(edges, faces, texels, first, last, planes):  # type: ignore[no-untyped-def]
-    """Triangles [first, last): texel coordinates over the picture as ratios of linear functions.
+def draw_texels(faces, texels, edges, bounds, listing, first, last, slack, inverse_depth, column_of, row_of, seen):
+    """As `eigenfield.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
 
-    edges (m, 3, 3): b_i(x, y), see `eigenfield.raster`; texels (n, 2): texel coordinates of the vertices.
-    planes (m, 3, 3) out: rows p, q, s with column = p(x, y) / s(x, y), row = q / s, 1 / depth = s.
+    texels (n, 2): texel coordinates of the vertices. column_of, row_of (H, W) float32 out: texel coordinates over
+    depth, which are linear functions of the pixel. seen (m,): set to 1 for triangles that were nearest for a while;
+    threads share it, and only ever write ones.
     """
-    for f in range(first, last):
-        for k in range(3):
-            p, q, s = 0.0, 0.0, 0.0
-            for i in range(3):
-                value = edges[f, i, k]
-                p += value * texels[faces[f, i], 0]
-                q += value * texels[faces[f, i], 1]
-                s += value
-            planes[f, 0, k] = p
-            planes[f, 1, k] = q
-            planes[f, 2, k] = s
-
-
-@kernel()
-def mark_tiles(face, first, last, reach, seen, needed):  # type: ignore[no-untyped-def]
-    """Mark in `needed` (tile rows, tile columns) the tiles that rows [first, last) of `face` sample.
-
-    reach (m, 4): the tiles [top, bottom] x [left, right] that a triangle's filter touches. seen (m,) keeps each
-    triangle from being looked at twice. Threads share both: they only ever write ones.
-    """
-    before = -1
-    for row in range(first, last):
-        for column in range(face.shape[1]):
-            f = face[row, column]
-            if f == before or f < 0:
-                continue
-            before = f
-            if seen[f]:
-                continue
+    inverse_depth[first:last] = 0
+    for f in listing:
+        e = edges[f]
+        a, b, c, q = run_ends(e, slack)
+        u0, u1, u2 = texels[faces[f, 0], 0], texels[faces[f, 1], 0], texels[faces[f, 2], 0]
+        v0, v1, v2 = texels[faces[f, 0], 1], texels[faces[f, 1], 1], texels[faces[f, 2], 1]
+        ux, vx = u0 * e[0, 0] + u1 * e[1, 0] + u2 * e[2, 0], v0 * e[0, 0] + v1 * e[1, 0] + v2 * e[2, 0]
+        uy, vy = u0 * e[0, 1] + u1 * e[1, 1] + u2 * e[2, 1], v0 * e[0, 1] + v1 * e[1, 1] + v2 * e[2, 1]
+        uc, vc = u0 * e[0, 2] + u1 * e[1, 2] + u2 * e[2, 2], v0 * e[0, 2] + v1 * e[1, 2] + v2 * e[2, 2]
+        drawn = False
+        for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
+            y = row + 0.5
+            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            x = left + 0.5
+            q_start, q_step = np.float32(q[0] * x + (q[1] * y + q[2])), np.float32(q[0])
+            u_start, u_step = np.float32(ux * x + (uy * y + uc)), np.float32(ux)
+            v_start, v_step = np.float32(vx * x + (vy * y + vc)), np.float32(vx)
+            nearest, columns, rows = inverse_depth[row], column_of[row], row_of[row]
+            for step in range(np.int32(right - left)):
+                at, along = np.uintp(left + step), np.float32(np.int32(step))
+                near = q_start + along * q_step
+                if near > nearest[at]:
+                    nearest[at] = near
+                    columns[at] = u_start + along * u_step
+                    rows[at] = v_start + along * v_step
+                    drawn = True
+        if drawn:
             seen[f] = 1
-            for y in range(reach[f, 0], reach[f, 1] + 1):
-                for x in range(reach[f, 2], reach[f, 3] + 1):
-                    needed[y, x] = 1
+
+
+@kernel()
+def mark_tiles(seen, reach, needed):
+    """needed (tile rows, tile columns) = 1 for the tiles [top, bottom] x [left, right] (reach, (m, 4)) of the
+    triangles in seen (m,); 0 elsewhere."""
+    needed[:] = 0
+    for f in range(seen.shape[0]):
+        if seen[f]:
+            for row in range(reach[f, 0], reach[f, 1] + 1):
+                for column in range(reach[f, 2], reach[f, 3] + 1):
+                    needed[row, column] = 1
 
 
 @kernel(fastmath=True)
-def add_four(total, a, b, c, d, wa, wb, wc, wd):  # type: ignore[no-untyped-def]
-    """total += wa a + wb b + wc c + wd d over one tile: four at a time, so that the total is seldom loaded."""
-    for i in range(AREA):
-        total[i] += (wa * np.float32(a[i]) + wb * np.float32(b[i])) + (wc * np.float32(c[i]) + wd * np.float32(d[i]))
+def add_four(total, codes, a, b, c, d):
+    """total (AREA,) += a, b, c, d times four components, which codes (AREA / LANES, 4, LANES) holds side by side.
+
+    Four at a time, so that the total is seldom loaded, and laid out so that memory is read strictly in order.
+    """
+    for block in range(AREA // LANES):
+        part = codes[block]
+        for i in range(LANES):
+            total[block * LANES + i] += (a * np.float32(part[0, i]) + b * np.float32(part[1, i])) + (
+                c * np.float32(part[2, i]) + d * np.float32(part[3, i])
+            )
 
 
 @kernel(fastmath=True)
-def compose_tiles(tiles, places, mean, codes, chosen, coefficients, offset, at, texture):  # type: ignore[no-untyped-def]
-    """Equation 8 on some tiles: texture[..., at + k] = mean + offset[k] + sum_j coefficients[j, k] codes[j].
+def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, layers):
+    """Equation 8 on some tiles: mean + offset + sum of coefficients times codes.
 
-    tiles (n,): which of the stored tiles; places (tiles, 2): their row and column in the atlas.
-    mean (tiles, C, AREA) float32; codes (tiles, C, N, AREA): tile-major, so that one tile's components lie together
-    and are summed while the total stays in the first cache. chosen (M,): the components j to sum, in order.
+    tiles (n,): which of the stored tiles; places (tiles,): their number in the atlas.
+    mean (tiles, C, AREA) float32; codes (tiles, C, G, AREA / LANES, 4, LANES): components in groups of four, one
+    tile's together, so that its total stays in the first cache. groups (g,): those to sum; coefficients
+    (4 G, C), offset (C,) float32. layers (L, tiles of the atlas, AREA, 4) out.
     """
     channels = codes.shape[1]
-    total = np.empty((channels, AREA), np.float32)
-    height, width = texture.shape[0], texture.shape[1]
-    count = chosen.shape[0]
+    totals = np.zeros((DEPTH, AREA), np.float32)
+    red, green, blue = totals[0], totals[1], totals[2]
     for t in tiles:
-        for k in range(channels):
-            sums = total[k]
-            for i in range(AREA):
-                sums[i] = mean[t, k, i] + offset[k]
-            part = codes[t, k]
-            j = 0
-            while j + 4 <= count:
-                j0, j1, j2, j3 = chosen[j], chosen[j + 1], chosen[j + 2], chosen[j + 3]
-                add_four(
-                    sums, part[j0], part[j1], part[j2], part[j3],
-                    coefficients[j0, k], coefficients[j1, k], coefficients[j2, k], coefficients[j3, k],
-                )  # fmt: skip
-                j += 4
-            while j < count:
-                codes_j, weight = part[chosen[j]], coefficients[chosen[j], k]
+        for first in range(0, channels, DEPTH):
+            for k in range(first, min(first + DEPTH, channels)):
+                total, start, add = totals[k - first], mean[t, k], offset[k]
                 for i in range(AREA):
-                    sums[i] += weight * np.float32(codes_j[i])
-                j += 1
-        top, left = places[t, 0] * TILE, places[t, 1] * TILE
-        columns = min(TILE, width - left)
-        for row in range(min(TILE, height - top)):
-            for column in range(columns):
-                for k in range(channels):
-                    texture[top + row, left + column, at + k] = total[k, row * TILE + column]
+                    total[i] = start[i] + add
+                for g in groups:
+                    j = 4 * g
+                    add_four(
+                        total, codes[t, k, g],
+                        coefficients[j, k], coefficients[j + 1, k], coefficients[j + 2, k], coefficients[j + 3, k],
+                    )  # fmt: skip
+            out = layers[first // DEPTH, places[t]]
+            for i in range(AREA):
+                out[i, 0] = red[i]
+                out[i, 1] = green[i]
+                out[i, 2] = blue[i]
+                out[i, 3] = np.float32(0)
 
 
 @kernel(fastmath=True)
-def add_bilinear(texture, x, y, total):  # type: ignore[no-untyped-def]
-    """total (C,) += texture (H, W, >= C) at column x, row y (texel centres at whole numbers), clamped."""
-    bottom, right = texture.shape[0] - 1, texture.shape[1] - 1
-    x, y = min(max(x, np.float32(0)), np.float32(right)), min(max(y, np.float32(0)), np.float32(bottom))
-    c0, r0 = int(x), int(y)
-    c1, r1 = min(c0 + 1, right), min(r0 + 1, bottom)
-    fx, fy = x - np.float32(c0), y - np.float32(r0)
-    w11 = fx * fy
-    w01, w10 = fx - w11, fy - w11
-    w00 = np.float32(1) - fx - w10
-    for k in range(total.shape[0]):
-        total[k] += (w00 * texture[r0, c0, k] + w01 * texture[r0, c1, k]) + (
-            w10 * texture[r1, c0, k] + w11 * texture[r1, c1, k]
-        )
-
-
-@kernel(fastmath=True)
-def cubic_weights(f):  # type: ignore[no-untyped-def]
-    """Catmull and Rom's cubic (a = -1/2) at distances 1 + f, f, 1 - f, 2 - f."""
-    half = np.float32(0.5)
-    f2 = f * f
+def filter_weights(kind, f):
+    """Weights of the taps at distances 1 + f, f, 1 - f, 2 - f: the triangle, or Catmull and Rom's cubic (a = -1/2)."""
+    if kind == 2:
+        return np.float32(0), np.float32(1) - f, f, np.float32(0)
+    half, f2 = np.float32(0.5), f * f
     f3 = f2 * f
     return (
-        half * (-f3 + np.float32(2) * f2 - f),
+        half * (np.float32(2) * f2 - f3 - f),
         half * (np.float32(3) * f3 - np.float32(5) * f2 + np.float32(2)),
-        half * (np.float32(-3) * f3 + np.float32(4) * f2 + f),
+        half * (np.float32(4) * f2 - np.float32(3) * f3 + f),
         half * (f3 - f2),
     )
 
 
-@kernel(fastmath=True)
-def add_bicubic(texture, x, y, total):  # type: ignore[no-untyped-def]
-    """As `add_bilinear` with the 4 x 4 Catmull-Rom filter."""
-    bottom, right = texture.shape[0] - 1, texture.shape[1] - 1
-    x, y = min(max(x, np.float32(0)), np.float32(right)), min(max(y, np.float32(0)), np.float32(bottom))
-    c1, r1 = int(x), int(y)
-    u0, u1, u2, u3 = cubic_weights(x - np.float32(c1))
-    v0, v1, v2, v3 = cubic_weights(y - np.float32(r1))
-    c0, c2, c3 = max(c1 - 1, 0), min(c1 + 1, right), min(c1 + 2, right)
-    r0, r2, r3 = max(r1 - 1, 0), min(r1 + 1, bottom), min(r1 + 2, bottom)
-    for k in range(total.shape[0]):
-        line0 = u0 * texture[r0, c0, k] + u1 * texture[r0, c1, k] + u2 * texture[r0, c2, k] + u3 * texture[r0, c3, k]
-        line1 = u0 * texture[r1, c0, k] + u1 * texture[r1, c1, k] + u2 * texture[r1, c2, k] + u3 * texture[r1, c3, k]
-        line2 = u0 * texture[r2, c0, k] + u1 * texture[r2, c1, k] + u2 * texture[r2, c2, k] + u3 * texture[r2, c3, k]
-        line3 = u0 * texture[r3, c0, k] + u1 * texture[r3, c1, k] + u2 * texture[r3, c2, k] + u3 * texture[r3, c3, k]
-        total[k] += v0 * line0 + v1 * line1 + v2 * line2 + v3 * line3
+@kernel(fastmath=True, inline=True)
+def locate(taps, near, place, size, per_tile, per_texel, address, weight):
+    """Texel coordinates over depth (n,), and 1 / depth, along one axis into the addresses and weights (taps, n) of
+    the filter's taps, clamped to the atlas, `size` texels long.
 
-
-@kernel(fastmath=True)
-def shade_rows(face, planes, texture, bicubic, samples, background, first, last, picture, coverage):  # type: ignore[no-untyped-def]
-    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from face (H k, W k).
-
-    Each pixel is the mean of its k x k samples; uncovered ones count as `background` (C,). A uint8 picture gets
-    values of 0..1 times 255, rounded half to even and clipped.
+    per_tile, per_texel: how far apart neighbours lie in the flat texture.
     """
-    channels = picture.shape[2]
-    total = np.empty(channels, np.float32)
-    share = np.float32(1.0 / (samples * samples))
-    for row in range(first, last):
-        for column in range(picture.shape[1]):
-            total[:] = 0
-            hits = 0
-            for sy in range(samples):
-                for sx in range(samples):
-                    j, i = row * samples + sy, column * samples + sx
-                    f = face[j, i]
-                    if f < 0:
-                        continue
-                    x, y = i + 0.5, j + 0.5
-                    p = planes[f]
-                    inverse = np.float32(1) / np.float32(p[2, 0] * x + (p[2, 1] * y + p[2, 2]))
-                    u = np.float32(p[0, 0] * x + (p[0, 1] * y + p[0, 2])) * inverse
-                    v = np.float32(p[1, 0] * x + (p[1, 1] * y + p[1, 2])) * inverse
-                    if bicubic:
-                        add_bicubic(texture, u, v, total)
-                    else:
-                        add_bilinear(texture, u, v, total)
-                    hits += 1
-            missing = np.float32(samples * samples - hits)
-            coverage[row, column] = share * np.float32(hits)
-            for k in range(channels):
-                store(picture, row, column, k, (total[k] + missing * background[k]) * share)
+    last, end = np.int32(size - 1), np.float32(size - 1)
+    tile, texel = np.int32(per_tile), np.int32(per_texel)
+    lead = np.int32(taps // 2 - 1)
+    for i in range(place.shape[0]):
+        inverse = near[i] if near[i] > 0 else np.float32(1)
+        x = min(max(place[i] / inverse, np.float32(0)), end)
+        whole = np.int32(x)
+        w = filter_weights(taps, x - np.float32(whole))
+        for tap in range(taps):
+            at = min(max(whole + np.int32(tap) - lead, np.int32(0)), last)
+            address[tap, i] = (at >> np.int32(4)) * tile + (at & np.int32(15)) * texel
+            weight[tap, i] = w[tap + 1 - lead]
 
 
-@kernel(inline=True)
-def store(picture, row, column, k, value):  # type: ignore[no-untyped-def]
-    """A value of 0..1 into a picture: as it is, or as 8 bit."""
-    if picture.itemsize == 1:
-        picture[row, column, k] = np.uint8(np.rint(min(max(value * np.float32(255), np.float32(0)), np.float32(255))))
+@kernel(fastmath=True, inline=True)
+def sample_line(taps, texture, near, rows, columns, down, across, samples, background, line):
+    """Add the filtered samples of a row to line (pixels * DEPTH,), `samples` to a pixel; background where uncovered.
+
+    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`.
+    """
+    one, two = np.uintp(1), np.uintp(2)
+    for pixel in range(line.shape[0] // DEPTH):
+        red, green, blue = np.float32(0), np.float32(0), np.float32(0)
+        for sample in range(samples):
+            i = np.uintp(pixel * samples + sample)
+            if near[i] > 0:
+                for v in range(taps):
+                    r, g, b = np.float32(0), np.float32(0), np.float32(0)
+                    for u in range(taps):
+                        at, weight = np.uintp(rows[v, i] + columns[u, i]), across[u, i]
+                        r += weight * texture[at]
+                        g += weight * texture[at + one]
+                        b += weight * texture[at + two]
+                    weight = down[v, i]
+                    red += weight * r
+                    green += weight * g
+                    blue += weight * b
+            else:
+                red += background[0]
+                green += background[1]
+                blue += background[2]
+        place = np.uintp(pixel * DEPTH)
+        line[place] += red
+        line[place + one] += green
+        line[place + two] += blue
+
+
+@kernel(fastmath=True)
+def store_line(line, scale, eight_bit, out):
+    """line times scale into out, both flat: as it is, or rounded half to even and clipped to 8 bit."""
+    if eight_bit:
+        for i in range(line.shape[0]):
+            out[i] = np.int32(np.rint(min(max(line[i] * scale, np.float32(0)), np.float32(255))))
     else:
-        picture[row, column, k] = value
+        for i in range(line.shape[0]):
+            out[i] = line[i] * scale
+
+
+@kernel(fastmath=True)
+def cover_line(near, samples, share, coverage):
+    """coverage (pixels,): `share` times the samples near (k, pixels k) of each pixel that show surface."""
+    if samples == 1:
+        for pixel in range(coverage.shape[0]):
+            coverage[pixel] = np.float32(1) if near[0, pixel] > 0 else np.float32(0)
+    else:
+        for pixel in range(coverage.shape[0]):
+            hits = 0
+            for source in range(samples):
+                for sample in range(pixel * samples, pixel * samples + samples):
+                    hits += near[source, sample] > 0
+            coverage[pixel] = np.float32(hits) * share
+
+
+@kernel(fastmath=True)
+def shade_rows(
+    inverse_depth, column_of, row_of, layers, width, height, bicubic, samples, background, eight_bit, first, last,
+    picture, coverage,
+):  # fmt: skip
+    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples (H k, W k).
+
+    layers (L, tiles, AREA, 4): a texture of `height` x `width`. Each pixel is the mean of its k x k samples;
+    uncovered ones count as `background` (L, DEPTH). eight_bit: times 255, rounded half to even and clipped.
+    """
+    pixels, channels = picture.shape[1], picture.shape[2]
+    count = pixels * samples
+    tile_row = -(-width // TILE) * AREA * 4
+    rows, columns = np.empty((4, count), np.int32), np.empty((4, count), np.int32)
+    down, across = np.empty((4, count), np.float32), np.empty((4, count), np.float32)
+    line = np.empty(pixels * DEPTH, np.float32)
+    share = np.float32(1.0 / (samples * samples))
+    scale = share * np.float32(255) if eight_bit else share
+    for row in range(first, last):
+        for layer in range(layers.shape[0]):
+            texture, behind = layers[layer].reshape(-1), background[layer]
+            line[:] = 0
+            for source in range(row * samples, row * samples + samples):
+                near, u, v = inverse_depth[source], column_of[source], row_of[source]
+                if bicubic:
+                    locate(4, near, u, width, AREA * 4, 4, columns, across)
+                    locate(4, near, v, height, tile_row, TILE * 4, rows, down)
+                    sample_line(4, texture, near, rows, columns, down, across, samples, behind, line)
+                else:
+                    locate(2, near, u, width, AREA * 4, 4, columns, across)
+                    locate(2, near, v, height, tile_row, TILE * 4, rows, down)
+                    sample_line(2, texture, near, rows, columns, down, across, samples, behind, line)
+            if channels == DEPTH:
+                store_line(line, scale, eight_bit, picture[row].reshape(-1))
+            else:
+                for k in range(layer * DEPTH, min(layer * DEPTH + DEPTH, channels)):
+                    store_line(line[k - layer * DEPTH :: DEPTH], scale, eight_bit, picture[row, :, k])
+        cover_line(inverse_depth[row * samples : row * samples + samples], samples, share, coverage[row])

@@ -21,11 +21,11 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
     reference = scene.cameras[scene.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
-    for index, weight in zip(scene.encoded, weights, strict=True):
-        if weight != 0:
-            camera = scene.cameras[index].resized(reference.width, reference.height)
-            K += weight * camera.K
-            R += weight * camera.R
+    encoded = scene.encoded
+    for row in np.flatnonzero(weights):
+        camera = scene.cameras[encoded[row]].resized(reference.width, reference.height)
+        K += weights[row] * camera.K
+        R += weights[row] * camera.R
     rotation = nearest_rotation(R)
     centre = scene.view_plane.point(float(x), float(y))
     return Camera(K, rotation, -rotation @ centre, reference.width, reference.height)

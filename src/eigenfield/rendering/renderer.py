@@ -18,7 +18,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.rendering.drawing import Frame, Surface, check_filter, cover, make_surface, sample_count, shade
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.tiles import compose, tile_plane
+from eigenfield.rendering.tiles import compose, empty_layers, fill_layers, read_layers, tile_plane
 from eigenfield.rendering.weights import camera_weights, view_weights
 from eigenfield.scene import Scene
 
@@ -41,13 +41,14 @@ class Renderer:
                 where="planes",
                 remedy="encode with one size",
             )
-        self.height, self.width = sizes.pop()
-        self.channels = sum(plane.mean.shape[2] for plane in scene.planes)
-        self._surface = make_surface(scene.mesh, self.height, self.width)
+        height, width = sizes.pop()
+        self._depths = [int(plane.mean.shape[2]) for plane in scene.planes]
+        self.channels = sum(self._depths)
+        self._surface = make_surface(scene.mesh, height, width)
         self._planes = tuple(tile_plane(plane, self._surface.used) for plane in scene.planes)
         self._number = np.full(self._surface.used.shape, -1, np.int64)
         self._number[self._surface.used] = np.arange(self._surface.used.sum())
-        self._spare: deque[tuple[Frame, NDArray[np.float32]]] = deque(maxlen=SPARE_FRAMES)
+        self._spare: deque[tuple[Frame, list[NDArray[np.float32]]]] = deque(maxlen=SPARE_FRAMES)
 
     def draw(
         self,
@@ -65,9 +66,7 @@ class Renderer:
         textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel, None to choose k from
         the texels a pixel covers. Raises OptionError (`filter`, `samples`, `textures`, `background`).
         """
-        image = np.empty((camera.height, camera.width, self.channels), np.float32)
-        coverage = np.empty((camera.height, camera.width), np.float32)
-        self._draw(camera, weights, filter, background, textures, samples, image, coverage)
+        image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
         return Picture(image, coverage)
 
     def draw_uint8(
@@ -81,65 +80,66 @@ class Renderer:
         samples: int | None = None,
     ) -> NDArray[np.uint8]:
         """(H, W, C) uint8: `draw(...).to_uint8()` without the way through floats."""
-        image = np.empty((camera.height, camera.width, self.channels), np.uint8)
-        coverage = np.empty((camera.height, camera.width), np.float32)
-        self._draw(camera, weights, filter, background, textures, samples, image, coverage)
+        image: NDArray[np.uint8] = self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
         return image
 
     def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
         """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
-        texture = np.zeros((self.height, self.width, self.channels), np.float32)
-        self._compose(np.asarray(weights, np.float64), textures, self._surface.used, texture)
-        return texture
+        layers = self._empty_layers()
+        self._compose(weights, textures, self._surface.used, layers)
+        parts = [read_layers(part, *self._surface.size, n) for part, n in zip(layers, self._depths, strict=True)]
+        return np.concatenate(parts, axis=2)
 
     def _draw(
         self,
         camera: Camera,
         weights: ArrayLike,
         filter: str,
-        background: Sequence[float],
+        background: Sequence[float] | float,
         textures: int | None,
         samples: int | None,
-        image: NDArray[Any],
-        coverage: NDArray[np.float32],
-    ) -> None:
+        dtype: type[np.uint8] | type[np.float32],
+    ) -> tuple[NDArray[Any], NDArray[np.float32]]:
         check_filter(filter)
         if textures is not None and textures < 0:
             raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
         behind = background_of(background, self.channels)
         k = sample_count(self._surface, camera, samples)
-        shape = (camera.height * k, camera.width * k)
-        frame, texture = self._take(shape)
-        cover(self._surface, camera.resized(shape[1], shape[0]) if k > 1 else camera, frame)
-        self._compose(np.asarray(weights, np.float64), textures, frame.needed != 0, texture)
-        shade(frame, texture, filter, behind, k, image, coverage)
-        self._spare.append((frame, texture))
+        height, width = camera.height, camera.width
+        frame, layers = self._take((height * k, width * k))
+        cover(self._surface, camera.resized(width * k, height * k) if k > 1 else camera, frame)
+        self._compose(weights, textures, frame.needed != 0, layers)
+        coverage = np.empty((height, width), np.float32)
+        images, at = [], 0
+        for part, depth in zip(layers, self._depths, strict=True):
+            image = np.empty((height, width, depth), dtype)
+            shade(self._surface, frame, part, filter, behind[at : at + depth], k, image, coverage)
+            images.append(image)
+            at += depth
+        self._spare.append((frame, layers))
+        return images[0] if len(images) == 1 else np.concatenate(images, axis=2), coverage
 
     def _compose(
-        self,
-        weights: NDArray[np.float64],
-        textures: int | None,
-        needed: NDArray[np.bool_],
-        texture: NDArray[np.float32],
+        self, weights: ArrayLike, textures: int | None, needed: NDArray[np.bool_], layers: list[NDArray[np.float32]]
     ) -> None:
         tiles = self._number[needed & self._surface.used]
-        at = 0
-        for plane in self._planes:
-            omega = weights @ plane.weights if plane.weights.size else np.zeros(0)
-            compose(plane, omega[:textures], tiles, texture, at)
-            at += plane.channels
+        for plane, part in zip(self._planes, layers, strict=True):
+            omega = np.asarray(weights, np.float64) @ plane.weights if plane.weights.size else np.zeros(0)
+            compose(plane, omega[:textures], tiles, part)
 
-    def _take(self, shape: tuple[int, int]) -> tuple[Frame, NDArray[np.float32]]:
+    def _empty_layers(self) -> list[NDArray[np.float32]]:
+        return [empty_layers(*self._surface.size, depth) for depth in self._depths]
+
+    def _take(self, shape: tuple[int, int]) -> tuple[Frame, list[NDArray[np.float32]]]:
         """Buffers for a picture of `shape`: spare ones of that size, or new ones."""
         for _ in range(len(self._spare)):
             try:
                 spare = self._spare.pop()
             except IndexError:  # another thread was faster
                 break
-            if spare[0].face.shape == shape:
+            if spare[0].inverse_depth.shape == shape:
                 return spare
-        padded = max(4, self.channels)  # a texel of four floats never straddles cache lines
-        return Frame(self._surface, *shape), np.zeros((self.height, self.width, padded), np.float32)
+        return Frame(self._surface, *shape), self._empty_layers()
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
@@ -172,8 +172,9 @@ def draw_texture(
     cover(surface, camera.resized(camera.width * k, camera.height * k) if k > 1 else camera, frame)
     image = np.empty((camera.height, camera.width, channels), np.float32)
     coverage = np.empty((camera.height, camera.width), np.float32)
-    values = np.ascontiguousarray(texture, dtype=np.float32)
-    shade(frame, values, filter, background_of(background, channels), k, image, coverage)
+    layers = empty_layers(height, width, channels)
+    fill_layers(texture, layers)
+    shade(surface, frame, layers, filter, background_of(background, channels), k, image, coverage)
     return Picture(image, coverage)
 
 
@@ -212,9 +213,7 @@ def render(
     view, mix = viewpoint(scene, at=at, camera=camera, weights=weights)
     if resolution is not None:
         view = at_resolution(view, resolution)
-    return renderer_of(scene).draw(
-        view, mix, filter=filter, background=background, textures=textures, samples=samples
-    )
+    return renderer_of(scene).draw(view, mix, filter=filter, background=background, textures=textures, samples=samples)
 
 
 def viewpoint(

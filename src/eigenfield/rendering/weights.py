@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import weakref
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -23,7 +25,7 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") 
     """
     x, y = float(at[0]), float(at[1])
     if not (np.isfinite(x) and np.isfinite(y)):
-        raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two numbers from -1 to 1")
+        raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
     point = np.clip([x, y], -1.0, 1.0)
     places = _coordinates(scene)
     if scene.view_plane.is_line:
@@ -67,9 +69,17 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
     return np.ascontiguousarray(triangles[_area(points[triangles]) > FLAT])
 
 
+_places: weakref.WeakKeyDictionary[Scene, NDArray[np.float64]] = weakref.WeakKeyDictionary()
+
+
 def _coordinates(scene: Scene) -> NDArray[np.float64]:
-    centres = np.array([scene.cameras[i].centre for i in scene.encoded])
-    return scene.view_plane.coordinates(centres)
+    """(Ne, 2) view-plane coordinates of the encoded cameras, kept as long as the scene: they are asked for at every
+    frame."""
+    found = _places.get(scene)
+    if found is None:
+        found = scene.view_plane.coordinates(np.array([scene.cameras[i].centre for i in scene.encoded]))
+        _places[scene] = found
+    return found
 
 
 def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,0 +1,103 @@
+"""`eigenfield demo`."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eigenfield.cli.common import common_options, note, progress_bars
+from eigenfield.progress import Progress
+
+if TYPE_CHECKING:
+    from eigenfield.capture import LightField
+    from eigenfield.scene import Scene
+
+HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
+FRAMES = 96
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eigenfield demo
+  eigenfield demo --output /tmp/demo --threads 2"""
+)
+@click.option("--output", "-o", type=click.Path(path_type=Path), default=Path("demo"), show_default=True, metavar="DIR",
+              help="Folder for all of it; a capture that is there already is used again, the rest is made anew.")
+@common_options
+def command(output: Path, quiet: bool) -> None:
+    """Make a capture, encode it, draw and measure it: the whole way in one command.
+
+    DIR then holds capture/ (289 photographs of a scene that exists only here, transforms.json, the exact proxy.ply),
+    scene.glb, flight.mp4, evaluation.json and plots/, of which contact-sheet.png shows photograph, drawing and error.
+    """  # fmt: skip
+    from eigenfield.capture import open_capture
+    from eigenfield.files import mended
+    from eigenfield.format import save
+    from eigenfield.pipeline import encode
+
+    started = time.monotonic()
+    with mended(output):
+        output.mkdir(parents=True, exist_ok=True)
+    folder, path = output / "capture", output / "scene.glb"
+    with progress_bars(quiet) as progress:
+        if not folder.exists():
+            from eigenfield.demo import draw_demo_capture
+
+            note(f"drawing 289 photographs into {folder}", quiet)
+            draw_demo_capture(folder, progress=progress)
+        capture = open_capture(folder)
+        note(f"encoding them into {path}", quiet)
+        scene = encode(capture, folder / "proxy.ply", hold_out=HOLD_OUT, work=output, progress=progress)
+        save(scene, path, overwrite=True, progress=progress)
+        _look(path, output, progress, quiet)
+        figures = _measure(path, capture, output, progress, quiet)
+    click.echo(_summary(path, scene, figures, time.monotonic() - started))
+
+
+def _look(path: Path, output: Path, progress: Progress | None, quiet: bool) -> None:
+    from fractions import Fraction
+
+    from eigenfield.format import load
+    from eigenfield.parallel import parallel_stream
+    from eigenfield.progress import track
+    from eigenfield.rendering import path_points, render, write_video
+
+    note(f"flying through it in {output / 'flight.mp4'}", quiet)
+    scene = load(path)
+    pictures = parallel_stream(lambda at: render(scene, at=tuple(at)).to_uint8(), path_points("circle", FRAMES))
+    frames = track(pictures, "fly-through", FRAMES, progress)
+    write_video(output / "flight.mp4", frames, Fraction(30), overwrite=True)
+
+
+def _measure(
+    path: Path, capture: LightField, output: Path, progress: Progress | None, quiet: bool
+) -> dict[str, Any]:
+    import json
+
+    from eigenfield.evaluation import evaluate, stored_scores
+    from eigenfield.evaluation.plots import write_plots
+    from eigenfield.files import write_bytes
+    from eigenfield.format import load, store_scores
+
+    note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
+    scene = load(path)
+    figures = evaluate(scene, capture, path=path, png_maps="sample", progress=progress)
+    write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
+    write_plots(figures, scene, capture, output / "plots", overwrite=True)
+    store_scores(path, stored_scores(figures))
+    return figures
+
+
+def _summary(path: Path, scene: Scene, figures: dict[str, Any], seconds: float) -> str:
+    encoded, held_out = figures["image"]["encoded"], figures["image"]["held_out"]
+    return (
+        f"{path}: {path.stat().st_size / 1e6:.2f} MB, {scene.textures} eigen textures, "
+        f"{figures['ratio']['photographs']:.0f} times smaller than the photographs\n"
+        f"re-drawn photographs {encoded['psnr']:.1f} dB, SSIM {encoded['ssim']:.3f}; "
+        f"held out, between the cameras {held_out['psnr']:.1f} dB, SSIM {held_out['ssim']:.3f}\n"
+        f"look at {path.parent / 'plots' / 'contact-sheet.png'} and {path.parent / 'flight.mp4'}; {seconds:.0f} s"
+    )

@@ -1,0 +1,6 @@
+"""The capture that `eigenfield demo` draws: a glossy jar before a wall, geometry known exactly."""
+
+from eigenfield.demo.capture import draw_demo_capture
+from eigenfield.demo.geometry import demo_scene_geometry
+
+__all__ = ["demo_scene_geometry", "draw_demo_capture"]

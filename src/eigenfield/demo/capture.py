@@ -1,0 +1,127 @@
+"""Drawing the demo's capture: what a gantry camera would have photographed, without noise, geometry known exactly."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.demo.cameras import array_cameras
+from eigenfield.demo.geometry import geometry
+from eigenfield.demo.kernels import shade_view
+from eigenfield.demo.light import environment
+from eigenfield.demo.surface import baked_surface
+from eigenfield.errors import OptionError, OutputError
+from eigenfield.files import mended
+from eigenfield.mesh import Mesh
+from eigenfield.parallel import parallel_stream
+from eigenfield.progress import Progress, track
+from eigenfield.proxy import write_ply
+from eigenfield.raster import rasterise_view
+
+SAMPLES = 3  # by 3, a pixel
+EXPOSURE = 1.05
+DENSITY = 4  # side of the surfaces' atlas over that of the picture: over two texels a pixel
+DENSEST = 4096
+
+
+def draw_demo_capture(
+    folder: Path, *, rows: int = 17, columns: int = 17, size: int = 512, progress: Progress | None = None
+) -> None:
+    """Draw the array's views into `folder`: images/*.png, transforms.json (nerfstudio's form) and proxy.ply.
+
+    The folder appears by rename when all of it is there. The same arguments give the same bytes, at any number of
+    threads. Raises OutputError `output-exists`, `no-folder`, `disk-full`, `not-writable`; OptionError `demo-size`.
+    """
+    if rows < 1 or columns < 1 or rows * columns < 3 or size < 16:
+        raise OptionError(
+            "demo-size",
+            f"{rows}x{columns} views of {size} pixels were asked for",
+            remedy="ask for 3 views or more, of 16",
+        )
+    folder = Path(folder)
+    if folder.exists():
+        raise OutputError("output-exists", "exists already", path=folder, remedy="remove it or name another folder")
+    parent = folder.absolute().parent
+    if not parent.is_dir():
+        raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
+    with mended(folder):
+        work = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".part", dir=parent))
+        try:
+            _draw_into(work, rows, columns, size, progress)
+            work.chmod(0o755)  # mkdtemp's 0700 would hide the capture from other users
+            work.replace(folder)
+        except BaseException:
+            shutil.rmtree(work, ignore_errors=True)
+            raise
+
+
+def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progress | None) -> None:
+    import cv2
+
+    mesh = geometry().mesh
+    write_ply(mesh, folder / "proxy.ply")
+    cameras = array_cameras(rows, columns, size)
+    names = [f"images/{index // columns:02d}_{index % columns:02d}.png" for index in range(len(cameras))]
+    (folder / "images").mkdir()
+    (folder / "transforms.json").write_text(json.dumps(_transforms(cameras, names), indent=1), encoding="utf-8")
+    surface, room = baked_surface(min(DENSITY * size, DENSEST)), environment()
+
+    def png(camera: Camera) -> bytes:
+        picture = draw_view(mesh, camera, surface, room)
+        done, data = cv2.imencode(".png", picture[..., ::-1], [cv2.IMWRITE_PNG_COMPRESSION, 2])
+        assert done
+        return data.tobytes()
+
+    stream = track(parallel_stream(png, cameras), "draw", len(cameras), progress)
+    for name, data in zip(names, stream, strict=True):
+        (folder / name).write_bytes(data)
+
+
+def draw_view(mesh: Mesh, camera: Camera, surface: NDArray[np.float32], room: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """(H, W, 3) sRGB: the scene as a camera sees it, SAMPLES x SAMPLES points a pixel averaged in linear light."""
+    assert mesh.uv is not None
+    fine = camera.resized(SAMPLES * camera.width, SAMPLES * camera.height)
+    raster = rasterise_view(mesh, fine)
+    rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
+    picture = np.empty((camera.height, camera.width, 3), np.float32)
+    texels = np.concatenate([mesh.uv * float(surface.shape[0]), np.ones((len(mesh.uv), 1))], axis=1)[mesh.faces]
+    maps = np.einsum("fkt,fke->fte", texels, raster.edges)
+    shade_view(raster.face, maps, rays, surface, room, SAMPLES, picture)
+    return _developed(picture)
+
+
+def _developed(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Linear light to 8 bits: a shoulder for the highlights (x (1 + x / 9) / (1 + x), Reinhard et al. 2002, on the
+    upper part), then the sRGB curve."""
+    x = EXPOSURE * linear
+    high = np.maximum(x - 0.6, 0)
+    x = np.minimum(x, np.float32(0.6)) + np.float32(0.4) * (1 - np.exp(-high / np.float32(0.4)))
+    coded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(np.maximum(x, 1e-8), 1 / 2.4) - 0.055)
+    return np.clip(np.round(coded * 255), 0, 255).astype(np.uint8)
+
+
+def _transforms(cameras: list[Camera], names: list[str]) -> dict[str, object]:
+    """nerfstudio's form: camera-to-world with OpenGL axes (x right, y up, z backwards), intrinsics a frame."""
+    frames = []
+    for camera, name in zip(cameras, names, strict=True):
+        pose = np.eye(4)
+        pose[:3, :3] = camera.R.T * (1, -1, -1)
+        pose[:3, 3] = camera.centre
+        k = camera.K
+        frames.append(
+            {
+                "file_path": name,
+                "fl_x": k[0, 0],
+                "fl_y": k[1, 1],
+                "cx": k[0, 2],
+                "cy": k[1, 2],
+                "transform_matrix": pose.tolist(),
+            }
+        )
+    return {"camera_model": "PINHOLE", "w": cameras[0].width, "h": cameras[0].height, "frames": frames}

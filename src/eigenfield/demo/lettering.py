@@ -1,0 +1,124 @@
+"""The letters in the demo's scene, filled from the outlines of the font that matplotlib brings."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+class Sheet(NamedTuple):
+    """A rectangle on the wall, in the world's units."""
+
+    left: float
+    top: float
+    width: float
+    height: float
+
+
+POSTER = Sheet(-1.19, 1.56, 0.82, 0.90)
+DOTS = 640  # a unit of the sheet's width
+BLOCK_LETTERS = ("V", "W", "E")  # on the sides across the block's x, y and z
+LINES = (  # text, height of its capitals and baseline, in sheet widths
+    ("E I G E N", 0.125, 0.235), ("F I E L D", 0.125, 0.400), ("seventeen by seventeen views", 0.034, 0.475),
+    ("of a jar, an orange, a block and a ball", 0.030, 0.530),
+    ("T = mean + w1 E1 + w2 E2 + w3 E3 + w4 E4", 0.028, 0.640),
+    ("L I G H T", 0.085, 0.785), ("THE  SMALL  PRINT  IS  A  FEW  PIXELS  HIGH", 0.024, 0.850),
+    ("each ray that leaves a thing is kept; what they have in", 0.019, 0.900),
+    ("common is the mean, what differs is an eigen texture", 0.019, 0.935),
+    ("a b c d e f g h i j k l m n o p q r s t u v w x y z", 0.016, 0.975),
+    ("0 1 2 3 4 5 6 7 8 9  +  -  =  ( )  [ ]  { }  %  &  #  ?", 0.014, 1.010),
+    ("A B C D E F G H I J K L M N O P Q R S T U V W X Y Z", 0.012, 1.040),
+)  # fmt: skip
+RULES = ((0.05, 0.555), (0.05, 0.675))  # margins and levels of ruled lines
+RED_LINES = (5,)
+
+
+@cache
+def _poster() -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    ratio = POSTER.height / POSTER.width
+    ink, red = (np.zeros((4 * round(DOTS * ratio), 4 * DOTS), np.uint8) for _ in range(2))
+    for k, (text, capital, baseline) in enumerate(LINES):
+        scale = capital / _outline("H").max(axis=0)[1]
+        wide = (_bounds(text)[1] - _bounds(text)[0]) * scale
+        if wide > 0.9:  # too long: narrower letters
+            scale *= 0.9 / wide
+            wide = 0.9
+        start = 0.5 - wide / 2 - _bounds(text)[0] * scale
+        _fill(red if k in RED_LINES else ink, text, scale * DOTS, (start * DOTS, baseline * DOTS))
+    for margin, level in RULES:
+        row, column = round(4 * level * DOTS), round(4 * margin * DOTS)
+        ink[row : row + 9, column:-column] = 255
+    return _coarse(ink), _coarse(red)
+
+
+def poster_mask(u: Array, v: Array) -> tuple[Array, Array]:
+    """(n,) black and red ink, 0..1, at sheet coordinates u to the right and v down, 0..1."""
+    ink, red = _poster()
+    return _sampled(ink, u, v), _sampled(red, u, v)
+
+
+@cache
+def _letter(letter: str) -> NDArray[np.float32]:
+    side = 256
+    picture = np.zeros((4 * side, 4 * side), np.uint8)
+    outline = _outline(letter)
+    low, high = outline.min(axis=0), outline.max(axis=0)
+    scale = 0.52 * side / float((high - low).max())
+    middle = (low + high) / 2 * scale
+    _fill(picture, letter, scale, (side / 2 - float(middle[0]), side / 2 + float(middle[1])))
+    return _coarse(picture)
+
+
+def letter_mask(letter: str, u: Array, v: Array) -> Array:
+    """(n,) a letter in the middle of a square, u to the right and v down, 0..1."""
+    return _sampled(_letter(letter), u, v)
+
+
+def _path(text: str) -> list[NDArray[np.float64]]:
+    from matplotlib.font_manager import FontProperties
+    from matplotlib.textpath import TextPath
+
+    font = FontProperties(family="DejaVu Serif", weight="bold")
+    return [p for p in map(np.asarray, TextPath((0, 0), text, size=100, prop=font).to_polygons()) if len(p) > 2]
+
+
+def _outline(text: str) -> NDArray[np.float64]:
+    return np.concatenate(_path(text))
+
+
+def _bounds(text: str) -> tuple[float, float]:
+    x = _outline(text)[:, 0]
+    return float(x.min()), float(x.max())
+
+
+def _fill(fine: NDArray[np.uint8], text: str, scale: float, origin: tuple[float, float]) -> None:
+    """Fill a text's outlines (even-odd) on a raster four times as fine as the numbers say."""
+    import cv2
+
+    polygons = [
+        np.round(4 * (np.array(origin) + polygon * (scale, -scale))).astype(np.int32) for polygon in _path(text)
+    ]
+    cv2.fillPoly(fine, polygons, 255)
+
+
+def _coarse(fine: NDArray[np.uint8]) -> NDArray[np.float32]:
+    height, width = fine.shape[0] // 4, fine.shape[1] // 4
+    return (fine.reshape(height, 4, width, 4).mean(axis=(1, 3)) / 255).astype(np.float32)
+
+
+def _sampled(picture: NDArray[np.float32], u: Array, v: Array) -> Array:
+    """Bilinear, 0 outside."""
+    height, width = picture.shape
+    inside = (u > 0) & (u < 1) & (v > 0) & (v < 1)
+    x = np.clip(u * width - 0.5, 0, width - 1.001)
+    y = np.clip(v * height - 0.5, 0, height - 1.001)
+    i, j = y.astype(np.int64), x.astype(np.int64)
+    a, b = x - j, y - i
+    top = picture[i, j] * (1 - a) + picture[i, j + 1] * a
+    bottom = picture[i + 1, j] * (1 - a) + picture[i + 1, j + 1] * a
+    return np.asarray(np.where(inside, top * (1 - b) + bottom * b, 0.0))

@@ -1,0 +1,44 @@
+"""Ways through the array, in view-plane coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.errors import OptionError
+
+PATHS = ("circle", "spiral", "grid")
+RADIUS = 0.9  # of the array's half width: the rim is where extrapolation begins
+SPIRAL_TURNS = 3
+GRID_ROWS = 5
+
+
+def path_points(name: str, frames: int) -> NDArray[np.float64]:
+    """(frames, 2) view-plane coordinates X, Y along a path.
+
+    `circle`: once around, counter-clockwise as the cameras see it; the frame after the last would be the first.
+    `spiral`: from the middle outwards in three turns, at an even pace. `grid`: five rows, top to bottom, to and fro.
+    Cameras on a line follow X alone. Raises OptionError (`path`, `frames`).
+    """
+    if frames < 1:
+        raise OptionError("frames", f"{frames} frames were asked for", remedy="ask for 1 or more")
+    if name == "circle":
+        angle = 2 * np.pi * np.arange(frames) / frames
+        return RADIUS * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    if name == "spiral":
+        radius = np.sqrt(np.linspace(0, 1, frames))  # even pace: the length of a turn grows with its radius
+        angle = 2 * np.pi * SPIRAL_TURNS * radius
+        return RADIUS * radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    if name == "grid":
+        ends = RADIUS * np.array([1.0, -1.0])
+        y = np.repeat(np.linspace(RADIUS, -RADIUS, GRID_ROWS), 2)
+        x = np.concatenate([-ends if row % 2 == 0 else ends for row in range(GRID_ROWS)])
+        return _evenly(np.stack([x, y], axis=1), frames)
+    raise OptionError("path", f"no path is called {name!r}", remedy=f"use one of {', '.join(PATHS)}")
+
+
+def _evenly(corners: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """(count, 2) points at even distances along a line through (n, 2) corners."""
+    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
+    at = np.linspace(0, length[-1], count)
+    return np.stack([np.interp(at, length, corners[:, 0]), np.interp(at, length, corners[:, 1])], axis=1)

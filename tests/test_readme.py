@@ -1,0 +1,79 @@
+"""Every command and every line of Python in the README runs as it stands there."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from captures import write_capture
+
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("readme")
+    write_capture(folder / "capture")
+    return folder
+
+
+def test_the_commands_run_in_order(place):
+    lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
+    assert [shlex.split(line)[1] for line in lines] == [
+        "inspect", "encode", "render", "render", "evaluate", "info", "validate",
+    ]  # fmt: skip
+    for line in lines:
+        words = shlex.split(line, comments=True)
+        if "--path" in words:
+            words += ["--frames", "4"]
+        done = subprocess.run([sys.executable, "-m", *words], cwd=place, capture_output=True, text=True)
+        assert done.returncode == 0, f"{line}\n{done.stderr}"
+    assert {"overlay.png", "scene.glb", "view.png", "flight.mp4", "plots"} <= {path.name for path in place.iterdir()}
+
+
+def test_the_python_runs(tmp_path):
+    write_capture(tmp_path / "capture")
+    code = "\n".join(blocks("python"))
+    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
+
+
+def test_the_make_targets_exist():
+    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
+    assert {word for block in blocks("sh") for word in re.findall(r"^make ([a-z]+)", block, re.MULTILINE)} <= set(targets)
+
+
+def test_links_lead_somewhere():
+    for target in re.findall(r"\]\(([^)#]+)\)", README):
+        assert target.startswith("http") or (ROOT / target).exists(), target
+
+
+def test_constraints_pin_what_is_required():
+    pinned = {line.split("==")[0].lower().replace("_", "-") for line in (ROOT / "constraints.txt").read_text().split()}
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = [*project["dependencies"], *(r for extra in project["optional-dependencies"].values() for r in extra)]
+    assert {re.split(r"[<>=\[]", requirement)[0].lower() for requirement in wanted} <= pinned
+
+
+def test_the_figures_are_those_of_the_results():
+    """The tables between the marks are what benchmarks/tables.py makes of benchmarks/results."""
+    done = subprocess.run(
+        [sys.executable, str(ROOT / "benchmarks" / "tables.py"), "--check"],
+        capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT / "benchmarks")},
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout + done.stderr
+    for path in (ROOT / "benchmarks" / "results").glob("*.json"):
+        result = json.loads(path.read_text(encoding="utf-8"))
+        assert {"command", "commit", "machine"} <= set(result), path

@@ -1,0 +1,73 @@
+"""Real captures, from the folder that EIGENFIELD_DATA names: the whole path, and the figures it must reach."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import eigenfield as ef
+from eigenfield.evaluation import read_circles
+
+pytestmark = pytest.mark.slow
+
+
+def tarot(data):
+    folder = data / "tarot_17x17_512"
+    return folder, ef.open_capture(folder, calibration=folder / "calibration" / "refined.json")
+
+
+@pytest.mark.parametrize(
+    ("hold_out", "part", "whole", "outside"), [(None, "encoded", 29.5, 32.5), ("odd", "held_out", 28.7, 32.3)]
+)
+def test_tarot_before_coding(data, hold_out, part, whole, outside):
+    """Atlas 1024, 15 textures, bicubic both ways: what a prototype reached at density 1, or more."""
+    folder, capture = tarot(data)
+    scene = ef.encode(capture, folder / "calibration" / "proxy.ply", atlas=1024, hold_out=hold_out)
+    assert len(scene.mesh.faces) == 66_208  # its own atlas is valid: kept as it is
+    circles = read_circles(folder / "ball.json", scene.names)
+    figures = ef.evaluate(scene, capture, png_maps="none", circles=circles)["image"][part]
+    assert figures["coverage"] > 0.999
+    assert figures["psnr"] >= whole and figures["outside"]["psnr"] >= outside
+
+
+CAPTURES = {
+    "tarot_5x4_1024": (
+        ["--calibration", "calibration/refined.json"], "../tarot_17x17_512/calibration/proxy.ply",
+        ["--hold-out", "every:5", "-n", "7"], 31.0, 0.999,
+    ),
+    "cube_colmap_mesh": ([], "proxy.obj", ["-n", "7"], 34.0, 0.90),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(CAPTURES))
+def test_the_command_line_on_a_capture(data, tmp_path, name):
+    where, proxy, options, least, coverage = CAPTURES[name]
+    folder = data / name
+    where = [str(folder / word) if "/" in word else word for word in where]
+
+    def call(*words):
+        done = subprocess.run([sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        return done.stdout
+
+    scene = tmp_path / "scene.glb"
+    call("inspect", folder, *where, "--proxy", folder / proxy, "--overlay", tmp_path / "overlay.png")
+    call("encode", folder, *where, "--proxy", folder / proxy, "-o", scene, *options)
+    assert "no findings" in call("validate", scene)
+    figures = json.loads(call("evaluate", scene, folder, *where, "--json", "--png-maps", "sample"))
+    assert figures["image"]["encoded"]["psnr"] > least
+    assert figures["image"]["encoded"]["coverage"] > coverage
+    assert figures["bytes"]["total"] == scene.stat().st_size
+    call("render", scene, "--at", "0.2,0.1", "-o", tmp_path / "view.png")
+
+
+def test_lenses_are_removed(data):
+    """The fox: every view is there, straightened to its own size."""
+    capture = ef.open_capture(data / "fox_transforms_half")
+    assert len(capture.views) == 50
+    photograph = capture.photograph(0)
+    assert photograph.pixels.shape == (960, 540, 3) and np.isfinite(photograph.pixels).all()
