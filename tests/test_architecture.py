@@ -17,12 +17,12 @@ FLOORS = {
     1: ["proxy", "capture"],
     2: ["basis", "texturing"],
     3: ["rendering", "format", "pipeline", "holdout"],
-    4: ["evaluation", "demo", "demo_kernels"],
+    4: ["evaluation", "demo"],
     5: ["cli", "__init__"],
     6: ["__main__"],
 }
 FLOOR = {room: floor for floor, rooms in FLOORS.items() for room in rooms}
-SAME_FLOOR = {("basis", "texturing"), ("pipeline", "rendering"), ("pipeline", "holdout"), ("demo", "demo_kernels")}
+SAME_FLOOR = {("basis", "texturing"), ("pipeline", "rendering"), ("pipeline", "holdout")}
 EXCEPTIONS = {("scene.py", "format")}  # Scene.save, for people's convenience
 
 

@@ -28,7 +28,7 @@ from eigenfield.rendering.kernels import DEPTH, TILE, draw_texels, mark_tiles, s
 FILTERS = ("bilinear", "bicubic")
 MARGIN = 2  # texels that the widest filter reaches
 SAMPLES_LIMIT = 4  # along a side of a pixel, when chosen automatically
-SAMPLE_TEXELS = 2.0  # texels a pixel beyond which one sample is not enough
+ONE_SAMPLE = 1.5  # photograph pixels a pixel up to which one sample is enough
 FOOTPRINTS = 256  # triangles from which the median footprint is taken
 
 
@@ -138,18 +138,20 @@ def check_filter(filter: str) -> None:
         raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
 
 
-def sample_count(surface: Surface, camera: Camera, asked: int | None) -> int:
+def sample_count(surface: Surface, camera: Camera, asked: int | None, detail: float = 1.0) -> int:
     """k of k x k samples a pixel: what is asked for, else from the median footprint of the triangles in view.
 
-    Up to two texels a pixel along a side one sample does, since the filters themselves reach over two; beyond, half
-    as many samples as texels, at most `SAMPLES_LIMIT`. Raises OptionError `samples` outside 1..16.
+    detail: texels for one pixel of the photographs. Where it is above 1 the atlas is denser than what it holds, and a
+    captured view drawn at its own size needs one sample however many texels a pixel covers: more would blur what the
+    photograph's own pixels have averaged already. Smaller pictures take as many samples as photograph pixels, at most
+    `SAMPLES_LIMIT`. Raises OptionError `samples` outside 1..16.
     """
     if asked is not None:
         if not 1 <= asked <= 16:
             raise OptionError("samples", f"{asked} x {asked} samples a pixel", remedy="ask for 1 to 16")
         return asked
-    footprint = median_footprint(surface, camera)
-    return 1 if footprint <= SAMPLE_TEXELS else min(int(np.ceil(footprint / 2)), SAMPLES_LIMIT)
+    footprint = median_footprint(surface, camera) / max(detail, 1.0)
+    return 1 if footprint <= ONE_SAMPLE else min(int(np.ceil(footprint - 0.5)), SAMPLES_LIMIT)
 
 
 def median_footprint(surface: Surface, camera: Camera) -> float:

@@ -15,7 +15,16 @@ from numpy.typing import ArrayLike, NDArray
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError, OptionError
 from eigenfield.mesh import Mesh
-from eigenfield.rendering.drawing import Frame, Surface, check_filter, cover, make_surface, sample_count, shade
+from eigenfield.rendering.drawing import (
+    Frame,
+    Surface,
+    check_filter,
+    cover,
+    make_surface,
+    median_footprint,
+    sample_count,
+    shade,
+)
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.tiles import compose, empty_layers, fill_layers, read_layers, tile_plane
@@ -45,6 +54,7 @@ class Renderer:
         self._depths = [int(plane.mean.shape[2]) for plane in scene.planes]
         self.channels = sum(self._depths)
         self._surface = make_surface(scene.mesh, height, width)
+        self._detail = median_footprint(self._surface, scene.cameras[scene.reference])
         self._planes = tuple(tile_plane(plane, self._surface.used) for plane in scene.planes)
         self._number = np.full(self._surface.used.shape, -1, np.int64)
         self._number[self._surface.used] = np.arange(self._surface.used.sum())
@@ -104,7 +114,7 @@ class Renderer:
         if textures is not None and textures < 0:
             raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
         behind = background_of(background, self.channels)
-        k = sample_count(self._surface, camera, samples)
+        k = sample_count(self._surface, camera, samples, self._detail)
         height, width = camera.height, camera.width
         frame, layers = self._take((height * k, width * k))
         cover(self._surface, camera.resized(width * k, height * k) if k > 1 else camera, frame)
