@@ -100,7 +100,7 @@ def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("captures", nargs="*", choices=[*CASES, []], default=list(CASES))
+    parser.add_argument("captures", nargs="*", metavar="CAPTURE", help=", ".join(CASES))
     parser.add_argument("--demo", type=Path, default=Path("demo"))
     arguments = parser.parse_args()
     results: dict[str, Any] = {}

@@ -44,6 +44,15 @@ def test_all_textures_redraw_the_photographs(capture, scene):
         assert psnr(picture.image, photograph, picture.coverage > 0.5) > 38
 
 
+def test_a_dense_atlas_does_not_blur_what_is_drawn(folder, capture):
+    """However many texels a pixel covers, a captured view at its own size needs one sample; half the size needs four."""
+    dense = ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=3.0)
+    name = capture.views[4].name
+    np.testing.assert_array_equal(ef.render(dense, camera=name).image, ef.render(dense, camera=name, samples=1).image)
+    half = {"camera": name, "resolution": (32, 28)}
+    np.testing.assert_array_equal(ef.render(dense, **half).image, ef.render(dense, **half, samples=2).image)
+
+
 def test_fewer_textures_are_worse_and_the_mean_is_worst(capture, scene):
     errors = []
     for count in (0, 1, 3, 8):
