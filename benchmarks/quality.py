@@ -103,18 +103,23 @@ def main() -> None:
     parser.add_argument("captures", nargs="*", metavar="CAPTURE", help=", ".join(CASES))
     parser.add_argument("--demo", type=Path, default=Path("demo"))
     arguments = parser.parse_args()
-    results: dict[str, Any] = {}
     for name in arguments.captures or list(CASES):
-        if name == "demo" and not (arguments.demo / "capture").exists():
-            draw_demo_capture(arguments.demo / "capture")
-        results[name] = {label: coded(name, arguments.demo, options) for label, options in CASES[name]}
-        if name == "tarot":
-            results[name]["all encoded"]["uncoded"] = uncoded(name, arguments.demo, {})
-            results[name]["odd held out"]["uncoded"] = uncoded(name, arguments.demo, {"hold_out": "odd"})
-        if name == "demo":
-            results[name]["exact geometry, all textures, density 2, uncoded"] = exact(arguments.demo)
-        print(json.dumps({name: results[name]}, indent=1), flush=True)
-    print(f"stored as {measure.store('quality', {'captures': results})}")
+        if name not in CASES:
+            parser.error(f"no capture is called {name}: {', '.join(CASES)}")
+        print(f"stored as {measure.store(f'quality-{name}', measured(name, arguments.demo))}", flush=True)
+
+
+def measured(name: str, demo: Path) -> dict[str, Any]:
+    if name == "demo" and not (demo / "capture").exists():
+        demo.mkdir(parents=True, exist_ok=True)
+        draw_demo_capture(demo / "capture")
+    cases = {label: coded(name, demo, options) for label, options in CASES[name]}
+    if name == "tarot":
+        cases["all encoded"]["uncoded"] = uncoded(name, demo, {})
+        cases["odd held out"]["uncoded"] = uncoded(name, demo, {"hold_out": "odd"})
+    if name == "demo":
+        cases["all encoded"]["exact geometry, all textures of 25 views, density 2, uncoded"] = exact(demo)
+    return {"capture": name, "cases": cases}
 
 
 def exact(demo: Path) -> dict[str, Any]:

@@ -84,7 +84,12 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
     )
     code, out, _ = run("info", output)
     assert code == 0 and "held out" in out
-    for name, how in (("a.png", ["--at", "0.3,-0.2"]), ("b.png", ["--camera", "view_01.png"]), ("c.mp4", ["--path", "circle", "--frames", "4"])):  # fmt: skip
+    views = {
+        "a.png": ["--at", "0.3,-0.2"],
+        "b.png": ["--camera", "view_01.png"],
+        "c.mp4": ["--path", "circle", "--frames", "4"],
+    }
+    for name, how in views.items():
         code, _, err = run("render", output, "-o", tmp_path / name, *how)
         assert code == 0, err
         assert (tmp_path / name).stat().st_size > 100

@@ -11,10 +11,13 @@ from captures import write_capture
 from scenes import row_grid
 
 import eigenfield as ef
+from eigenfield.basis import eigen_textures, filled, gram_matrix, mean_map, spectrum, weights_of
 from eigenfield.camera import Camera
 from eigenfield.parallel import set_threads
-from eigenfield.rendering import camera_weights, renderer_of
-from eigenfield.texturing import make_atlas, texture_map
+from eigenfield.rendering import camera_weights, delaunay_triangles, renderer_of
+from eigenfield.scene import Basis, Plane
+from eigenfield.texturing import make_atlas, make_spreader, texture_map, texture_maps
+from eigenfield.viewplane import fit_view_plane
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +48,7 @@ def test_all_textures_redraw_the_photographs(capture, scene):
 
 
 def test_a_dense_atlas_does_not_blur_what_is_drawn(folder, capture):
-    """However many texels a pixel covers, a captured view at its own size needs one sample; half the size needs four."""
+    """However many texels a pixel covers, a captured view at its own size needs one sample; half the size four."""
     dense = ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=3.0)
     name = capture.views[4].name
     np.testing.assert_array_equal(ef.render(dense, camera=name).image, ef.render(dense, camera=name, samples=1).image)
@@ -103,6 +106,45 @@ def test_same_bytes_at_any_number_of_threads(folder, capture, tmp_path):
             set_threads(None)
         files.append((tmp_path / f"{count}.glb").read_bytes())
     assert files[0] == files[1]
+
+
+@pytest.mark.parametrize("channels", [1, 6])
+def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
+    """Maps of any number of channels, encoded, saved, loaded, put together again (the paper's "other attributes")."""
+    mesh, cameras = read(folder), [view.camera for view in capture.views]
+    atlas = make_atlas(mesh, 64, 64)
+
+    def picture(index):
+        pixels = capture.photograph(index).pixels
+        return np.concatenate([pixels, 2 * pixels - 5], axis=2)[..., :channels].copy(), None
+
+    with texture_maps(atlas, cameras, picture, channels) as maps:
+        mean = mean_map(maps)
+        weights = weights_of(spectrum(gram_matrix(maps, mean)), 8)
+        textures = eigen_textures(maps, mean, weights)
+        spread = make_spreader(atlas, mean.seen)
+        expected = np.stack([filled(maps.values[c], maps.seen[c], mean.values) for c in range(9)])[:, mean.seen]
+    ones = np.ones((8, channels), np.float32)
+    basis = Basis(np.stack([spread(texture) for texture in textures]), ones, 0 * ones, weights)
+    plane = fit_view_plane(cameras)
+    triangles = delaunay_triangles(plane.coordinates([camera.centre for camera in cameras]))
+    made = ef.Scene(
+        mesh=mesh,
+        planes=(Plane(spread(mean.values), (basis,)),),
+        names=tuple(capture.names),
+        cameras=tuple(cameras),
+        held_out=np.zeros(9, bool),
+        reference=4,
+        view_plane=plane,
+        triangles=triangles,
+    )
+    made.save(tmp_path / "attributes.glb", codec="png")
+    again = ef.load(tmp_path / "attributes.glb").planes[0]
+    assert again.mean.shape == (64, 64, channels)
+    for camera in range(9):
+        whole = reference.texture(again.mean, again.bases[0].values(), again.bases[0].weights[camera])
+        error = whole.reshape(-1, channels)[atlas.texel][mean.seen] - expected[camera]
+        assert np.sqrt(np.square(error).mean()) < 0.01 * np.ptp(expected)
 
 
 def test_held_out_cameras_take_no_part(folder, capture, tmp_path):

@@ -25,8 +25,15 @@ Examples:
   eigenfield demo
   eigenfield demo --output /tmp/demo --threads 2"""
 )
-@click.option("--output", "-o", type=click.Path(path_type=Path), default=Path("demo"), show_default=True, metavar="DIR",
-              help="Folder for all of it; a capture that is there already is used again, the rest is made anew.")
+@click.option(
+    "--output",
+    "-o",
+    type=click.Path(path_type=Path),
+    default=Path("demo"),
+    show_default=True,
+    metavar="DIR",
+    help="Folder for all of it; a capture that is there already is used again, the rest is made anew.",
+)
 @common_options
 def command(output: Path, quiet: bool) -> None:
     """Make a capture, encode it, draw and measure it: the whole way in one command.
@@ -73,9 +80,7 @@ def _look(path: Path, output: Path, progress: Progress | None, quiet: bool) -> N
     write_video(output / "flight.mp4", frames, Fraction(30), overwrite=True)
 
 
-def _measure(
-    path: Path, capture: LightField, output: Path, progress: Progress | None, quiet: bool
-) -> dict[str, Any]:
+def _measure(path: Path, capture: LightField, output: Path, progress: Progress | None, quiet: bool) -> dict[str, Any]:
     import json
 
     from eigenfield.evaluation import evaluate, stored_scores

@@ -52,7 +52,7 @@ def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.ui
     """
     height, width = picture.shape[:2]
     rgb = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge").astype(np.float32) / np.float32(255)
-    luma: NDArray[np.float32] = rgb @ LUMA
+    luma = rgb @ LUMA
     cb, cr = (rgb[..., 2] - luma) / np.float32(1.8556), (rgb[..., 0] - luma) / np.float32(1.5748)
     return _bytes(16 + 219 * luma), _bytes(128 + 224 * _halved(cb)), _bytes(128 + 224 * _halved(cr))
 

@@ -1,0 +1,171 @@
+"""Frames per second of the software renderer against the number of eigen textures (the paper's section 4.3).
+
+    [EIGENFIELD_DATA=captures] python benchmarks/render.py
+
+A frame is everything from a viewpoint to an 8-bit RGB picture in memory: the novel camera and its view weights,
+equation 8 for the tiles in view, rasterising and shading. The viewpoint moves every frame and nothing composed is kept.
+The scene is a bumpy relief of 29,282 triangles that fills the view, with a full atlas of 1024² and random 8-bit
+textures; with EIGENFIELD_DATA also Tarot's own proxy (66,208 triangles). Beside it, in the same run: summing the
+textures by NumPy's matrix product, and the memory bandwidth that reading reaches.
+"""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import measure
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.jit import kernel
+from eigenfield.mesh import Mesh
+from eigenfield.parallel import parallel_map, pieces, threads
+from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
+from eigenfield.scene import Basis, Plane, Scene
+from eigenfield.viewplane import fit_view_plane
+
+SIDE, WIDTH, HEIGHT = 1024, 1024, 768
+COUNTS = (1, 7, 15, 40, 100)
+FRAMES, WARM_UP = 120, 10
+
+
+def relief(nodes: int = 122) -> Mesh:
+    """A bumpy rectangle at z = 0 that fills every view and uses the whole atlas."""
+    steps = np.linspace(0, 1, nodes)
+    v, u = np.meshgrid(steps, steps, indexing="ij")
+    x, y = 2.7 * (u - 0.5), 2.1 * (v - 0.5)
+    corner = (np.arange(nodes - 1)[:, None] * nodes + np.arange(nodes - 1)).ravel()
+    upper = np.stack([corner, corner + 1, corner + nodes], axis=1)
+    lower = np.stack([corner + 1, corner + nodes + 1, corner + nodes], axis=1)
+    vertices = np.stack([x, y, 0.08 * np.sin(9 * x) * np.cos(8 * y)], axis=-1).reshape(-1, 3)
+    uv = np.stack([u, v], axis=-1).reshape(-1, 2)
+    return Mesh(vertices.astype(np.float32), np.concatenate([upper, lower]).astype(np.int32), uv.astype(np.float32))
+
+
+def array() -> list[Camera]:
+    """17 x 17 cameras that look at the relief."""
+    K = np.array([[1000.0, 0, WIDTH / 2], [0, 1000, HEIGHT / 2], [0, 0, 1]])
+    places = [(0.05 * (i % 17 - 8), 0.05 * (i // 17 - 8), -2.0) for i in range(289)]
+    return [Camera(K, np.eye(3), -np.array(place), WIDTH, HEIGHT) for place in places]
+
+
+def scene_of(mesh: Mesh, cameras: list[Camera], count: int) -> Scene:
+    random = np.random.default_rng(0)
+    textures = random.integers(0, 256, (count, SIDE, SIDE, 3), dtype=np.uint8)
+    scale, zero = np.full((count, 3), 0.001, np.float32), np.full((count, 3), 128, np.float32)
+    weights = random.normal(size=(len(cameras), count)).astype(np.float32)
+    plane = fit_view_plane(cameras)
+    places = plane.coordinates([camera.centre for camera in cameras])
+    return Scene(
+        mesh=mesh,
+        planes=(Plane(random.random((SIDE, SIDE, 3)).astype(np.float32), (Basis(textures, scale, zero, weights),)),),
+        names=tuple(str(index) for index in range(len(cameras))),
+        cameras=tuple(cameras),
+        held_out=np.zeros(len(cameras), bool),
+        reference=len(cameras) // 2,
+        view_plane=plane,
+        triangles=delaunay_triangles(places),
+    )
+
+
+def frames(scene: Scene, filter: str) -> dict[str, Any]:
+    """Milliseconds a frame along a circle through the array, at WIDTH x HEIGHT."""
+    renderer = Renderer(scene)
+    taken = []
+    for number in range(-WARM_UP, FRAMES):
+        angle = 2 * np.pi * number / FRAMES
+        at = (0.7 * np.cos(angle), 0.7 * np.sin(angle))
+        started = time.perf_counter()
+        camera = novel_camera(scene, at).resized(WIDTH, HEIGHT)
+        renderer.draw_uint8(camera, view_weights(scene, at), filter=filter, samples=1)
+        if number >= 0:
+            taken.append(time.perf_counter() - started)
+    coverage = renderer.draw(camera, view_weights(scene, at), filter=filter, samples=1).coverage.mean()
+    return {
+        "fps": round(1 / float(np.median(taken)), 1),
+        "fps_best": round(1 / min(taken), 1),
+        "fps_worst": round(1 / max(taken), 1),
+        "milliseconds": round(1e3 * float(np.median(taken)), 2),
+        "coverage": round(float(coverage), 4),
+    }
+
+
+@kernel(fastmath=True)
+def read_all(values, first, last, total):  # type: ignore[no-untyped-def]
+    """total[0] += the sum of values[first:last]: memory is all that it waits for."""
+    result = np.int64(0)
+    for index in range(first, last):
+        result += values[index]
+    total[0] += result
+
+
+def bandwidth() -> float:
+    """Gigabytes a second that all threads together read from an array far larger than the caches."""
+    values: NDArray[np.int64] = np.ones(1 << 26, np.int64)
+    total = np.zeros(1, np.int64)
+    parts = pieces(len(values), 1 << 22)
+    return values.nbytes / 1e9 / best(lambda: parallel_map(lambda part: read_all(values, *part, total), parts))
+
+
+def best(work: Callable[[], object], times: int = 7) -> float:
+    taken = []
+    for _ in range(times):
+        started = time.perf_counter()
+        work()
+        taken.append(time.perf_counter() - started)
+    return min(taken)
+
+
+def composition(scene: Scene) -> dict[str, Any]:
+    """Equation 8 alone, over the whole atlas, beside NumPy's matrix product of weights and float32 textures."""
+    renderer = Renderer(scene)
+    weights = view_weights(scene, (0.31, -0.17))
+    ours = best(lambda: renderer.texture(weights))
+    basis = scene.planes[0].bases[0]
+    values = basis.values().reshape(basis.count, -1)
+    row = (weights @ basis.weights).astype(np.float32)
+    numpy = best(lambda: scene.planes[0].mean.reshape(-1) + row @ values)
+    return {"milliseconds": round(1e3 * ours, 2), "numpy_milliseconds": round(1e3 * numpy, 2),
+            "ratio_to_numpy": round(ours / numpy, 3)}  # fmt: skip
+
+
+def tarot(count: int) -> Scene | None:
+    folder = os.environ.get("EIGENFIELD_DATA")
+    if not folder:
+        return None
+    from eigenfield import open_capture
+    from eigenfield.proxy import read_mesh
+
+    capture = Path(folder) / "tarot_17x17_512"
+    views = open_capture(capture, calibration=capture / "calibration" / "refined.json").views
+    return scene_of(read_mesh(capture / "calibration" / "proxy.ply"), [view.camera for view in views], count)
+
+
+def main() -> None:
+    speed = bandwidth()
+    figures: dict[str, Any] = {"atlas": SIDE, "view": [WIDTH, HEIGHT], "threads": threads()}
+    figures |= {"read_gb_per_second": round(speed, 2), "relief": {}}
+    mesh, cameras = relief(), array()
+    for count in COUNTS:
+        scene = scene_of(mesh, cameras, count)
+        row: dict[str, Any] = {filter: frames(scene, filter) for filter in ("bilinear", "bicubic")}
+        moved = count * SIDE * SIDE * 3 / 1e9
+        row["share_of_bandwidth"] = round(moved / (row["bilinear"]["milliseconds"] / 1e3) / speed, 3)
+        figures["relief"][str(count)] = row
+        print(count, row, flush=True)
+    figures["composition_40"] = composition(scene_of(mesh, cameras, 40))
+    print(figures["composition_40"])
+    own = tarot(40)
+    if own is not None:
+        figures["tarot_proxy_40"] = {filter: frames(own, filter) for filter in ("bilinear", "bicubic")}
+        print("Tarot's proxy", figures["tarot_proxy_40"])
+    print(f"stored as {measure.store('render', figures)}")
+
+
+if __name__ == "__main__":
+    main()
