@@ -9,18 +9,63 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import TypeVar
+from concurrent.futures import Future
+from queue import SimpleQueue
+from typing import Any, TypeVar
 
 from eigenfield.errors import OptionError
 
 A = TypeVar("A")
 B = TypeVar("B")
 
+
+class _Pool:
+    """Daemon threads that take work from one queue.
+
+    Not a ThreadPoolExecutor: when Ctrl-C meets it between starting a thread and registering it, the interpreter waits
+    for that thread for ever at its end.
+    """
+
+    def __init__(self, count: int) -> None:
+        self._work: SimpleQueue[tuple[Future[Any], Callable[[Any], Any], Any] | None] = SimpleQueue()
+        self._count = count
+        self._open = True
+        self._gate = threading.Lock()
+        for number in range(count):
+            threading.Thread(target=self._run, name=f"eigenfield-{number}", daemon=True).start()
+
+    def _run(self) -> None:
+        _inside.worker = True
+        while (task := self._work.get()) is not None:
+            future, function, item = task
+            if future.set_running_or_notify_cancel():
+                try:
+                    future.set_result(function(item))
+                except BaseException as error:
+                    future.set_exception(error)
+            del task, future, function, item  # what they hold must not live until the next task comes
+
+    def submit(self, function: Callable[[A], B], item: A) -> Future[B]:
+        future: Future[B] = Future()
+        with self._gate:
+            if self._open:
+                self._work.put((future, function, item))
+                return future
+        future.set_result(function(item))  # another thread has closed it: no one is left to take the work
+        return future
+
+    def close(self) -> None:
+        """Let the threads end once what is queued is done."""
+        with self._gate:
+            self._open = False
+            for _ in range(self._count):
+                self._work.put(None)
+
+
 _lock = threading.Lock()
 _inside = threading.local()
 _threads: int | None = None
-_pool: ThreadPoolExecutor | None = None
+_pool: _Pool | None = None
 
 
 def threads() -> int:
@@ -40,21 +85,16 @@ def set_threads(count: int | None) -> None:
     with _lock:
         _threads = count
         if _pool is not None:
-            _pool.shutdown(wait=False)
+            _pool.close()
         _pool = None
 
 
-def _executor() -> ThreadPoolExecutor:
+def _current_pool() -> _Pool:
     global _pool
     with _lock:
         if _pool is None:
-            _pool = ThreadPoolExecutor(threads(), thread_name_prefix="eigenfield")
+            _pool = _Pool(threads())
         return _pool
-
-
-def _call(function: Callable[[A], B], item: A) -> B:
-    _inside.worker = True
-    return function(item)
 
 
 def parallel_map(function: Callable[[A], B], items: Iterable[A]) -> list[B]:
@@ -73,11 +113,11 @@ def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[
     if threads() == 1 or getattr(_inside, "worker", False):
         yield from map(function, items)
         return
-    pool = _executor()
+    pool = _current_pool()
     pending: list[Future[B]] = []
     try:
         for item in items:
-            pending.append(pool.submit(_call, function, item))
+            pending.append(pool.submit(function, item))
             if len(pending) > threads() + 2:
                 yield pending.pop(0).result()
         while pending:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import importlib
 import logging
+import os
 import signal
 import sys
 from types import FrameType
@@ -84,7 +85,8 @@ def main() -> None:
         sys.exit(2)
     except (KeyboardInterrupt, click.Abort):
         click.echo("eigenfield: interrupted", err=True)
-        sys.exit(130)
+        sys.stdout.flush()
+        os._exit(130)  # everything is cleaned up; threads in the middle of a kernel or a codec are not waited for
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(141)
