@@ -12,10 +12,12 @@ from scenes import tiny_scene
 
 import eigenfield as ef
 from eigenfield.camera import Camera
-from eigenfield.errors import OptionError
+from eigenfield.errors import FormatError, OptionError
 from eigenfield.mesh import Mesh
 from eigenfield.parallel import set_threads
+from eigenfield.raster import rasterise_view
 from eigenfield.rendering import Renderer, draw_texture, path_points, view_weights
+from eigenfield.rendering.drawing import Frame, cover
 from eigenfield.scene import Basis, Plane
 
 SIZE = 32
@@ -163,3 +165,87 @@ def test_paths_stay_inside_and_move_evenly(name):
         path_points("zigzag", 10)
     with pytest.raises(OptionError):
         path_points(name, 0)
+
+
+@pytest.mark.parametrize("filter", ["bilinear", "bicubic"])
+@pytest.mark.parametrize(("height", "width"), [(20, 37), (1, 50), (16, 1), (33, 16)])
+def test_atlases_of_any_size_are_sampled_right(filter, height, width):
+    """Sizes that are no multiple of a tile, and single rows and columns: clamped at the border, as in NumPy."""
+    texture = np.random.default_rng(4).random((height, width, 3)).astype(np.float32)
+    picture = draw_texture(SQUARE, texture, facing(64, 48), filter=filter, samples=1)
+    y, x = np.mgrid[:48, :64]
+    row = np.clip((y + 0.5) / 48 * height - 0.5, 0, height - 1)
+    column = np.clip((x + 0.5) / 64 * width - 0.5, 0, width - 1)
+    np.testing.assert_allclose(picture.image, sampled(texture, column, row, filter), atol=2e-4)
+
+
+def test_bases_of_a_plane_are_summed_and_planes_are_joined():
+    scene = tiny_scene(textures=6)
+    (plane,) = scene.planes
+    (basis,) = plane.bases
+    whole = Renderer(scene).draw(scene.cameras[1], np.eye(5)[1]).image
+    rest = Basis(basis.textures[2:], basis.scale[2:], basis.zero[2:], basis.weights[:, 2:])
+    halves = replace(scene, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
+    np.testing.assert_allclose(Renderer(halves).draw(scene.cameras[1], np.eye(5)[1]).image, whole, atol=1e-6)
+
+    def channels(part):
+        textures = np.ascontiguousarray(basis.textures[..., part])
+        return Plane(
+            plane.mean[..., part], (Basis(textures, basis.scale[:, part], basis.zero[:, part], basis.weights),)
+        )
+
+    apart = replace(scene, planes=(channels(slice(0, 1)), channels(slice(1, 3))))
+    drawn = Renderer(apart).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
+    expected = Renderer(scene).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
+    np.testing.assert_allclose(drawn.image, expected.image, atol=1e-6)
+
+
+def test_layouts_that_cannot_be_drawn_yet_are_refused():
+    scene = tiny_scene()
+    (plane,) = scene.planes
+    coarse = replace(plane.bases[0], textures=plane.bases[0].textures[:, ::2, ::2])
+    with pytest.raises(FormatError) as caught:
+        Renderer(replace(scene, planes=(Plane(plane.mean, (coarse,)),)))
+    assert caught.value.code == "unsupported-layout"
+    small = Plane(plane.mean[::2, ::2], (coarse,))
+    with pytest.raises(FormatError):
+        Renderer(replace(scene, planes=(plane, small)))
+
+
+def test_tiles_out_of_sight_are_not_needed():
+    """A close-up composes only what it shows, and shows what the whole picture shows there."""
+    scene = tiny_scene(textures=4, size=128)
+    renderer, weights = Renderer(scene), np.eye(5)[2]
+    camera = scene.cameras[2]
+    near = replace(
+        camera, K=np.diag([6.0, 6, 1]) @ camera.K - np.array([[0, 0, 5.0 * 24], [0, 0, 5.0 * 20], [0, 0, 0]])
+    )
+    frame = Frame(renderer._surface, near.height, near.width)
+    cover(renderer._surface, near, frame)
+    assert 0 < frame.needed.sum() < 0.4 * frame.needed.size
+    whole = draw_texture(scene.mesh, renderer.texture(weights), near, samples=1)
+    np.testing.assert_allclose(renderer.draw(near, weights, samples=1).image, whole.image, atol=1e-6)
+
+
+def test_what_is_drawn_is_what_the_rasteriser_finds():
+    """On triangles that hide each other: the same coverage, and at each pixel the UV of the rasteriser's triangle."""
+    random = np.random.default_rng(5)
+    count = 60
+    middle = random.uniform([-0.5, -0.4, 2], [0.5, 0.4, 5], (count, 1, 3))
+    corners = (middle + random.uniform(-0.5, 0.5, (count, 3, 3))).reshape(-1, 3).astype(np.float32)
+    uv = random.uniform(0.05, 0.95, (3 * count, 2)).astype(np.float32)
+    mesh = Mesh(corners, np.arange(3 * count, dtype=np.int32).reshape(-1, 3), uv)
+    camera = Camera(np.array([[150.0, 0, 60], [0, 150, 45], [0, 0, 1]]), np.eye(3), np.zeros(3), 120, 90)
+    raster = rasterise_view(mesh, camera)
+    steps = (np.arange(256) + 0.5) / 256
+    ramp = np.stack(np.broadcast_arrays(steps[None], steps[:, None], 0.5), axis=-1).astype(np.float32)
+    picture = draw_texture(mesh, ramp, camera, filter="bilinear", samples=1)
+    covered = raster.face >= 0
+    np.testing.assert_array_equal(picture.coverage > 0, covered)
+    row, column = np.nonzero(covered)
+    face = raster.face[covered]
+    places = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=-1)
+    shares = np.einsum("nij,nj->ni", raster.edges[face], places)
+    expected = np.einsum("ni,nik->nk", shares / shares.sum(axis=1, keepdims=True), uv[mesh.faces[face]])
+    differs = np.abs(picture.image[covered][:, :2] - expected).max(axis=1) > 1e-3
+    assert differs.mean() < 2e-3  # where two triangles cross, float32 may choose the other

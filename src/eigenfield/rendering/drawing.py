@@ -24,6 +24,7 @@ from eigenfield.raster import (
     sort_into_bands,
 )
 from eigenfield.rendering.kernels import DEPTH, TILE, draw_texels, mark_tiles, shade_rows
+from eigenfield.rendering.simd import RUN
 
 FILTERS = ("bilinear", "bicubic")
 MARGIN = 2  # texels that the widest filter reaches
@@ -73,9 +74,9 @@ class Frame:
         count = len(surface.faces)
         self.edges = np.empty((count, 3, 3))
         self.bounds = np.empty((count, 4), np.int32)
-        self.inverse_depth = np.zeros((height, width), np.float32)
-        self.column_of = np.zeros((height, width), np.float32)  # never NaN, even where nothing was drawn yet
-        self.row_of = np.zeros((height, width), np.float32)
+        self.size = height, width
+        # `RUN` more columns than the picture has, and never NaN, even where nothing was drawn yet
+        self.inverse_depth, self.column_of, self.row_of = np.zeros((3, height, width + RUN), np.float32)
         self.seen = np.empty(count, np.uint8)
         self.needed = np.empty(surface.used.shape, np.uint8)
 
@@ -85,7 +86,7 @@ def cover(surface: Surface, camera: Camera, frame: Frame) -> None:
     matrix = camera.matrix
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
-    height, width = frame.inverse_depth.shape
+    height, width = frame.size
     frame.seen[:] = 0
 
     def set_up(part: tuple[int, int]) -> None:

@@ -12,10 +12,12 @@ import numpy as np
 
 from eigenfield.jit import kernel
 from eigenfield.raster import run_ends, run_of
+from eigenfield.rendering.simd import RUN, blend_texels, draw_lanes, fetch_early
 
 TILE = 16  # texels along a side of a tile
 AREA = TILE * TILE
 LANES = 16  # texels whose codes of four components lie together
+AHEAD = 32  # samples before it is needed that a texel is asked for
 DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 
 
@@ -23,8 +25,9 @@ DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 def draw_texels(faces, texels, edges, bounds, listing, first, last, slack, inverse_depth, column_of, row_of, seen):
     """As `eigenfield.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
 
-    texels (n, 2): texel coordinates of the vertices. column_of, row_of (H, W) float32 out: texel coordinates over
-    depth, which are linear functions of the pixel. seen (m,): set to 1 for triangles that were nearest for a while;
+    texels (n, 2): texel coordinates of the vertices. inverse_depth, column_of, row_of (H, W + RUN) float32 out:
+    1 / depth, and texel coordinates over depth, which are linear functions of the pixel; the last RUN columns are
+    room for vectors. seen (m,): set to 1 for triangles that were nearest for a while;
     threads share it, and only ever write ones.
     """
     inverse_depth[first:last] = 0
@@ -45,14 +48,14 @@ def draw_texels(faces, texels, edges, bounds, listing, first, last, slack, inver
             u_start, u_step = np.float32(ux * x + (uy * y + uc)), np.float32(ux)
             v_start, v_step = np.float32(vx * x + (vy * y + vc)), np.float32(vx)
             nearest, columns, rows = inverse_depth[row], column_of[row], row_of[row]
-            for step in range(np.int32(right - left)):
-                at, along = np.uintp(left + step), np.float32(np.int32(step))
-                near = q_start + along * q_step
-                if near > nearest[at]:
-                    nearest[at] = near
-                    columns[at] = u_start + along * u_step
-                    rows[at] = v_start + along * v_step
-                    drawn = True
+            for step in range(0, right - left, RUN):
+                along = np.float32(np.int32(step))
+                drawn |= draw_lanes(
+                    nearest, columns, rows, left + step, np.int32(right - left - step),
+                    q_start + along * q_step, q_step,
+                    u_start + along * u_step, u_step,
+                    v_start + along * v_step, v_step,
+                )  # fmt: skip
         if drawn:
             seen[f] = 1
 
@@ -155,25 +158,39 @@ def locate(taps, near, place, size, per_tile, per_texel, address, weight):
 def sample_line(taps, texture, near, rows, columns, down, across, samples, background, line):
     """Add the filtered samples of a row to line (pixels * DEPTH,), `samples` to a pixel; background where uncovered.
 
-    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`.
+    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`. Texels as
+    vectors save 30 % of the time of 4 x 4 taps, and cost 15 % with 2 x 2.
     """
-    one, two = np.uintp(1), np.uintp(2)
+    one, two, ahead = np.uintp(1), np.uintp(2), np.uintp(AHEAD)
     for pixel in range(line.shape[0] // DEPTH):
         red, green, blue = np.float32(0), np.float32(0), np.float32(0)
         for sample in range(samples):
             i = np.uintp(pixel * samples + sample)
+            fetch_early(texture, rows[taps - 1, i + ahead] + columns[0, i + ahead])
             if near[i] > 0:
-                for v in range(taps):
-                    r, g, b = np.float32(0), np.float32(0), np.float32(0)
-                    for u in range(taps):
-                        at, weight = np.uintp(rows[v, i] + columns[u, i]), across[u, i]
-                        r += weight * texture[at]
-                        g += weight * texture[at + one]
-                        b += weight * texture[at + two]
-                    weight = down[v, i]
-                    red += weight * r
-                    green += weight * g
-                    blue += weight * b
+                if taps == 2:
+                    for v in range(2):
+                        r, g, b = np.float32(0), np.float32(0), np.float32(0)
+                        for u in range(2):
+                            at, weight = np.uintp(rows[v, i] + columns[u, i]), across[u, i]
+                            r += weight * texture[at]
+                            g += weight * texture[at + one]
+                            b += weight * texture[at + two]
+                        weight = down[v, i]
+                        red += weight * r
+                        green += weight * g
+                        blue += weight * b
+                else:
+                    texel = blend_texels(
+                        texture,
+                        (rows[0, i], rows[1, i], rows[2, i], rows[3, i]),
+                        (columns[0, i], columns[1, i], columns[2, i], columns[3, i]),
+                        (down[0, i], down[1, i], down[2, i], down[3, i]),
+                        (across[0, i], across[1, i], across[2, i], across[3, i]),
+                    )
+                    red += texel[0]
+                    green += texel[1]
+                    blue += texel[2]
             else:
                 red += background[0]
                 green += background[1]
@@ -215,7 +232,8 @@ def shade_rows(
     inverse_depth, column_of, row_of, layers, width, height, bicubic, samples, background, eight_bit, first, last,
     picture, coverage,
 ):  # fmt: skip
-    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples (H k, W k).
+    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples
+    (H k, at least W k).
 
     layers (L, tiles, AREA, 4): a texture of `height` x `width`. Each pixel is the mean of its k x k samples;
     uncovered ones count as `background` (L, DEPTH). eight_bit: times 255, rounded half to even and clipped.
@@ -223,7 +241,7 @@ def shade_rows(
     pixels, channels = picture.shape[1], picture.shape[2]
     count = pixels * samples
     tile_row = -(-width // TILE) * AREA * 4
-    rows, columns = np.empty((4, count), np.int32), np.empty((4, count), np.int32)
+    rows, columns = np.zeros((4, count + AHEAD), np.int32), np.zeros((4, count + AHEAD), np.int32)
     down, across = np.empty((4, count), np.float32), np.empty((4, count), np.float32)
     line = np.empty(pixels * DEPTH, np.float32)
     share = np.float32(1.0 / (samples * samples))
@@ -233,7 +251,7 @@ def shade_rows(
             texture, behind = layers[layer].reshape(-1), background[layer]
             line[:] = 0
             for source in range(row * samples, row * samples + samples):
-                near, u, v = inverse_depth[source], column_of[source], row_of[source]
+                near, u, v = inverse_depth[source, :count], column_of[source, :count], row_of[source, :count]
                 if bicubic:
                     locate(4, near, u, width, AREA * 4, 4, columns, across)
                     locate(4, near, v, height, tile_row, TILE * 4, rows, down)

@@ -147,7 +147,7 @@ class Renderer:
                 spare = self._spare.pop()
             except IndexError:  # another thread was faster
                 break
-            if spare[0].inverse_depth.shape == shape:
+            if spare[0].size == shape:
                 return spare
         return Frame(self._surface, *shape), self._empty_layers()
 

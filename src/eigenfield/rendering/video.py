@@ -13,6 +13,7 @@ from eigenfield.files import atomic_writer
 
 QUALITY = 16  # x264's constant rate factor: visually lossless
 ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
+SETTINGS = {"crf": str(QUALITY), "preset": "medium", "x264-params": "mbtree=0"}  # with it, bytes vary between runs
 LUMA = np.array([0.2126, 0.7152, 0.0722], np.float32)  # BT.709
 BT709, LIMITED = 1, 1  # as libavutil numbers them
 
@@ -30,7 +31,7 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
             planes = yuv420(picture)
             if stream is None:
                 height, width = planes[0].shape
-                stream = container.add_stream("libx264", rate=fps, options={"crf": str(QUALITY), "preset": "medium"})
+                stream = container.add_stream("libx264", rate=fps, options=SETTINGS)
                 stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
                 context = stream.codec_context
                 context.thread_count = ENCODER_THREADS
@@ -38,7 +39,8 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
                 context.color_range = LIMITED
             stacked = np.concatenate([planes[0].reshape(-1), planes[1].reshape(-1), planes[2].reshape(-1)])
             frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
-            frame.colorspace, frame.color_range = BT709, LIMITED
+            frame.color_primaries = frame.color_trc = frame.colorspace = BT709
+            frame.color_range = LIMITED
             frame.pts, frame.time_base = number, 1 / fps
             container.mux(stream.encode(frame))
         if stream is not None:
@@ -51,7 +53,8 @@ def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.ui
     Chroma sits where H.264 expects it: level with the left of two columns, between two rows.
     """
     height, width = picture.shape[:2]
-    rgb = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge").astype(np.float32) / np.float32(255)
+    padded = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge")
+    rgb = padded.astype(np.float32) / np.float32(255)
     luma = rgb @ LUMA
     cb, cr = (rgb[..., 2] - luma) / np.float32(1.8556), (rgb[..., 0] - luma) / np.float32(1.5748)
     return _bytes(16 + 219 * luma), _bytes(128 + 224 * _halved(cb)), _bytes(128 + 224 * _halved(cr))
