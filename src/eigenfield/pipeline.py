@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from eigenfield import __version__
 from eigenfield.basis import (
     Mean,
-    Spectrum,
     align_maps,
     component_count,
     eigen_textures,
@@ -133,10 +132,9 @@ def encode(
         return picture.pixels, picture.mask
 
     used = [cameras[i] for i in encoded]
-    with texture_maps(
-        layout, used, photograph, resampling=resampling, work=None if work is None else Path(work), progress=progress
-    ) as maps:
-        scene_basis, mean, spreader = _decompose(maps, options, int(np.searchsorted(encoded, centre)), progress)
+    place = None if work is None else Path(work)
+    with texture_maps(layout, used, photograph, resampling=resampling, work=place, progress=progress) as maps:
+        scene_basis, mean, spreader = _decompose(maps, options, int(np.searchsorted(encoded, centre)), place, progress)
         if keep_maps is not None:
             write_maps(maps, mean.values, spreader, [names[i] for i in encoded], Path(keep_maps), progress=progress)
     settings = {
@@ -168,7 +166,7 @@ def encode(
 
 
 def _decompose(
-    maps: TextureMaps, options: Options, reference: int, progress: Progress | None
+    maps: TextureMaps, options: Options, reference: int, work: Path | None, progress: Progress | None
 ) -> tuple[Basis, Mean, Spreader]:
     if options.align is not None:
         align_maps(maps, reference, options.align, progress)
@@ -180,21 +178,19 @@ def _decompose(
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
     decomposition = spectrum(gram_matrix(maps, mean, progress))
-    count = _count(maps, mean, decomposition, options, progress)
+    spreader = make_spreader(maps.atlas, mean.seen)
+    if options.uv_ssim is None:
+        count = component_count(options.textures, maps.cameras)
+    else:
+        average = spreader(mean.values)
+        count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)
     weights = weights_of(decomposition, count)
     compact = eigen_textures(maps, mean, weights, progress)
-    spreader = make_spreader(maps.atlas, mean.seen)
     pictures = np.zeros((count, maps.atlas.height, maps.atlas.width, maps.channels), np.float32)
     for index in range(count):
         pictures[index] = spreader(compact[index])
     ones, zeros = np.ones((count, maps.channels), np.float32), np.zeros((count, maps.channels), np.float32)
     return Basis(pictures, ones, zeros, weights), mean, spreader
-
-
-def _count(maps: TextureMaps, mean: Mean, decomposition: Spectrum, options: Options, progress: Progress | None) -> int:
-    if options.uv_ssim is None:
-        return component_count(options.textures, maps.cameras)
-    return smallest_count(maps, mean, decomposition, options.uv_ssim, progress)
 
 
 def _reference(

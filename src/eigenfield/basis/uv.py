@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +16,8 @@ from eigenfield.metrics import psnr, ssim, to_codes
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
 from eigenfield.texturing import Atlas, TextureMaps
+
+log = logging.getLogger("eigenfield.basis")
 
 SAMPLE = 24  # cameras that narrow the number down before all of them decide
 
@@ -44,30 +48,44 @@ def measure_map(
 
 
 def smallest_count(
-    maps: TextureMaps, mean: Mean, decomposition: Spectrum, target: float, progress: Progress | None = None
+    maps: TextureMaps,
+    mean: Mean,
+    average: NDArray[np.float32],
+    decomposition: Spectrum,
+    target: float,
+    *,
+    work: Path | None = None,
+    progress: Progress | None = None,
 ) -> int:
-    """The smallest number of eigen textures whose mean UV SSIM over the cameras reaches `target`; all of them if none
-    does. The textures are those before coding. A sample of cameras finds about where, all cameras decide."""
+    """The smallest number of eigen textures whose mean UV SSIM over the cameras reaches `target`; all of them, with a
+    warning, if none does. The textures are those before coding. A sample of cameras finds about where, all decide.
+
+    average: (H, W, C), the mean without holes, as the file will keep it. work: folder for a scratch file.
+    """
     most = maps.cameras - 1
     sample = np.unique(np.linspace(0, maps.cameras - 1, min(SAMPLE, maps.cameras)).round().astype(int)).tolist()
     everyone = list(range(maps.cameras))
     limit = min(8, most)
     while True:
         weights = weights_of(decomposition, limit)
-        with scratch_array((limit, maps.atlas.count, maps.channels), np.float32) as textures:
+        with scratch_array((limit, maps.atlas.count, maps.channels), np.float32, work) as textures:
             textures[:] = eigen_textures(maps, mean, weights, progress)
-            near = _first(_curve(maps, mean, textures, weights, sample, range(limit + 1), progress), target)
+            near = _first(_curve(maps, mean, average, textures, weights, sample, range(limit + 1), progress), target)
             if near is not None or limit == most:
                 guess = limit if near is None else near
-                count = _decide(maps, mean, textures, weights, everyone, guess, target, progress)
-                if count is not None or limit == most:
-                    return most if count is None else count
+                count = _decide(maps, mean, average, textures, weights, everyone, guess, target, progress)
+                if count is not None:
+                    return count
+                if limit == most:
+                    log.warning("a UV SSIM of %g is not reached: all %d eigen textures are kept", target, most)
+                    return most
         limit = min(2 * limit, most)
 
 
 def _decide(
     maps: TextureMaps,
     mean: Mean,
+    average: NDArray[np.float32],
     textures: NDArray[np.float32],
     weights: NDArray[np.float32],
     cameras: Sequence[int],
@@ -78,7 +96,7 @@ def _decide(
     """From a guess outwards, a few counts at a time, until all cameras say which count is the first to reach it."""
     low, high = max(guess - 1, 0), min(guess + 1, len(textures))
     while True:
-        first = _first(_curve(maps, mean, textures, weights, cameras, range(low, high + 1), progress), target)
+        first = _first(_curve(maps, mean, average, textures, weights, cameras, range(low, high + 1), progress), target)
         if first is None:
             if high == len(textures):
                 return None
@@ -96,6 +114,7 @@ def _first(curve: Sequence[float], target: float) -> int | None:
 def _curve(
     maps: TextureMaps,
     mean: Mean,
+    average: NDArray[np.float32],
     textures: NDArray[np.float32],
     weights: NDArray[np.float32],
     cameras: Sequence[int],
@@ -103,7 +122,6 @@ def _curve(
     progress: Progress | None,
 ) -> list[float]:
     """Mean SSIM over `cameras` for each number of textures in `counts`."""
-    average = maps.atlas.image(mean.values)
 
     def pictures(camera: int) -> Iterator[NDArray[np.float32]]:
         total, done = mean.values.copy(), 0

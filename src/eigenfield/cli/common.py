@@ -7,6 +7,7 @@ import json
 import logging
 import sys
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any, TypeVar
 
 import click
@@ -27,6 +28,19 @@ def common_options(function: F) -> F:
                      help="Say more about what is done."),
         click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,
                      help="Show where an error came from."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def capture_options(function: F) -> F:
+    """Add --calibration and --masks, which `open_capture` takes."""
+    options = [
+        click.option("--calibration", type=click.Path(path_type=Path), metavar="PATH",
+                     help="A transforms.json or COLMAP model that lies elsewhere than the photographs."),
+        click.option("--masks", type=click.Path(path_type=Path), metavar="FOLDER",
+                     help="Masks named as the photographs; white counts."),
     ]  # fmt: skip
     for option in reversed(options):
         function = option(function)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from eigenfield.cli.common import common_options, note, progress_bars
+from eigenfield.cli.common import capture_options, common_options, note, progress_bars
 
 
 def _atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -43,15 +43,7 @@ Examples:
 @click.option(
     "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb to write."
 )
-@click.option(
-    "--calibration",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="A transforms.json or COLMAP model that lies elsewhere than the photographs.",
-)
-@click.option(
-    "--masks", type=click.Path(path_type=Path), metavar="FOLDER", help="Masks named as the photographs; white counts."
-)
+@capture_options
 @click.option(
     "--textures",
     "-n",

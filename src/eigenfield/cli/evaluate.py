@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from eigenfield.cli.common import common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
 
 COLUMNS = (  # key, heading, format
     ("psnr", "PSNR", "{:.2f}"),
@@ -31,15 +31,7 @@ Examples:
 )
 @click.argument("scene", type=click.Path(path_type=Path))
 @click.argument("capture", type=click.Path(path_type=Path))
-@click.option(
-    "--calibration",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="A transforms.json or COLMAP model that lies elsewhere than the photographs.",
-)
-@click.option(
-    "--masks", type=click.Path(path_type=Path), metavar="FOLDER", help="Masks named as the photographs; white counts."
-)
+@capture_options
 @click.option("--json", "as_json", is_flag=True, help="The figures as JSON on standard output, every camera's too.")
 @click.option("--curve", is_flag=True, help="The UV measure for every number of eigen textures up to the file's.")
 @click.option(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
 from eigenfield.errors import OptionError
 
 if TYPE_CHECKING:
@@ -29,18 +29,7 @@ Examples:
   eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
 )
 @click.argument("capture", type=click.Path(path_type=Path))
-@click.option(
-    "--calibration",
-    type=click.Path(path_type=Path),
-    metavar="PATH",
-    help="A transforms.json or a COLMAP model that lies elsewhere than the photographs.",
-)
-@click.option(
-    "--masks",
-    type=click.Path(path_type=Path),
-    metavar="FOLDER",
-    help="Masks named as the photographs, white where they count.",
-)
+@capture_options
 @click.option("--proxy", type=click.Path(path_type=Path), metavar="MESH", help="The proxy mesh to draw with --overlay.")
 @click.option(
     "--overlay",
