@@ -13,10 +13,10 @@ import eigenfield
 
 ROOT = Path(eigenfield.__file__).parent
 FLOORS = {
-    0: ["camera", "mesh", "scene", "viewplane", "raster", "errors", "files", "jit", "parallel", "progress", "metrics"],
-    1: ["proxy", "capture"],
-    2: ["basis", "texturing"],
-    3: ["rendering", "format", "pipeline", "holdout"],
+    0: ["camera", "mesh", "scene", "viewplane", "raster", "errors", "files", "jit", "parallel", "progress", "metrics", "stages"],
+    1: ["capture", "stereo"],
+    2: ["calibrate", "proxy", "basis", "texturing"],
+    3: ["rendering", "format", "pipeline", "holdout", "reconstruction"],
     4: ["evaluation", "demo"],
     5: ["cli", "__init__"],
     6: ["__main__"],

@@ -1,0 +1,1 @@
+"""Cameras from photographs: structure from motion, charts, and planar arrays."""

@@ -1,0 +1,107 @@
+"""Photographs whose cameras are not known yet, with what their names and metadata tell of how the array stood."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.capture.lens import Lens
+from eigenfield.capture.lightfield import LightField, View
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One photograph without a camera.
+
+    name: unique in the set, as a View's. path: the picture's file.
+    width, height: of the picture as it is decoded, upright.
+    focal: pixels, where EXIF or the format says it; None otherwise.
+    mask: a mask's file, white where the photograph counts.
+    upright: whether the EXIF orientation is applied on reading.
+    """
+
+    name: str
+    path: Path
+    width: int
+    height: int
+    focal: float | None = None
+    mask: Path | None = None
+    upright: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """Where the cameras of a planar array stand, as far as names and metadata tell; nothing here is estimated.
+
+    rows, columns: (n,) int64, each shot's node of the grid, as named.
+    positions: (n, 2) float64, X to the right and Y up as the cameras see it, in any unit: measured ones where the names
+        hold them, else the node numbers with the signs below applied.
+    measured: positions were measured; otherwise rows and columns may be spaced differently.
+    signs: whether +X is right and +Y up for certain; False: only the photographs can tell whether both are reversed.
+    rectified: the pictures share a plane without parallax (two-plane parameterisation), True, or were taken by parallel
+        cameras without shift, False; None where nothing says.
+    exact: rendered: positions need no refinement.
+    focal: pixels, None where nothing says (the frame is then projective).
+    """
+
+    rows: NDArray[np.int64]
+    columns: NDArray[np.int64]
+    positions: NDArray[np.float64]
+    measured: bool = False
+    signs: bool = False
+    rectified: bool | None = None
+    exact: bool = False
+    focal: float | None = None
+
+    def subset(self, indices: Sequence[int]) -> Layout:
+        """The layout of some of the shots."""
+        chosen = np.asarray(indices, np.int64)
+        return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
+
+
+@dataclass(frozen=True, eq=False)
+class PhotoSet:
+    """Photographs of one scene without cameras.
+
+    root: the folder they were found in. format: the reader's name ("stanford", "grid", "folder", ...).
+    layout: how the array stood; None for a folder of photographs of which nothing is known.
+    problems: one line each, for people.
+    """
+
+    root: Path
+    shots: tuple[Shot, ...]
+    layout: Layout | None
+    problems: tuple[str, ...]
+    format: str
+
+    def __len__(self) -> int:
+        return len(self.shots)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(shot.name for shot in self.shots)
+
+    def subset(self, indices: Iterable[int]) -> PhotoSet:
+        """The same set with some of its shots, in the order given."""
+        chosen = list(indices)
+        layout = None if self.layout is None else self.layout.subset(chosen)
+        return replace(self, shots=tuple(self.shots[i] for i in chosen), layout=layout)
+
+    def calibrated(
+        self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()
+    ) -> LightField:
+        """The light field of these photographs with `cameras`, one each, in order.
+
+        lenses: the distortion to remove from each, None for none. problems: lines added to the set's own.
+        """
+        lenses = [None] * len(self.shots) if lenses is None else lenses
+        views = tuple(
+            View(shot.name, shot.path, camera, lens, shot.mask, shot.upright)
+            for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
+        )
+        return LightField(self.root, views, (*self.problems, *problems), self.format)

@@ -1,0 +1,113 @@
+"""Finished stages of long work in a folder, so that the same command goes on after a crash.
+
+A stage's folder carries a digest of all that its result depends on: a changed option, photograph or program finds
+nothing and builds anew. It is built beside its place and appears there by rename: what exists is whole.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import logging
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from eigenfield.files import mended
+
+log = logging.getLogger("eigenfield.stages")
+
+BLOCK = 1 << 20
+
+
+@cache
+def code_version() -> str:
+    """A digest of the package's own sources: a stage built by another version is not taken up."""
+    root = Path(__file__).parent
+    digest = hashlib.sha256()
+    for source in sorted(root.rglob("*.py")):
+        if source.relative_to(root).parts[0] not in ("cli", "demo", "evaluation", "rendering", "format"):
+            digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())
+    return digest.hexdigest()
+
+
+def file_digest(path: Path) -> str:
+    """The SHA-256 of a file's bytes."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def stage_key(inputs: Iterable[Any]) -> str:
+    """A digest of JSON-able `inputs` (file digests, options, the keys of earlier stages) and of the program."""
+    text = json.dumps([code_version(), *inputs], sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+class Stages:
+    """Finished stages below `folder`; None keeps nothing: every stage is built in a temporary folder."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self._temporary = tempfile.TemporaryDirectory(prefix="eigenfield-") if folder is None else None
+        self.folder = Path(self._temporary.name) if self._temporary else Path(folder or ".")
+        with mended(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+
+    def path(self, name: str, key: str) -> Path:
+        """Where the finished stage lies, or will."""
+        return self.folder / f"{name}-{key}"
+
+    def run(self, name: str, key: str, build: Callable[[Path], None]) -> Path:
+        """The folder of stage `name`: the finished one, else made by `build(folder)`, which writes files there.
+
+        Raises what `build` raises, and OutputError; then nothing of the stage stays.
+        """
+        place = self.path(name, key)
+        if place.is_dir():
+            log.info("%s: taken up from %s", name, place)
+            return place
+        with mended(self.folder):
+            part = Path(tempfile.mkdtemp(prefix=f".{name}-", suffix=".part", dir=self.folder))
+            try:
+                build(part)
+                part.chmod(0o755)
+                _flush(part)
+                try:
+                    part.replace(place)
+                except OSError:
+                    if not place.is_dir():  # another run may have finished the same stage meanwhile
+                        raise
+                    shutil.rmtree(part, ignore_errors=True)
+            except BaseException:
+                shutil.rmtree(part, ignore_errors=True)
+                raise
+        return place
+
+    def close(self) -> None:
+        """Remove what was only temporary."""
+        if self._temporary is not None:
+            with contextlib.suppress(OSError):
+                self._temporary.cleanup()
+
+    def __enter__(self) -> Stages:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _flush(folder: Path) -> None:
+    for inside, _, files in os.walk(folder):
+        for name in files:
+            handle = os.open(Path(inside) / name, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
