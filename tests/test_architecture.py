@@ -22,7 +22,7 @@ FLOORS = {
     6: ["__main__"],
 }
 FLOOR = {room: floor for floor, rooms in FLOORS.items() for room in rooms}
-SAME_FLOOR = {("basis", "texturing"), ("pipeline", "rendering"), ("pipeline", "holdout")}
+SAME_FLOOR = {("basis", "texturing"), ("pipeline", "rendering"), ("pipeline", "holdout"), ("reconstruction", "holdout")}
 EXCEPTIONS = {("scene.py", "format")}  # Scene.save, for people's convenience
 
 

@@ -157,15 +157,15 @@ def test_empty_lines_of_points(tmp_path):
     assert len(open_capture(capture(tmp_path, cameras_txt(), images_txt("")))) == 4
 
 
-@pytest.mark.parametrize("number", [6, 10, 17, 999, -1])
+@pytest.mark.parametrize("number", [7, 10, 17, 999, -1])
 def test_other_models_are_refused_by_name(tmp_path, number):
     error = refused("camera-model", capture(tmp_path, cameras_bin(number=number), images_bin()))
-    assert {6: "FULL_OPENCV", 10: "THIN_PRISM_FISHEYE", 17: "EQUIRECTANGULAR"}.get(number, str(number)) in str(error)
+    assert {7: "FOV", 10: "THIN_PRISM_FISHEYE", 17: "EQUIRECTANGULAR"}.get(number, str(number)) in str(error)
 
 
 def test_other_models_are_refused_in_text_too(tmp_path):
-    error = refused("camera-model", capture(tmp_path, cameras_txt("FULL_OPENCV", (1.0,) * 12), images_txt()))
-    assert "FULL_OPENCV" in str(error) and error.path is not None and error.path.endswith("cameras.txt")
+    error = refused("camera-model", capture(tmp_path, cameras_txt("FOV", (1.0,) * 5), images_txt()))
+    assert "model FOV" in str(error) and error.path is not None and error.path.endswith("cameras.txt")
 
 
 @pytest.mark.parametrize("stem", ["cameras", "images"])

@@ -17,7 +17,7 @@ from PIL import Image
 from eigenfield.camera import Camera
 from eigenfield.capture import open_capture
 from eigenfield.capture.lens import Lens, remove_lens, resample, source_positions
-from eigenfield.capture.opening import is_same_picture
+from eigenfield.capture.pairing import is_same_picture
 from eigenfield.capture.transforms import read_transforms
 from eigenfield.errors import CaptureError
 

@@ -26,7 +26,7 @@ from eigenfield.proxy import write_ply
 
 KEYS = {
     "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems",
-    "damaged", "cameras", "proxy",
+    "damaged", "cameras", "proxy", "layout", "photographs", "next",
 }  # fmt: skip
 
 

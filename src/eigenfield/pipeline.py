@@ -7,6 +7,7 @@ import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,8 @@ from eigenfield.texturing import (
     Spreader,
     TextureMaps,
     atlas_side,
+    check_model,
+    harmonise_maps,
     make_atlas,
     make_spreader,
     texels_per_pixel,
@@ -65,6 +68,7 @@ class Options:
     reference: str | None = None
     hold_out: str | None = None
     resampling: str = "bicubic"
+    harmonise: str | None = None
 
     def __post_init__(self) -> None:
         if self.textures < 0:
@@ -75,6 +79,8 @@ class Options:
             raise OptionError(
                 "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
             )
+        if self.harmonise is not None:
+            check_model(self.harmonise)
         if self.atlas is not None:
             sides = (self.atlas,) if isinstance(self.atlas, int) else self.atlas
             if not all(1 <= side <= SIDE_LIMIT for side in sides):
@@ -96,6 +102,7 @@ def encode(
     reference: str | None = None,
     hold_out: str | None = None,
     resampling: str = "bicubic",
+    harmonise: str | None = None,
     keep_maps: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -107,12 +114,14 @@ def encode(
     is at most 4096. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many; without
     it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to the
     reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
-    "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". keep_maps: folder for the
-    filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x cameras x texels).
+    "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
+    "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
+    scene keeps them for drawing its captured cameras. keep_maps: folder for the filled maps and visibility as pictures.
+    work: folder for the scratch file (4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
-    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling)
+    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise)
     names = [view.name for view in capture.views]
     cameras = [view.camera.rounded() for view in capture.views]
     plane = fit_view_plane(cameras)
@@ -134,6 +143,7 @@ def encode(
     used = [cameras[i] for i in encoded]
     place = None if work is None else Path(work)
     with texture_maps(layout, used, photograph, resampling=resampling, work=place, progress=progress) as maps:
+        fitted = None if harmonise is None else harmonise_maps(maps, harmonise, progress)
         scene_basis, mean, spreader = _decompose(maps, options, int(np.searchsorted(encoded, centre)), place, progress)
         if keep_maps is not None:
             write_maps(maps, mean.values, spreader, [names[i] for i in encoded], Path(keep_maps), progress=progress)
@@ -145,6 +155,8 @@ def encode(
         "align": align,
         "holdOut": hold_out,
         "resampling": resampling,
+        **({} if harmonise is None else {"harmonise": harmonise}),
+        **_lenses(capture),
         "photographs": {
             "count": len(encoded),
             "bytes": sum(capture.bytes(int(i)) for i in encoded),
@@ -162,6 +174,7 @@ def encode(
         triangles=delaunay_triangles(coordinates[encoded]),
         settings=settings,
         generator=f"eigenfield {__version__}",
+        colours=None if fitted is None else _colours(fitted, held),
     )
 
 
@@ -193,6 +206,14 @@ def _decompose(
     return Basis(pictures, ones, zeros, weights), mean, spreader
 
 
+def _colours(fitted: NDArray[np.float32], held: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """(Nc, 2, 3) for all cameras: a held-out one, of which nothing may be known, has gain 1 and offset 0."""
+    colours = np.zeros((len(held), 2, 3), np.float32)
+    colours[:, 0] = 1
+    colours[~held] = fitted
+    return colours
+
+
 def _reference(
     name: str | None, names: Sequence[str], coordinates: NDArray[np.float64], encoded: NDArray[np.int64]
 ) -> int:
@@ -214,6 +235,12 @@ def _atlas_size(options: Options, mesh: Mesh, camera: Camera) -> tuple[int, int]
             log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)
         return side, side
     return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+
+
+def _lenses(capture: LightField) -> dict[str, Any]:
+    """The lenses that were removed, so that the photographs alone are enough to measure the scene by."""
+    lenses = [None if v.lens is None else [v.lens.model, list(v.lens.coefficients)] for v in capture.views]
+    return {"lenses": lenses} if any(lenses) else {}
 
 
 def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:

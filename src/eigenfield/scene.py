@@ -69,6 +69,8 @@ class Scene:
     view_plane, triangles: the plane, and (T, 3) int32 Delaunay triangles on it over the *encoded* cameras.
     settings, scores: JSON objects: how it was made, and what `evaluate --store` measured.
     generator: name and version of the program that made it.
+    colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset, so
+        its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
     """
 
     mesh: Mesh
@@ -82,6 +84,7 @@ class Scene:
     settings: Mapping[str, Any] = field(default_factory=dict)
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
+    colours: NDArray[np.float32] | None = None
 
     @property
     def encoded(self) -> NDArray[np.int64]:

@@ -18,6 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from eigenfield.errors import OutputError
 from eigenfield.files import mended
 
 log = logging.getLogger("eigenfield.stages")
@@ -57,6 +58,8 @@ class Stages:
     def __init__(self, folder: Path | None) -> None:
         self._temporary = tempfile.TemporaryDirectory(prefix="eigenfield-") if folder is None else None
         self.folder = Path(self._temporary.name) if self._temporary else Path(folder or ".")
+        if self.folder.exists() and not self.folder.is_dir():
+            raise OutputError("work-is-file", "is a file", path=self.folder, remedy="name a folder as --work")
         with mended(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
 
@@ -74,7 +77,8 @@ class Stages:
             log.info("%s: taken up from %s", name, place)
             return place
         with mended(self.folder):
-            part = Path(tempfile.mkdtemp(prefix=f".{name}-", suffix=".part", dir=self.folder))
+            _clear(self.folder, name)
+            part = Path(tempfile.mkdtemp(prefix=f".{name}-{os.getpid()}-", suffix=".part", dir=self.folder))
             try:
                 build(part)
                 part.chmod(0o755)
@@ -101,6 +105,27 @@ class Stages:
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def _clear(folder: Path, name: str) -> None:
+    """Remove what killed runs left unfinished; a run that still lives keeps its own."""
+    for part in folder.glob(f".{name}-*.part"):
+        process = part.name.removeprefix(f".{name}-").split("-")[0]
+        if process.isdecimal() and not _lives(int(process)):
+            log.info("removed what a killed run left: %s", part)
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _lives(process: int) -> bool:
+    if os.name != "posix":  # elsewhere signal 0 is no question
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
 
 
 def _flush(folder: Path) -> None:

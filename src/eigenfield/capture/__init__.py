@@ -1,16 +1,35 @@
-"""Captures: photographs with one camera each, read from nerfstudio / instant-ngp `transforms.json` or COLMAP models.
+"""Captures: photographs with one camera each (`LightField`), or photographs alone (`PhotoSet`).
 
-    light_field = open_capture("capture/")
+    light_field = open_capture("capture/")   # a calibration of any format in `formats.FORMATS`
     photograph = light_field.photograph(0)   # decoded now, lens removed, mask beside it
+    photo_set = open_photographs("photos/")  # no cameras; what names tell of the array in `photo_set.layout`
+    either = open_any("folder/")
 
 `docs/captures.md` says what is read, under which conventions, and what trips people.
 """
 
 from __future__ import annotations
 
+from eigenfield.capture.formats import FORMATS, Format
 from eigenfield.capture.lens import Lens
 from eigenfield.capture.lightfield import LightField, Photograph, View
-from eigenfield.capture.opening import open_capture
+from eigenfield.capture.opening import open_any, open_capture, open_photographs
 from eigenfield.capture.photographs import Header, read_header
+from eigenfield.capture.photoset import Layout, PhotoSet, Shot
 
-__all__ = ["Header", "Lens", "LightField", "Photograph", "View", "open_capture", "read_header"]
+__all__ = [
+    "FORMATS",
+    "Format",
+    "Header",
+    "Layout",
+    "Lens",
+    "LightField",
+    "PhotoSet",
+    "Photograph",
+    "Shot",
+    "View",
+    "open_any",
+    "open_capture",
+    "open_photographs",
+    "read_header",
+]

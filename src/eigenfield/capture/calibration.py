@@ -60,6 +60,7 @@ class Entry:
     label: what names the entry in messages.
     R, centre: (3, 3) world-to-camera rotation with OpenCV axes, (3,) the camera's centre in the world; not yet checked.
     mask: the mask's path as the calibration writes it.
+    bounds: the nearest and farthest depth of the scene from this camera, where the calibration says them.
     """
 
     file: str
@@ -69,6 +70,7 @@ class Entry:
     centre: NDArray[np.float64]
     lens: Lens | None = None
     mask: str | None = None
+    bounds: tuple[float, float] | None = None
 
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
@@ -81,7 +83,7 @@ class Entry:
                 remedy="mend or remove its entry",
             )
         try:
-            with np.errstate(invalid="ignore", over="ignore"):  # NaN and infinities are what `checked` looks for
+            with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `checked` looks for
                 camera = Camera.checked(K, self.R, -(self.R @ self.centre), width, height, self.label)
         except CaptureError as error:
             raise CaptureError(error.code, error.message, path=path, remedy=error.remedy) from None

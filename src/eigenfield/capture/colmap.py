@@ -20,13 +20,14 @@ from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, print
 from eigenfield.capture.lens import Lens
 from eigenfield.errors import CaptureError
 
+FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
 # name: (number in the binary format, number of parameters); from colmap/src/colmap/sensor/models.h
 MODELS = {
     "SIMPLE_PINHOLE": (0, 3), "PINHOLE": (1, 4), "SIMPLE_RADIAL": (2, 4), "RADIAL": (3, 5), "OPENCV": (4, 8),
-    "OPENCV_FISHEYE": (5, 8),
+    "OPENCV_FISHEYE": (5, 8), "FULL_OPENCV": (6, 12),
 }  # fmt: skip
 OTHERS = {
-    6: "FULL_OPENCV", 7: "FOV", 8: "SIMPLE_RADIAL_FISHEYE", 9: "RADIAL_FISHEYE", 10: "THIN_PRISM_FISHEYE",
+    7: "FOV", 8: "SIMPLE_RADIAL_FISHEYE", 9: "RADIAL_FISHEYE", 10: "THIN_PRISM_FISHEYE",
     11: "RAD_TAN_THIN_PRISM_FISHEYE", 12: "SIMPLE_DIVISION", 13: "DIVISION", 14: "SIMPLE_FISHEYE", 15: "FISHEYE",
     16: "EUCM", 17: "EQUIRECTANGULAR",
 }  # fmt: skip
@@ -52,6 +53,11 @@ def is_model(folder: Path) -> bool:
     return any(
         (folder / f"cameras.{kind}").is_file() and (folder / f"images.{kind}").is_file() for kind in ("bin", "txt")
     )
+
+
+def find_colmap(folder: Path) -> Path | None:
+    """The model in a folder, where COLMAP and those who follow it put it."""
+    return next((folder / inner for inner in FOLDERS if is_model(folder / inner)), None)
 
 
 def read_colmap(folder: Path) -> Calibration:
@@ -139,8 +145,10 @@ def _intrinsics(
     intrinsics = Intrinsics(width, height, focal, None, principal)
     if model == "OPENCV_FISHEYE":
         return intrinsics, Lens("fisheye", rest)
-    k1, k2, p1, p2 = (*rest, 0.0, 0.0, 0.0, 0.0)[:4]
-    lens = Lens("brown", (k1, k2, p1, p2, 0.0))
+    if model == "FULL_OPENCV" and any(rest[5:]):
+        return intrinsics, Lens("rational", rest)
+    k1, k2, p1, p2, k3 = (*rest, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]
+    lens = Lens("brown", (k1, k2, p1, p2, k3))
     return intrinsics, None if lens.does_nothing else lens
 
 

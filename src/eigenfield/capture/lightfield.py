@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,9 @@ from eigenfield.camera import Camera
 from eigenfield.capture.lens import Lens, remove_lens
 from eigenfield.capture.photographs import decode, decode_mask
 from eigenfield.errors import CaptureError
+
+if TYPE_CHECKING:
+    from eigenfield.capture.photoset import Layout
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +30,11 @@ class Photograph:
     pixels: NDArray[np.float32]
     mask: NDArray[np.float32] | None
 
+    @staticmethod
+    def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:
+        """The photograph, without a mask that leaves nothing out."""
+        return Photograph(pixels, None if mask is not None and mask.min() >= 1 else mask)
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -36,6 +45,7 @@ class View:
     lens: the distortion that is removed on reading; None where there is none.
     mask: a mask's file, white where the photograph counts.
     upright: whether the photograph's EXIF orientation is applied on reading.
+    bounds: the nearest and farthest depth of the scene along z, world units, where the calibration says them; a hint.
     """
 
     name: str
@@ -44,6 +54,7 @@ class View:
     lens: Lens | None = None
     mask: Path | None = None
     upright: bool = True
+    bounds: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,13 +64,15 @@ class LightField:
     root: the folder that the photographs were looked for in.
     views: in the natural order of their names.
     problems: one line each, for people: what was left out or mended on reading.
-    format: "transforms" or "colmap".
+    format: the reader's name ("transforms", "colmap", "hci", ...).
+    layout: how the array stood, where the photographs' names say so too; None otherwise.
     """
 
     root: Path
     views: tuple[View, ...]
     problems: tuple[str, ...]
     format: str
+    layout: Layout | None = None
 
     def __len__(self) -> int:
         return len(self.views)
@@ -80,47 +93,61 @@ class LightField:
         """
         view = self.views[index]
         camera = view.camera
-        pixels, mask = decode(view.path, view.upright)
-        if pixels.shape[:2] != (camera.height, camera.width):
-            raise CaptureError(
-                "image-size",
-                f"is {pixels.shape[1]}x{pixels.shape[0]} now, but was {camera.width}x{camera.height} when the capture "
-                "was opened",
-                path=view.path,
-                remedy="open the capture again",
-            )
-        if view.mask is not None:
-            other = decode_mask(view.mask)
-            if other.shape != pixels.shape[:2]:
-                raise CaptureError(
-                    "mask-size",
-                    f"the mask is {other.shape[1]}x{other.shape[0]}, its photograph {camera.width}x{camera.height}",
-                    path=view.mask,
-                    remedy="a mask has the size of its photograph: make it anew",
-                )
-            mask = other if mask is None else np.minimum(mask, other)
+        pixels, mask = decode_masked(view.path, view.upright, camera.width, camera.height, view.mask)
         if view.lens is not None:
             try:
                 pixels, mask = remove_lens(pixels, mask, camera.K, view.lens)
             except CaptureError as error:
                 raise CaptureError(error.code, error.message, path=view.path, remedy=error.remedy) from None
-        if mask is not None and mask.min() >= 1:
-            mask = None
-        return Photograph(pixels, mask)
+        return Photograph.of(pixels, mask)
 
     def subset(self, indices: Iterable[int]) -> LightField:
         """The same capture with some of its views, in the order given."""
-        return replace(self, views=tuple(self.views[i] for i in indices))
+        chosen = list(indices)
+        layout = None if self.layout is None else self.layout.subset(chosen)
+        return replace(self, views=tuple(self.views[i] for i in chosen), layout=layout)
 
     def bytes(self, index: int) -> int:
         """The size of the photograph's file on disk."""
-        path = self.views[index].path
-        try:
-            return path.stat().st_size
-        except OSError as error:
-            raise CaptureError(
-                "image-missing",
-                error.strerror or "cannot be read",
-                path=path,
-                remedy="put it back, or open the capture again",
-            ) from error
+        return size_on_disk(self.views[index].path)
+
+
+def decode_masked(
+    path: Path, upright: bool, width: int, height: int, mask: Path | None
+) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+    """(H, W, 3) pixels of a photograph, and (H, W) alpha and mask file together; None where there is neither.
+
+    Raises CaptureError as `LightField.photograph` does.
+    """
+    pixels, alpha = decode(path, upright)
+    if pixels.shape[:2] != (height, width):
+        raise CaptureError(
+            "image-size",
+            f"is {pixels.shape[1]}x{pixels.shape[0]} now, but was {width}x{height} when the capture was opened",
+            path=path,
+            remedy="open the capture again",
+        )
+    if mask is None:
+        return pixels, alpha
+    other = decode_mask(mask)
+    if other.shape != pixels.shape[:2]:
+        raise CaptureError(
+            "mask-size",
+            f"the mask is {other.shape[1]}x{other.shape[0]}, its photograph {width}x{height}",
+            path=mask,
+            remedy="a mask has the size of its photograph: make it anew",
+        )
+    return pixels, other if alpha is None else np.minimum(alpha, other)
+
+
+def size_on_disk(path: Path) -> int:
+    """Bytes of a file; CaptureError `image-missing` where it is gone."""
+    try:
+        return path.stat().st_size
+    except OSError as error:
+        raise CaptureError(
+            "image-missing",
+            error.strerror or "cannot be read",
+            path=path,
+            remedy="put it back, or open the capture again",
+        ) from error

@@ -1,48 +1,25 @@
-"""Which files belong together: the calibration in a folder, the photograph of an entry, the mask of a photograph."""
+"""Which files belong together: the photograph of an entry, the mask of a photograph."""
 
 from __future__ import annotations
 
 import os
 import unicodedata
 from collections import defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
+from typing import TypeVar
 
-from eigenfield.capture.colmap import is_model
+from eigenfield.capture.lightfield import View
 from eigenfield.capture.photographs import EXTENSIONS
+from eigenfield.capture.photoset import Shot
+from eigenfield.capture.wording import count, some
 from eigenfield.errors import CaptureError
 
-MODEL_FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
-TRANSFORMS = "transforms.json"
+T = TypeVar("T", View, Shot)
+
 IMAGES = "images"
 FILES_LIMIT = 1_000_000  # files looked at below images/
-
-
-def find_calibration(path: Path) -> Path:
-    """The transforms.json or the COLMAP model folder that `path` is or holds; a transforms.json goes first."""
-    if not path.exists():
-        raise CaptureError("capture-missing", "does not exist", path=path, remedy="check the path")
-    if path.is_file():
-        if path.suffix.lower() == ".json":
-            return path
-        if path.stem in ("cameras", "images") and is_model(path.parent):
-            return path.parent
-        raise CaptureError(
-            "calibration-unknown",
-            "is no calibration",
-            path=path,
-            remedy=f"name a {TRANSFORMS}, a COLMAP model, or a folder with one",
-        )
-    if (path / TRANSFORMS).is_file():
-        return path / TRANSFORMS
-    for folder in MODEL_FOLDERS:
-        if is_model(path / folder):
-            return path / folder
-    others = sorted(p.name for p in path.glob("*.json"))
-    hint = f"it holds {', '.join(others[:4])}: name one as the calibration" if others else "name one with --calibration"
-    raise CaptureError(
-        "calibration-missing", f"has no {TRANSFORMS} and no COLMAP model (sparse/0)", path=path, remedy=hint
-    )
 
 
 def root_of(path: Path, found: Path) -> Path:
@@ -55,7 +32,14 @@ def root_of(path: Path, found: Path) -> Path:
             path = path.parent
         if path.name == "sparse":
             path = path.parent
+    if found.is_dir() and found.resolve() == path.resolve() and not _holds_photographs(path):
+        above = path.resolve().parent
+        path = above if _holds_photographs(above) else path
     return path
+
+
+def _holds_photographs(folder: Path) -> bool:
+    return bool(photographs_in(folder) or photographs_in(folder / IMAGES))
 
 
 def _key(name: str) -> str:
@@ -173,3 +157,40 @@ class MaskFinder:
                         remedy="leave one",
                     )
         return None
+
+
+def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], list[str]]:
+    """Views or shots with the masks of a folder, and a line that names those without one.
+
+    root: the folder of the photographs, below which the masks' own folder may be laid out alike.
+    Raises CaptureError `masks-missing` where no mask fits, `mask-twice`.
+    """
+    finder = MaskFinder(folder)
+    masked, missing = [], []
+    for view in views:
+        mask = finder.find(view.path, _folders(view.path, root))
+        if mask is None:
+            missing.append(view.path.name)
+        masked.append(replace(view, mask=mask) if mask is not None else view)
+    if views and len(missing) == len(views):
+        raise CaptureError(
+            "masks-missing",
+            f"holds no mask for any photograph (looked for {views[0].path.stem}.png and the like)",
+            path=folder,
+            remedy="name masks as their photographs",
+        )
+    problems = (
+        [f"{count(missing, 'photograph has', 'photographs have')} no mask in {folder}: {some(missing)}"]
+        if missing
+        else []
+    )
+    return masked, problems
+
+
+def _folders(path: Path, root: Path) -> list[str]:
+    """Where below a folder of masks a photograph's mask may lie: its own relative folder, shortened from the front."""
+    try:
+        parts = path.parent.resolve().relative_to(root.resolve()).parts
+    except ValueError:
+        parts = ()
+    return ["/".join(parts[i:]) or "." for i in range(len(parts) + 1)]

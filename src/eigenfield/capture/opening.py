@@ -1,283 +1,227 @@
-"""Opening a capture: the calibration read, each entry's photograph found and its size held against its camera's."""
+"""Opening a capture: its format found, then the light field of its cameras, or the set of its photographs."""
 
 from __future__ import annotations
 
-import logging
 import os
-import re
-from collections import Counter
-from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
+from eigenfield.capture.arrangement import IMAGES, Arrangement, Wanted
+from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect, named_format
+from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.locate import photographs_in, root_of
+from eigenfield.capture.pairing import pair
+from eigenfield.capture.photoset import PhotoSet
+from eigenfield.capture.shots import common_focal, gather
+from eigenfield.capture.wording import some
+from eigenfield.errors import CaptureError, OptionError
 
-from eigenfield.camera import Camera
-from eigenfield.capture.calibration import Calibration, Entry, printable
-from eigenfield.capture.colmap import read_colmap
-from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.locate import MaskFinder, PhotographFinder, find_calibration, photographs_in, root_of
-from eigenfield.capture.photographs import Header, read_header
-from eigenfield.capture.transforms import read_transforms
-from eigenfield.errors import CaptureError
-from eigenfield.parallel import parallel_map
-
-log = logging.getLogger(__name__)
-
-FEWEST = 3  # photographs that make a light field
-NAMED = 5  # names that a problem line lists
+StrPath = str | os.PathLike[str]
+WITH_CAMERAS = tuple(row for row in FORMATS if row.read_cameras is not None)
+WITH_NAMES = tuple(row for row in FORMATS if row.read_names is not None)
 
 
 def open_capture(
-    path: str | os.PathLike[str],
+    path: StrPath,
     *,
-    calibration: str | os.PathLike[str] | None = None,
-    masks: str | os.PathLike[str] | None = None,
+    calibration: StrPath | None = None,
+    masks: StrPath | None = None,
     strict: bool = True,
+    format: str | None = None,
+    grid: tuple[int, int] | None = None,
+    frame: int | str | None = None,
 ) -> LightField:
-    """Open a capture; photographs are decoded when they are asked for, only their headers are read now.
+    """Open a capture with cameras; photographs are decoded when they are asked for, only their headers are read now.
 
-    path: a folder with a `transforms.json` or a COLMAP model (`sparse/0`), or one of these itself.
-    calibration: a `transforms.json` or a COLMAP model that lies elsewhere than the photographs in `path`; its
-        entries find them by relative path or by file name.
+    path: a folder with a calibration of any format of `formats.FORMATS`, or the calibration itself.
+    calibration: a calibration that lies elsewhere than the photographs in `path`; its entries find them by relative
+        path or by file name.
     masks: a folder of masks, named as the photographs, white where they count; goes before the calibration's own.
     strict: raise the first thing that is wrong; if False, leave it out and name it in `problems` (`inspect` does).
+    format: the name of a format, where more than one would do. grid, frame: as `open_photographs`.
 
     Calibration entries without a photograph, and the reverse, are no error: they are named in `problems`. Raises
-    CaptureError: no calibration, one that is damaged, a camera that cannot be, a photograph that is unreadable or
-    whose size is not its camera's (`image-size`), two entries for one photograph (`frame-twice`), a masks folder that
-    fits nothing, fewer than three photographs (`too-few`).
+    CaptureError: no calibration (`calibration-missing`), one that is damaged, a camera that cannot be, a photograph
+    that is unreadable or whose size is not its camera's (`image-size`), two entries for one photograph (`frame-twice`),
+    a masks folder that fits nothing, fewer than three photographs (`too-few`), formats that look alike
+    (`format-ambiguous`); OptionError for options that cannot be.
     """
+    source = _source(path, calibration, format, Wanted(_checked(grid), frame), FORMATS)
+    if source is None or not source.claim.format.cameras:
+        raise _no_cameras(Path(path))
+    opened = _open(source, masks, strict)
+    if not isinstance(opened, LightField):
+        raise _no_cameras(Path(path), opened.problems)
+    return opened
+
+
+def open_photographs(
+    path: StrPath,
+    *,
+    masks: StrPath | None = None,
+    strict: bool = True,
+    format: str | None = None,
+    grid: tuple[int, int] | None = None,
+    frame: int | str | None = None,
+    work: StrPath | None = None,
+) -> PhotoSet:
+    """Open photographs without cameras, with what their names say of the array; a calibration beside them is not read.
+
+    path: a folder of photographs (in itself or in its `images/`), or of one video a camera.
+    masks, strict: as `open_capture`.
+    format: the name of a format that names tell. grid: (rows, columns) of numbered photographs, in row-major order.
+    frame: which frame of each video, an index from 0 or seconds ("2.5s"); 0 by default.
+    work: a folder that keeps the frames of videos as PNG, so that they are decoded once; by default they last as
+        long as the process.
+
+    Raises CaptureError: `photographs-missing`, `photographs-twice`, `format-ambiguous`, `names-unknown`, `node-twice`,
+    `grid-size`, `grid-positions`, a photograph that is unreadable, one in a grid of another size than the rest
+    (`image-size`), `video-unreadable`, `video-short`, `too-few`; OptionError for options that cannot be.
+    """
+    wanted = Wanted(_checked(grid), frame, None if work is None else Path(work))
+    source = _source(path, None, format, wanted, WITH_NAMES)
+    if source is None:
+        raise _no_photographs(Path(path))
+    arrangement = _arrangement(source)
+    return gather(arrangement, source.root, masks=None if masks is None else Path(masks), strict=strict)
+
+
+def open_any(
+    path: StrPath,
+    *,
+    calibration: StrPath | None = None,
+    masks: StrPath | None = None,
+    strict: bool = True,
+    format: str | None = None,
+    grid: tuple[int, int] | None = None,
+    frame: int | str | None = None,
+    work: StrPath | None = None,
+) -> LightField | PhotoSet:
+    """Open whatever is there: a light field where a calibration or the names tell the cameras, else photographs.
+
+    Arguments and errors as `open_capture` and `open_photographs`.
+    """
+    wanted = Wanted(_checked(grid), frame, None if work is None else Path(work))
+    source = _source(path, calibration, format, wanted, FORMATS)
+    if source is None:
+        raise _no_photographs(Path(path))
+    return _open(source, masks, strict)
+
+
+@dataclass(frozen=True)
+class _Source:
+    """What is to be read: the claim, the folder of the photographs, and whether the calibration lies apart from it."""
+
+    claim: Claim
+    root: Path
+    apart: bool
+    wanted: Wanted
+
+
+def _source(
+    path: StrPath, calibration: StrPath | None, name: str | None, wanted: Wanted, formats: tuple[Format, ...]
+) -> _Source | None:
     root = Path(path)
-    if calibration is not None and not root.is_dir():
-        raise CaptureError("capture-missing", "is no folder of photographs", path=root, remedy="check the path")
-    found = find_calibration(root if calibration is None else Path(calibration))
-    if calibration is None:
-        root = root_of(root, found)
-    read = read_colmap(found) if found.is_dir() else read_transforms(found)
-    base = found if found.is_dir() else found.parent
-    finder = PhotographFinder(root, base, apart=calibration is not None)
-    log.info("%s: %d calibration entries", found, len(read.entries))
-
-    errors = list(read.errors)
-    pairs, lost, twice = _pair(read, finder)
-    errors += twice
-    views, bad, problems = _views(pairs, finder, read.path)
-    errors += bad
-    if masks is not None:
-        views, missing = _with_masks(views, Path(masks), root)
-        problems += missing
-    if strict and errors:
-        raise errors[0]
-    problems = [*read.problems, *_lost(lost, found), *_unused(pairs, views), *problems, *map(str, errors)]
-    if strict and len(views) < FEWEST:
-        raise CaptureError(
-            "too-few",
-            f"{len(views)} photographs with a camera, of {len(read.entries)} calibration entries; {FEWEST} are needed",
-            path=root,
-            remedy="check that the photographs lie where the calibration says, or name it with --calibration",
-        )
-    for problem in problems:
-        log.info("%s", problem)
-    return LightField(root, _named(views), tuple(problems), read.format)
-
-
-def _pair(
-    read: Calibration, finder: PhotographFinder
-) -> tuple[list[tuple[Entry, Path]], list[str], list[CaptureError]]:
-    """Entries with their photographs, names of those without, and errors for those that share one."""
-    pairs: list[tuple[Entry, Path]] = []
-    lost: list[str] = []
-    errors: list[CaptureError] = []
-    owner: dict[Path, Entry] = {}
-    for entry in read.entries:
-        path = finder.find(entry.file)
-        if path is None:
-            lost.append(entry.file)
-        elif path in owner:
-            errors.append(
-                CaptureError(
-                    "frame-twice",
-                    f"{entry.label} and {owner[path].label} are the same photograph ({path.name})",
-                    path=read.path,
-                    remedy="remove one of them",
-                )
+    if name is not None:
+        formats = _only(named_format(name), formats)
+    if calibration is not None:
+        if not root.is_dir():
+            raise CaptureError("capture-missing", "is no folder of photographs", path=root, remedy="check the path")
+        formats = tuple(row for row in formats if row.read_cameras is not None)
+        if not formats:
+            raise OptionError(
+                "format-cameras", f"--format {name} reads no calibration", remedy="leave out one of the two options"
             )
-        else:
-            owner[path] = entry
-            pairs.append((entry, path))
-    return pairs, lost, errors
+        claim = _claim(Path(calibration), formats, wanted)
+        if claim is None:
+            raise _no_cameras(Path(calibration))
+    else:
+        claim = _claim(root, formats, wanted)
+        if claim is None:
+            return None
+        if claim.format.read_cameras is not None:
+            root = root_of(root, claim.found)
+    _refuse_unused(claim, wanted)
+    return _Source(claim, root, calibration is not None, wanted)
 
 
-def _header_or_error(path: Path) -> Header | CaptureError:
-    try:
-        return read_header(path)
-    except CaptureError as error:
-        return error
-
-
-def _views(
-    pairs: Sequence[tuple[Entry, Path]], finder: PhotographFinder, calibration: Path
-) -> tuple[list[View], list[CaptureError], list[str]]:
-    headers = parallel_map(_header_or_error, [path for _, path in pairs])
-    views, errors, rescaled = [], [], []
-    for (entry, path), header in zip(pairs, headers, strict=True):
-        if isinstance(header, CaptureError):
-            errors.append(header)
-            continue
-        try:
-            view, scaled = _view(entry, path, header, finder, calibration)
-        except CaptureError as error:
-            errors.append(error)
-            continue
-        views.append(view)
-        if scaled:
-            rescaled.append(path.name)
-    problems = []
-    if rescaled:
-        camera = views[[view.path.name for view in views].index(rescaled[0])].camera
-        problems.append(
-            f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
-            f"(to {camera.width}x{camera.height} for {printable(rescaled[0])})"
+def _only(row: Format, formats: tuple[Format, ...]) -> tuple[Format, ...]:
+    if row not in formats:
+        raise OptionError(
+            "format-cameras",
+            f"--format {row.name} reads cameras, and photographs without them are wanted here",
+            remedy=f"say one of {', '.join(other.name for other in formats)}",
         )
-    return views, errors, problems
+    return (row,)
 
 
-def _view(entry: Entry, path: Path, header: Header, finder: PhotographFinder, calibration: Path) -> tuple[View, bool]:
-    """The view, and whether its camera was scaled to the photograph's size."""
-    claimed = entry.intrinsics.width, entry.intrinsics.height
-    fitting = [
-        (upright, size)
-        for upright, size in ((True, header.upright), (False, header.stored))
-        if all(c is None or c == s for c, s in zip(claimed, size, strict=True))
-    ]
-    scaled = not fitting
-    if scaled and None not in claimed:
-        fitting = [
-            (upright, size)
-            for upright, size in ((True, header.upright), (False, header.stored))
-            if is_same_picture(claimed[0] or 0, claimed[1] or 0, *size)
-        ]
-    if not fitting:
-        raise CaptureError(
-            "image-size",
-            f"is {_size(header.upright)}, but its camera is for {_size(claimed)}: "
-            "not the same picture at another scale",
-            path=path,
-            remedy=f"use the photographs that {calibration.name} was made from, undistorted and cropped alike",
-        )
-    upright, (width, height) = fitting[0]
-    camera = entry.camera(claimed[0] or width, claimed[1] or height, calibration)
-    if scaled:
-        camera = scaled_camera(camera, width, height)
-    mask = _own_mask(entry, finder, calibration)
-    return View(path.name, path, camera, entry.lens, mask, upright), scaled
+def _claim(path: Path, formats: tuple[Format, ...], wanted: Wanted) -> Claim | None:
+    if not path.exists():
+        raise CaptureError("capture-missing", "does not exist", path=path, remedy="check the path")
+    if path.is_file():
+        return claim_of_file(path, formats)
+    if len(formats) == 1 and formats[0].read_names is not None:  # asked for: taken at the word
+        return Claim(formats[0], path)
+    return detect(path, formats, wanted)
 
 
-def _size(size: tuple[int | None, int | None]) -> str:
-    return "x".join("?" if side is None else str(side) for side in size)
+def _refuse_unused(claim: Claim, wanted: Wanted) -> None:
+    """Options that would change nothing are an error: who gives one expects something of it."""
+    for option, value in (("grid", wanted.grid), ("frame", wanted.frame)):
+        if value is not None and option not in claim.format.uses:
+            raise OptionError(
+                f"{option}-unused",
+                f"--{option} means nothing to a capture of the format {claim.format.name} ({claim.format.title})",
+                remedy="leave it out, or name another --format",
+            )
 
 
-def is_same_picture(width: int, height: int, other_width: int, other_height: int) -> bool:
-    """Whether one size is the other scaled evenly and brought to whole pixels, by whatever rounding."""
-    low = max((other_width - 1) / width, (other_height - 1) / height)
-    high = min((other_width + 1) / width, (other_height + 1) / height)
-    return low < high
+def _checked(grid: tuple[int, int] | None) -> tuple[int, int] | None:
+    if grid is not None and (len(grid) != 2 or min(grid) < 1):
+        raise OptionError("grid-unknown", f"{grid} is no grid", remedy="say rows and columns, both at least 1")
+    return None if grid is None else (int(grid[0]), int(grid[1]))
 
 
-def scaled_camera(camera: Camera, width: int, height: int) -> Camera:
-    """The camera of the same picture at another size: pixel edges map to pixel edges."""
-    scale = np.diag([width / camera.width, height / camera.height, 1.0])
-    return replace(camera, K=scale @ camera.K, width=width, height=height)
+def _arrangement(source: _Source) -> Arrangement:
+    assert source.claim.format.read_names is not None
+    arrangement = source.claim.format.read_names(source.claim.found, source.wanted)
+    return replace(arrangement, problems=(*source.claim.problems, *arrangement.problems))
 
 
-def _own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path | None:
-    """The mask that the calibration names."""
-    if entry.mask is None:
-        return None
-    mask = finder.find_exactly(entry.mask)
-    if mask is None:
-        raise CaptureError(
-            "mask-missing",
-            f"{entry.label}: its mask {printable(entry.mask)} does not exist",
-            path=calibration,
-            remedy="put it there, or remove its mask_path",
-        )
-    return mask
+def _open(source: _Source, masks: StrPath | None, strict: bool) -> LightField | PhotoSet:
+    folder = None if masks is None else Path(masks)
+    row = source.claim.format
+    if row.read_cameras is not None:
+        read = row.read_cameras(source.claim.found, source.root)
+        read = replace(read, problems=(*source.claim.problems, *read.problems))
+        return pair(read, source.root, apart=source.apart, masks=folder, strict=strict)
+    arrangement = _arrangement(source)
+    if arrangement.calibration is None:
+        return gather(arrangement, source.root, masks=folder, strict=strict)
+    read = replace(arrangement.calibration, problems=arrangement.problems)
+    light_field = pair(read, source.root, apart=False, masks=folder, strict=strict)
+    assert arrangement.layout is not None
+    index = {file.name: i for i, file in enumerate(arrangement.files)}
+    layout = arrangement.layout.subset([index[view.path.name] for view in light_field.views])
+    focal = common_focal([float(camera.K[0, 0]) for camera in light_field.cameras])
+    return replace(light_field, layout=replace(layout, focal=focal))
 
 
-def _with_masks(views: Sequence[View], folder: Path, root: Path) -> tuple[list[View], list[str]]:
-    finder = MaskFinder(folder)
-    masked, missing = [], []
-    for view in views:
-        mask = finder.find(view.path, _folders(view.path, root))
-        if mask is None:
-            missing.append(view.path.name)
-        masked.append(replace(view, mask=mask) if mask is not None else view)
-    if views and len(missing) == len(views):
-        raise CaptureError(
-            "masks-missing",
-            f"holds no mask for any photograph (looked for {views[0].path.stem}.png and the like)",
-            path=folder,
-            remedy="name masks as their photographs",
-        )
-    problems = (
-        [f"{_count(missing, 'photograph has', 'photographs have')} no mask in {folder}: {_some(missing)}"]
-        if missing
-        else []
-    )
-    return masked, problems
+def _no_cameras(path: Path, problems: tuple[str, ...] = ()) -> CaptureError:
+    why = next((problem for problem in problems if "cannot be used" in problem), None)
+    message = "has no calibration (transforms.json, COLMAP model or another that docs/captures.md lists)"
+    others = sorted(p.name for p in path.glob("*.json"))
+    if others:
+        remedy = f"it holds {some(others)}: name one as the calibration"
+    elif path.is_dir() and (photographs_in(path) or photographs_in(path / IMAGES)):
+        remedy = f"run `eigenfield calibrate {path}` or `eigenfield encode {path}`, or name one with --calibration"
+    else:
+        remedy = "name one with --calibration"
+    return CaptureError("calibration-missing", why or message, path=path, remedy=remedy)
 
 
-def _folders(path: Path, root: Path) -> list[str]:
-    """Where below a folder of masks a photograph's mask may lie: its own relative folder, shortened from the front."""
-    try:
-        parts = path.parent.resolve().relative_to(root.resolve()).parts
-    except ValueError:
-        parts = ()
-    return ["/".join(parts[i:]) or "." for i in range(len(parts) + 1)]
-
-
-def _lost(lost: Sequence[str], calibration: Path) -> list[str]:
-    if not lost:
-        return []
-    count = _count(lost, "calibration entry has", "calibration entries have")
-    return [f"{count} no photograph ({calibration.name}): {_some(lost)}"]
-
-
-def _unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[str]:
-    """Photographs that lie beside those in use, but that no entry names."""
-    used = {path for _, path in pairs} | {view.mask for view in views}
-    folders = sorted({path.parent for _, path in pairs})
-    unused = [path.name for folder in folders for path in photographs_in(folder) if path not in used]
-    if not unused:
-        return []
-    return [f"{_count(unused, 'photograph has', 'photographs have')} no calibration entry: {_some(unused)}"]
-
-
-def _count(items: Sequence[str], one: str, many: str) -> str:
-    return f"{len(items)} {one if len(items) == 1 else many}"
-
-
-def _some(names: Sequence[str]) -> str:
-    shown = ", ".join(printable(name) for name in names[:NAMED])
-    return shown if len(names) <= NAMED else f"{shown} and {len(names) - NAMED} more"
-
-
-def _named(views: Sequence[View]) -> tuple[View, ...]:
-    """Views with unique names, in natural order: view_2 before view_10."""
-    times = Counter(view.path.name for view in views)
-    shared = [view.path for view in views if times[view.path.name] > 1]
-    common = Path(os.path.commonpath([path.parent for path in shared])) if shared else Path()
-    named = [
-        replace(
-            view,
-            name=printable(view.path.name if times[view.path.name] == 1 else view.path.relative_to(common).as_posix()),
-        )
-        for view in views
-    ]
-    return tuple(sorted(named, key=lambda view: (_natural(view.name), view.name)))
-
-
-def _natural(name: str) -> list[tuple[int, str]]:
-    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"([0-9]+)", name.casefold())]
+def _no_photographs(path: Path) -> CaptureError:
+    """The error for a folder in which nothing is found; it names folders inside that hold photographs."""
+    inner = [p.name for p in sorted(path.iterdir()) if p.is_dir() and photographs_in(p)] if path.is_dir() else []
+    remedy = f"name one of the folders inside: {some(inner)}" if inner else "name a folder of photographs"
+    return CaptureError("photographs-missing", "holds no photographs", path=path, remedy=remedy)

@@ -14,7 +14,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from eigenfield.camera import Camera
 from eigenfield.capture.lightfield import LightField
-from eigenfield.capture.opening import scaled_camera
+from eigenfield.capture.pairing import scaled_camera
 from eigenfield.mesh import Mesh
 from eigenfield.raster import rasterise_view
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
 from eigenfield.capture.lens import Lens
-from eigenfield.capture.lightfield import LightField, View
+from eigenfield.capture.lightfield import LightField, Photograph, View, decode_masked, size_on_disk
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,18 @@ class Layout:
         chosen = np.asarray(indices, np.int64)
         return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
 
+    @property
+    def shape(self) -> tuple[int, int]:
+        """How many different rows and columns there are; node numbers may have gaps."""
+        return len(np.unique(self.rows)), len(np.unique(self.columns))
+
+    @property
+    def missing(self) -> list[tuple[int, int]]:
+        """Nodes (row, column) where a row and a column in use cross and no photograph is."""
+        taken = set(zip(self.rows.tolist(), self.columns.tolist(), strict=True))
+        rows, columns = np.unique(self.rows).tolist(), np.unique(self.columns).tolist()
+        return [(r, c) for r in rows for c in columns if (r, c) not in taken]
+
 
 @dataclass(frozen=True, eq=False)
 class PhotoSet:
@@ -86,6 +98,18 @@ class PhotoSet:
     def names(self) -> tuple[str, ...]:
         return tuple(shot.name for shot in self.shots)
 
+    def photograph(self, index: int) -> Photograph:
+        """Decode one photograph now, its lens as it is; nothing is kept. May be called from any thread.
+
+        Raises CaptureError as `LightField.photograph` does.
+        """
+        shot = self.shots[index]
+        return Photograph.of(*decode_masked(shot.path, shot.upright, shot.width, shot.height, shot.mask))
+
+    def bytes(self, index: int) -> int:
+        """The size of the photograph's file on disk."""
+        return size_on_disk(self.shots[index].path)
+
     def subset(self, indices: Iterable[int]) -> PhotoSet:
         """The same set with some of its shots, in the order given."""
         chosen = list(indices)
@@ -104,4 +128,4 @@ class PhotoSet:
             View(shot.name, shot.path, camera, lens, shot.mask, shot.upright)
             for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
         )
-        return LightField(self.root, views, (*self.problems, *problems), self.format)
+        return LightField(self.root, views, (*self.problems, *problems), self.format, self.layout)

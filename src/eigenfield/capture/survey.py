@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.camera import Camera
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs import read_header
+from eigenfield.capture.photoset import PhotoSet
 from eigenfield.errors import CaptureError
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
@@ -90,26 +91,26 @@ def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:
     return focus if np.median(ahead) > 0 else None
 
 
-def file_kinds(light_field: LightField) -> list[tuple[str, int, bool, int]]:
-    """(format, bits a channel, alpha, number of views), the most frequent first."""
+def file_kinds(capture: LightField | PhotoSet) -> list[tuple[str, int, bool, int]]:
+    """(format, bits a channel, alpha, number of photographs), the most frequent first."""
     kinds: Counter[tuple[str, int, bool]] = Counter()
-    for view in light_field.views:
-        header = read_header(view.path)
+    for item in capture.views if isinstance(capture, LightField) else capture.shots:
+        header = read_header(item.path)
         kinds[header.format, header.depth, header.alpha] += 1
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
 
 
-def decode_all(light_field: LightField, progress: Progress | None = None) -> list[CaptureError]:
-    """Decode every photograph and mask once; what cannot be decoded, in the order of the views."""
+def decode_all(capture: LightField | PhotoSet, progress: Progress | None = None) -> list[CaptureError]:
+    """Decode every photograph and mask once; what cannot be decoded, in the order of the capture."""
 
     def attempt(index: int) -> CaptureError | None:
         try:
-            light_field.photograph(index)
+            capture.photograph(index)
         except CaptureError as error:
             return error
         return None
 
-    total = len(light_field)
+    total = len(capture)
     outcomes = track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress)
     return [outcome for outcome in outcomes if outcome is not None]
 

@@ -20,11 +20,21 @@ from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, print
 from eigenfield.capture.lens import Lens
 from eigenfield.errors import CaptureError
 
+NAME = "transforms.json"
 SIZE_LIMIT = 256 * 2**20  # bytes of JSON
 LENGTH_LIMIT = 1_000_000  # pixels along a side that a calibration may claim
 PERSPECTIVE = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "PERSPECTIVE")
 FISHEYE = ("OPENCV_FISHEYE",)
+OWN_LENS = "EIGENFIELD"  # a lens that no other reader of this format knows: they refuse the name, as they should
+OWN_COUNTS = {
+    "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
+}  # fmt: skip
 FLIP = np.diag([1.0, -1.0, -1.0])  # OpenGL axes to OpenCV axes
+
+
+def find_transforms(folder: Path) -> Path | None:
+    """The transforms.json of a folder, if it has one."""
+    return folder / NAME if (folder / NAME).is_file() else None
 
 
 def read_transforms(path: Path) -> Calibration:
@@ -220,6 +230,8 @@ def _intrinsics(
 
 def _lens(top: Mapping[str, Any], frame: Mapping[str, Any], label: str, path: Path) -> Lens | None:
     model = frame.get("camera_model", top.get("camera_model", "OPENCV"))
+    if model == OWN_LENS:
+        return _own_lens(frame.get("lens", top.get("lens")), label, path)
     fisheye = model in FISHEYE or bool(frame.get("is_fisheye", top.get("is_fisheye", False)))
     if not fisheye and model not in PERSPECTIVE:
         raise CaptureError(
@@ -244,3 +256,18 @@ def _lens(top: Mapping[str, Any], frame: Mapping[str, Any], label: str, path: Pa
         )
     lens = Lens("brown", (k1, k2, p1, p2, k3))
     return None if lens.does_nothing else lens
+
+
+def _own_lens(value: Any, label: str, path: Path) -> Lens:
+    """A lens as `transforms_write` puts it."""
+    model = value.get("model") if isinstance(value, dict) else None
+    numbers = value.get("coefficients") if isinstance(value, dict) else None
+    if model not in OWN_COUNTS or not isinstance(numbers, list) or not all(map(_is_number, numbers)):
+        raise CaptureError("lens", f"{label} has no lens that is known", path=path, remedy="mend or remove its entry")
+    coefficients = tuple(_float(number) for number in numbers)
+    if len(coefficients) not in OWN_COUNTS[model] or not all(map(math.isfinite, coefficients)):
+        raise CaptureError(
+            "lens", f"{label} has lens coefficients that are not finite or not as many as needed", path=path,
+            remedy="mend them",
+        )  # fmt: skip
+    return Lens(model, coefficients)

@@ -17,7 +17,9 @@ from eigenfield.errors import EigenfieldError
 
 VERBS = {
     "demo": "Make a capture, encode it, draw and measure it: the whole way in one command.",
+    "calibrate": "Find the cameras of photographs, from the scene or from pictures of a chart.",
     "inspect": "Say what a capture holds, and what is wrong with it.",
+    "proxy": "Make a proxy mesh from photographs, and their cameras.",
     "encode": "Turn a calibrated capture and a proxy mesh into one .glb.",
     "render": "Draw a viewpoint, a captured camera, or a fly-through.",
     "evaluate": "Measure a scene against its photographs.",

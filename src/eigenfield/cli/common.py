@@ -5,13 +5,15 @@ from __future__ import annotations
 import contextlib
 import json
 import logging
+import re
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from eigenfield.errors import OptionError
 from eigenfield.progress import Progress
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -35,16 +37,52 @@ def common_options(function: F) -> F:
 
 
 def capture_options(function: F) -> F:
-    """Add --calibration and --masks, which `open_capture` takes."""
+    """Add --calibration, --masks, --format, --grid and --frame, which `open_capture` and `open_any` take."""
     options = [
         click.option("--calibration", type=click.Path(path_type=Path), metavar="PATH",
-                     help="A transforms.json or COLMAP model that lies elsewhere than the photographs."),
+                     help="A calibration (transforms.json, COLMAP model, ...) apart from the photographs."),
         click.option("--masks", type=click.Path(path_type=Path), metavar="FOLDER",
                      help="Masks named as the photographs; white counts."),
+        click.option("--format", metavar="NAME",
+                     help="What the capture is, where it may be read in several ways: "
+                          "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
+                          "positions, hci, stanford, grid, numbered, video or folder."),
+        click.option("--grid", metavar="RxC", callback=_grid,
+                     help="Numbered photographs are R rows of C columns, row by row."),
+        click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
     ]  # fmt: skip
     for option in reversed(options):
         function = option(function)
     return function
+
+
+def reconstruction_options(function: F) -> F:
+    """Add the options of `reconstruct`."""
+    options = [
+        click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
+                     help="relief: two layers seen from the array's centre; poisson: a surface from all sides."),
+        click.option("--refine/--no-refine", default=None,
+                     help="Correct an array's cameras together with its depth.  [default: where it is dense]"),
+        click.option("--fill-background/--no-fill-background", "background", default=None,
+                     help="Close the view behind what was reconstructed.  [default: unless there are masks]"),
+        click.option("--primitive", "primitives", multiple=True, metavar="SHAPE",
+                     help="Put a shape in by hand: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
+        click.option("--fit-sphere", "fit_spheres", multiple=True, metavar="VIEW:X,Y,W,H",
+                     help="Fit a sphere to the outline in a region of a photograph, and put it in."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def _grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+    """ROWSxCOLUMNS as a pair; OptionError `grid-unknown`."""
+    if value is None:
+        return None
+    match = re.fullmatch(r"([1-9][0-9]{0,5})[xX×]([1-9][0-9]{0,5})", value)
+    if match is None:
+        raise OptionError("grid-unknown", f"--grid {value} is no grid", remedy="say ROWSxCOLUMNS, as 17x17")
+    return int(match[1]), int(match[2])
 
 
 def _set_threads(context: click.Context, parameter: click.Parameter, value: int | None) -> None:
@@ -93,6 +131,28 @@ def note(message: str, quiet: bool = False) -> None:
     """A line for a person, on standard error."""
     if not quiet:
         click.echo(message, err=True)
+
+
+def tell(messages: Iterable[str], quiet: bool) -> None:
+    """Notes, a line each."""
+    for message in messages:
+        note(message, quiet)
+
+
+def timings(seconds: Mapping[str, float]) -> list[str]:
+    """What each stage took, as lines."""
+    return [f"  {stage:8} {f'{took:6.1f} s' if took else 'taken up'}" for stage, took in seconds.items()]
+
+
+def refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
+    """Raise OptionError `proxy-given` for options that only matter where the proxy is made."""
+    asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
+    if asked:
+        raise OptionError(
+            "proxy-given",
+            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
+            remedy="leave out one of the two",
+        )
 
 
 def echo_json(value: Any) -> None:

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 
-from eigenfield.cli.common import capture_options, common_options, note, progress_bars
+from eigenfield.cli.common import (
+    capture_options,
+    common_options,
+    progress_bars,
+    reconstruction_options,
+    refuse_unused,
+    tell,
+    timings,
+)
 
 
 def _atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -27,6 +36,8 @@ def _atlas(context: click.Context, parameter: click.Parameter, value: str | None
 @click.command(
     epilog="""\b
 Examples:
+  eigenfield encode photos/ -o scene.glb
+  eigenfield encode photos/ --grid 5x4 --hold-out every:5 -o scene.glb
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
   eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
   eigenfield encode photos/ --proxy mesh.obj --uv-ssim 0.98 --hold-out odd -o scene.glb
@@ -35,10 +46,9 @@ Examples:
 @click.argument("capture", type=click.Path(path_type=Path))
 @click.option(
     "--proxy",
-    required=True,
     type=click.Path(path_type=Path),
     metavar="MESH",
-    help="Triangle mesh in the cameras' world: .ply, .obj or .glb.",
+    help="Triangle mesh in the cameras' world: .ply, .obj or .glb.  [default: made from the photographs]",
 )
 @click.option(
     "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb to write."
@@ -67,7 +77,7 @@ Examples:
     "--triangles",
     type=int,
     metavar="N",
-    help="Simplify the proxy to N triangles.  [default: 30000, only if it has more and no atlas of its own]",
+    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is]",
 )
 @click.option(
     "--align",
@@ -76,6 +86,15 @@ Examples:
     type=click.Choice(["dis", "tvl1"]),
     metavar="[dis|tvl1]",
     help="Align the maps to the reference camera by optical flow; tvl1 is finer and much slower.",
+)
+@click.option(
+    "--harmonise",
+    is_flag=False,
+    flag_value="gain",
+    type=click.Choice(["gain", "affine"]),
+    metavar="[gain|affine]",
+    help="Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
+    "Captured views are drawn with their own exposure again.",
 )
 @click.option("--reference", metavar="NAME", help="Reference camera.  [default: nearest the centre of the array]")
 @click.option(
@@ -108,22 +127,33 @@ Examples:
     "--work",
     type=click.Path(path_type=Path),
     metavar="DIR",
-    help="Folder for the scratch file of texture maps.  [default: the output's]",
+    help="Folder that keeps finished stages of the reconstruction; the same command goes on from there. "
+    "[default: OUTPUT.work]",
+)
+@reconstruction_options
+@click.option(
+    "--blind",
+    is_flag=True,
+    help="Estimate proxy and cameras without the held-out photographs too: each only registers its own camera.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace the output if it exists.")
 @common_options
 def command(
     capture: Path,
-    proxy: Path,
+    proxy: Path | None,
     output: Path,
     calibration: Path | None,
     masks: Path | None,
+    format: str | None,
+    grid: tuple[int, int] | None,
+    frame: str | None,
     textures: int,
     uv_ssim: float | None,
     density: float,
     atlas: int | tuple[int, int] | None,
     triangles: int | None,
     align: str | None,
+    harmonise: str | None,
     reference: str | None,
     hold_out: str | None,
     resampling: str,
@@ -133,26 +163,51 @@ def command(
     work: Path | None,
     overwrite: bool,
     quiet: bool,
+    blind: bool,
+    **settings: Any,
 ) -> None:
-    """Turn a calibrated CAPTURE and a proxy mesh into one .glb.
+    """Turn the photographs in CAPTURE into one .glb.
 
-    CAPTURE is a folder with a transforms.json or a COLMAP model, or the photographs of a --calibration.
+    Cameras and proxy mesh are estimated where they are not given: CAPTURE is a folder of photographs, with or without a
+    calibration (eigenfield inspect CAPTURE says what is found in it).
     """  # fmt: skip
-    from eigenfield.capture import open_capture
+    from eigenfield.capture import open_any, open_capture
     from eigenfield.files import refuse_existing
     from eigenfield.format import parts, save
+    from eigenfield.mesh import Mesh
     from eigenfield.pipeline import encode
+    from eigenfield.reconstruction import DEFAULT_TRIANGLES, reconstruct
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
-    light_field = open_capture(capture, calibration=calibration, masks=masks)
-    for problem in light_field.problems:
-        note(problem, quiet)
+    place = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
+        if proxy is not None:
+            refuse_unused(settings, blind)
+            light_field = open_capture(capture, **place)
+            mesh: Path | Mesh = proxy
+            scratch = work if work is not None else output.absolute().parent
+            tell(light_field.problems, quiet)
+        else:
+            scratch = work if work is not None else output.with_suffix(".work")
+            opened = open_any(capture, work=scratch / "frames", **place)
+            tell(opened.problems, quiet)
+            held = hold_out if blind else None
+            made = reconstruct(
+                opened,
+                triangles=triangles or DEFAULT_TRIANGLES,
+                work=scratch,
+                blind=held,
+                progress=progress,
+                **settings,
+            )
+            light_field, mesh, triangles = made.light_field, made.mesh, None
+            tell(light_field.problems[len(opened.problems) :], quiet)
+            tell(timings(made.seconds), quiet)
         scene = encode(
-            light_field, proxy, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
-            align=align, reference=reference, hold_out=hold_out, resampling=resampling, keep_maps=keep_maps,
-            work=work if work is not None else output.absolute().parent, progress=progress,
+            light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
+            align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
+            keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         save(scene, output, codec=codec, quality=quality, overwrite=overwrite, progress=progress)
     sizes = parts(output)

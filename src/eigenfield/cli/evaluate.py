@@ -77,6 +77,9 @@ def command(
     capture: Path,
     calibration: Path | None,
     masks: Path | None,
+    format: str | None,
+    grid: tuple[int, int] | None,
+    frame: str | None,
     as_json: bool,
     curve: bool,
     plots: Path | None,
@@ -93,8 +96,8 @@ def command(
 
     docs/measures.md defines every figure. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
-    from eigenfield.capture import open_capture
-    from eigenfield.evaluation import evaluate, read_circles, stored_scores
+    from eigenfield.capture import PhotoSet, open_any
+    from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras
     from eigenfield.files import refuse_existing
     from eigenfield.format import load, store_scores
 
@@ -105,7 +108,8 @@ def command(
     loaded = load(scene)
     if store:
         refuse_existing(scene, overwrite=True)  # says now, not after the work, that the folder cannot be written to
-    light_field = open_capture(capture, calibration=calibration, masks=masks)
+    opened = open_any(capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame)
+    light_field = with_scene_cameras(loaded, opened) if isinstance(opened, PhotoSet) else opened
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.names)
     with progress_bars(quiet) as progress:
         figures = evaluate(

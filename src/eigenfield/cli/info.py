@@ -12,6 +12,9 @@ import click
 from eigenfield.cli.common import common_options, echo_json
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from eigenfield.format.layout import Layout, PlaneLayout
 
 AXES = (
@@ -59,6 +62,7 @@ def _facts(layout: Layout, parts: dict[str, int]) -> dict[str, Any]:
             "encoded": cameras.encoded,
             "held_out": held_out,
             "reference": cameras.names[layout.reference],
+            "harmonised": _colour_facts(cameras.colours),
             "sizes": [{"size": list(size), "count": count} for size, count in sizes.most_common()],
         },
         "view_plane": {
@@ -71,6 +75,17 @@ def _facts(layout: Layout, parts: dict[str, int]) -> dict[str, Any]:
         "axes": AXES,
         "settings": layout.settings,
         "scores": layout.scores,
+    }
+
+
+def _colour_facts(colours: NDArray[np.float32] | None) -> dict[str, Any] | None:
+    """Smallest and largest gain and offset of R, G and B; None where the scene is not harmonised."""
+    if colours is None:
+        return None
+    low, high = colours.min(axis=0).tolist(), colours.max(axis=0).tolist()
+    return {
+        name: {channel: [low[i][c], high[i][c]] for c, channel in enumerate("RGB")}
+        for i, name in enumerate(("gain", "offset"))
     }
 
 
@@ -108,6 +123,14 @@ def _lines(facts: dict[str, Any]) -> list[str]:
     lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")
     if cameras["held_out"]:
         lines.append(f"held out      {_some(cameras['held_out'])}")
+    if cameras["harmonised"]:
+        lines.extend(
+            f"{title:14}"
+            + "; ".join(
+                f"{channel} {low:.3f} to {high:.3f}" for channel, (low, high) in cameras["harmonised"][key].items()
+            )
+            for title, key in (("harmonised by", "gain"), ("  plus", "offset"))
+        )
     lines.append(f"reference     {cameras['reference']}")
     plane = facts["view_plane"]
     shape = f"{plane['width']:g} x {plane['height']:g}" if plane["height"] else f"a line of {plane['width']:g}"

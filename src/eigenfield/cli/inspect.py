@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from collections import Counter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +13,7 @@ from eigenfield.cli.common import capture_options, common_options, echo_json, no
 from eigenfield.errors import OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.capture import LightField
+    from eigenfield.capture import Layout, LightField, PhotoSet
     from eigenfield.capture.survey import Array
     from eigenfield.errors import CaptureError
     from eigenfield.mesh import Mesh
@@ -26,6 +27,8 @@ SCHEMA = "eigenfield.inspect/1"
 Examples:
   eigenfield inspect capture/
   eigenfield inspect photos/ --calibration refined.json --json
+  eigenfield inspect frames/ --grid 17x17
+  eigenfield inspect videos/ --frame 2.5s
   eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
 )
 @click.argument("capture", type=click.Path(path_type=Path))
@@ -44,13 +47,16 @@ def command(
     capture: Path,
     calibration: Path | None,
     masks: Path | None,
+    format: str | None,
+    grid: tuple[int, int] | None,
+    frame: str | None,
     proxy: Path | None,
     overlay: Path | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
 ) -> None:
-    """Say what CAPTURE holds: views, sizes, grid, extent, problems.
+    """Say what CAPTURE holds: views or photographs without cameras, sizes, grid, extent, problems, what to run next.
 
     Every photograph is decoded once, so that damaged ones are listed all together. Finding problems is success:
     the exit code is 0 unless the capture cannot be opened at all.
@@ -64,20 +70,31 @@ def command(
 
         refuse_existing(overlay, overwrite)
 
-    from eigenfield.capture.opening import open_capture
+    from eigenfield.capture import LightField, open_any
     from eigenfield.capture.survey import decode_all
 
-    light_field = open_capture(capture, calibration=calibration, masks=masks, strict=False)
+    opened = open_any(
+        capture, calibration=calibration, masks=masks, strict=False, format=format, grid=grid, frame=frame
+    )  # fmt: skip
+    if proxy is not None and not isinstance(opened, LightField):
+        raise OptionError(
+            "proxy-needs-cameras",
+            "--proxy is drawn by the capture's cameras, and it has none",
+            remedy=f"run `eigenfield calibrate {capture}` first",
+        )
     mesh = None
     if proxy is not None:
         from eigenfield.proxy import read_mesh
 
         mesh = read_mesh(proxy)
     with progress_bars(quiet) as progress:
-        damaged = decode_all(light_field, progress)
-    report = describe(light_field, damaged)
-    if mesh is not None:
-        report["proxy"] = _proxy(mesh, light_field, damaged, overlay, overwrite)
+        damaged = decode_all(opened, progress)
+    report = describe(opened, damaged) if isinstance(opened, LightField) else describe_photographs(opened, damaged)
+    options = {"calibration": calibration, "masks": masks, "format": format, "frame": frame}
+    options["grid"] = None if grid is None else f"{grid[0]}x{grid[1]}"
+    report["next"] = _next(report, capture, options)
+    if mesh is not None and isinstance(opened, LightField):
+        report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         if overlay is not None:
             note(f"overlay written to {overlay}", quiet)
     if as_json:
@@ -115,7 +132,79 @@ def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, 
         "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
         "cameras": [_camera(light_field, i) for i in range(len(views))],
         "proxy": None,
+        "layout": None if light_field.layout is None else _layout(light_field.layout),
+        "photographs": [],
+        "next": [],
     }
+
+
+def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> dict[str, Any]:
+    """The report of photographs without cameras: the same keys, `views` 0, `photographs` in place of `cameras`."""
+    from eigenfield.capture.survey import file_kinds
+
+    sizes = Counter((shot.width, shot.height) for shot in photo_set.shots)
+    problems = list(photo_set.problems)
+    if len(sizes) > 1:
+        problems.append(f"the photographs have {len(sizes)} different sizes")
+    if len(photo_set) < 3:
+        problems.append(f"{len(photo_set)} photographs are too few, at least 3 are needed")
+    return {
+        "schema": SCHEMA,
+        "root": str(photo_set.root),
+        "format": photo_set.format,
+        "views": 0,
+        "bytes": sum(photo_set.bytes(i) for i in range(len(photo_set))),
+        "sizes": [{"width": w, "height": h, "views": n} for (w, h), n in sizes.most_common()],
+        "files": [{"format": f, "depth": d, "alpha": a, "views": n} for f, d, a, n in file_kinds(photo_set)],
+        "distorted": 0,
+        "masks": sum(shot.mask is not None for shot in photo_set.shots),
+        "array": None,
+        "problems": problems + [str(error) for error in damaged],
+        "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
+        "cameras": [],
+        "proxy": None,
+        "layout": None if photo_set.layout is None else _layout(photo_set.layout),
+        "photographs": [_shot(photo_set, i) for i in range(len(photo_set))],
+        "next": [],
+    }
+
+
+def _layout(layout: Layout) -> dict[str, Any]:
+    rows, columns = layout.shape
+    return {
+        "rows": rows,
+        "columns": columns,
+        "missing": [list(node) for node in layout.missing],
+        "measured": layout.measured,
+        "signs": layout.signs,
+        "rectified": layout.rectified,
+        "exact": layout.exact,
+        "focal": layout.focal,
+    }
+
+
+def _shot(photo_set: PhotoSet, index: int) -> dict[str, Any]:
+    shot, layout = photo_set.shots[index], photo_set.layout
+    return {
+        "name": shot.name,
+        "file": str(shot.path),
+        "width": shot.width,
+        "height": shot.height,
+        "focal": shot.focal,
+        "mask": None if shot.mask is None else str(shot.mask),
+        "node": None if layout is None else [int(layout.rows[index]), int(layout.columns[index])],
+        "position": None if layout is None else layout.positions[index].tolist(),
+    }
+
+
+def _next(report: dict[str, Any], capture: Path, options: dict[str, Any]) -> list[str]:
+    """Commands that make sense now, with the options that this one had, most useful first."""
+    if max(report["views"], len(report["photographs"])) < 3:
+        return []
+    said = [f"--{name} {shlex.quote(str(value))}" for name, value in options.items() if value is not None]
+    words = " ".join([shlex.quote(str(capture)), *said])
+    encode = f"eigenfield encode {words} -o scene.glb"
+    return [encode] if report["views"] else [encode, f"eigenfield calibrate {words}"]
 
 
 def _array(array: Array) -> dict[str, Any]:
@@ -184,20 +273,47 @@ def in_words(report: dict[str, Any]) -> list[str]:
     files = ", ".join(
         f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
     )
+    bare = len(report["photographs"])
+    what = f"{bare} photographs without cameras" if bare else f"{report['views']} views"
     lines = [
-        f"{report['root']}: {report['views']} views from {report['format']}",
+        f"{report['root']}: {what} from {report['format']}",
         f"  sizes      {sizes or 'none'}",
         f"  files      {files or 'none'}, {report['bytes']:,} bytes",
         f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading",
         f"  masks      {report['masks']} files",
     ]
+    if report["photographs"]:
+        lines[3] = f"  focal      {_focal_in_words(report['photographs'])}"
+    if report["layout"] is not None:
+        lines += _layout_in_words(report["layout"], bool(report["photographs"]))
     if report["array"] is not None:
         lines += _array_in_words(report["array"])
     if report["proxy"] is not None:
         lines += _proxy_in_words(report["proxy"])
-    if not report["problems"]:
-        return [*lines, "  problems   none"]
-    return [*lines, f"  problems   {len(report['problems'])}", *(f"    - {problem}" for problem in report["problems"])]
+    lines.append(f"  problems   {len(report['problems']) or 'none'}")
+    lines += [f"    - {problem}" for problem in report["problems"]]
+    return lines + [f"  next       {command}" for command in report["next"]]
+
+
+def _focal_in_words(photographs: list[dict[str, Any]]) -> str:
+    known = [shot["focal"] for shot in photographs if shot["focal"] is not None]
+    if not known:
+        return "not known: no EXIF says it, nor do the names"
+    low, high = min(known), max(known)
+    pixels = f"{low:.0f}" if high - low < 0.5 else f"{low:.0f} to {high:.0f}"
+    return f"{pixels} pixels, known of {len(known)} of {len(photographs)} photographs"
+
+
+def _layout_in_words(layout: dict[str, Any], bare: bool) -> list[str]:
+    positions = "positions measured" if layout["measured"] else "positions not measured"
+    if layout["exact"]:
+        positions = "positions exact"
+    lines = [f"  layout     grid of {layout['rows']} rows x {layout['columns']} columns by name, {positions}"]
+    if layout["missing"]:
+        lines.append(f"  missing    {len(layout['missing'])} nodes of the grid have no photograph")
+    if bare and not layout["signs"]:
+        lines.append("  direction  not said by the names: the photographs must tell which way rows and columns run")
+    return lines
 
 
 def _array_in_words(array: dict[str, Any]) -> list[str]:

@@ -122,7 +122,7 @@ def command(
     _check(output, at, camera, path, frames, background)
     from eigenfield.files import refuse_existing, write_bytes
     from eigenfield.format import load
-    from eigenfield.rendering import path_points, viewpoint
+    from eigenfield.rendering import path_points, viewpoint, viewpoint_colour
 
     count = DEFAULT_FRAMES if frames is None else frames
     points = None if path is None else path_points(path, count)
@@ -132,7 +132,9 @@ def command(
     loaded = load(scene)
     shots = _Shots(loaded, resolution, background, weights, filter, textures, samples)
     if points is None:
-        write_bytes(output, shots.png(*viewpoint(loaded, at=at, camera=camera, weights=weights)), overwrite=overwrite)
+        chosen = viewpoint(loaded, at=at, camera=camera, weights=weights)
+        colour = viewpoint_colour(loaded, at=at, camera=camera)
+        write_bytes(output, shots.png(*chosen, colour), overwrite=overwrite)
         note(f"wrote {output}", quiet)
         return
     with progress_bars(quiet) as progress:
@@ -168,8 +170,8 @@ class _Shots:
         for x, y in track(points, "drawing", len(points), progress):
             yield viewpoint(self.scene, at=(float(x), float(y)), weights=self.weights)
 
-    def picture(self, camera: Camera, mix: NDArray[np.float64]) -> Picture:
-        """One picture; black behind what is to be transparent."""
+    def picture(self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None) -> Picture:
+        """One picture; black behind what is to be transparent. colour: of `Renderer.draw`."""
         from eigenfield.rendering import at_resolution, renderer_of
 
         view = camera if self.resolution is None else at_resolution(camera, self.resolution)
@@ -178,8 +180,9 @@ class _Shots:
         if renderer.channels != len(behind):
             behind = (sum(behind) / len(behind),)  # one channel: a grey; other attributes: the same number everywhere
         return renderer.draw(
-            view, mix, filter=self.filter, background=behind, textures=self.textures, samples=self.samples
-        )
+            view, mix, filter=self.filter, background=behind, textures=self.textures, samples=self.samples,
+            colour=colour,
+        )  # fmt: skip
 
     def rgb(self, camera: Camera, mix: NDArray[np.float64]) -> NDArray[np.uint8]:
         """(H, W, 3) uint8, greys repeated."""
@@ -189,11 +192,11 @@ class _Shots:
         _refuse_attributes(image.shape[2])
         return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
 
-    def png(self, camera: Camera, mix: NDArray[np.float64]) -> bytes:
+    def png(self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None) -> bytes:
         """The picture as a .png, with alpha where it is to be transparent."""
         import numpy as np
 
-        picture = self.picture(camera, mix)
+        picture = self.picture(camera, mix, colour)
         _refuse_attributes(picture.image.shape[2])
         if self.background is not None:
             return _png(picture.to_uint8())

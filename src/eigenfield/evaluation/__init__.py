@@ -2,6 +2,7 @@
 
 from eigenfield.evaluation.exclusion import Circle, read_circles
 from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
+from eigenfield.evaluation.session import with_scene_cameras
 from eigenfield.evaluation.uv import reconstructions
 from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, ssim
 
@@ -16,4 +17,5 @@ __all__ = [
     "reconstructions",
     "ssim",
     "stored_scores",
+    "with_scene_cameras",
 ]

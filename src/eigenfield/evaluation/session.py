@@ -5,22 +5,24 @@ from __future__ import annotations
 import logging
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.basis import METHODS, align_map
-from eigenfield.capture import LightField, Photograph
+from eigenfield.capture import Lens, LightField, Photograph, PhotoSet
 from eigenfield.errors import CaptureError, OptionError
 from eigenfield.evaluation.exclusion import Circle
 from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapFigures, measure_map
-from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering import Renderer, camera_colour, camera_weights
 from eigenfield.scene import Scene
-from eigenfield.texturing import FILTERS, Atlas, make_atlas, texture_map
+from eigenfield.texturing import FILTERS, Atlas, harmonised, make_atlas, texture_map
 
 log = logging.getLogger("eigenfield.evaluation")
 
+LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 PNG_MAPS = ("all", "sample", "none")
 WHOLE = 0.999  # of a pixel's samples
 SAMPLE = 16  # maps that `sample` packs
@@ -76,9 +78,13 @@ class Session:
 
     def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
         """The picture drawn from camera `index`, (H, W, 3), and (H, W) where the proxy puts surface: on all samples of
-        a pixel, since one that it covers in part has the background mixed in."""
+        a pixel, since one that it covers in part has the background mixed in. A harmonised scene gives an encoded
+        camera its own exposure; a held-out one has none that may be known."""
         row = camera_weights(self.scene, index, self.weights)
-        picture = self.renderer.draw(self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1])
+        colour = camera_colour(self.scene, index)
+        picture = self.renderer.draw(
+            self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], colour=colour
+        )
         return picture.image, picture.coverage > WHOLE
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -87,6 +93,9 @@ class Session:
         values, seen = texture_map(
             self.atlas, self.scene.cameras[index], photograph.pixels, photograph.mask, self.resampling
         )
+        colour = camera_colour(self.scene, index)
+        if colour is not None:
+            values = harmonised(values, seen, colour)
         if self.align is None or self.reference is None or index == self.scene.reference:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference, self.align)
@@ -160,18 +169,57 @@ def start_session(
     return replace(session, reference=reference)
 
 
+def with_scene_cameras(scene: Scene, photographs: PhotoSet) -> LightField:
+    """Photographs without a calibration, with the cameras and lenses that the scene keeps for their names.
+
+    Raises CaptureError `no-photographs` where no name fits.
+    """
+    index = {name: i for i, name in enumerate(scene.names)}
+    chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
+    if not len(chosen):
+        raise _no_photographs(scene, photographs.root, photographs.names)
+    lenses = _recorded_lenses(scene)
+    return chosen.calibrated(
+        [scene.cameras[index[name]] for name in chosen.names], [lenses[index[name]] for name in chosen.names]
+    )
+
+
+def _recorded_lenses(scene: Scene) -> list[Lens | None]:
+    recorded = scene.settings.get("lenses")
+    if recorded is None:
+        return [None] * len(scene.names)
+    try:
+        lenses = [
+            None if lens is None else Lens(lens[0], tuple(float(value) for value in lens[1])) for lens in recorded
+        ]
+        known = all(lens is None or lens.model in LENS_MODELS for lens in lenses)
+    except (TypeError, ValueError, IndexError, KeyError) as error:  # a file may hold anything here
+        raise OptionError(
+            "settings-unknown", "the scene's record of its lenses cannot be read", remedy="name the --calibration"
+        ) from error
+    if len(lenses) != len(scene.names) or not known:
+        raise OptionError(
+            "settings-unknown", "the scene records lenses that do not fit its cameras", remedy="name the --calibration"
+        )
+    return lenses
+
+
+def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureError:
+    return CaptureError(
+        "no-photographs",
+        f"no photograph has the name of a camera of the scene (here {names[0] if names else 'none'}, there "
+        f"{scene.names[0]})",
+        path=root,
+        remedy="evaluate with the capture that was encoded",
+    )
+
+
 def _match(scene: Scene, capture: LightField) -> dict[int, int]:
     """Scene camera to view of the capture, by name."""
     views = {view.name: index for index, view in enumerate(capture.views)}
     photographs = {index: views[name] for index, name in enumerate(scene.names) if name in views}
     if not photographs:
-        theirs = capture.views[0].name if capture.views else "none"
-        raise CaptureError(
-            "no-photographs",
-            f"no photograph has the name of a camera of the scene (here {theirs}, there {scene.names[0]})",
-            path=capture.root,
-            remedy="evaluate with the capture that was encoded",
-        )
+        raise _no_photographs(scene, capture.root, capture.names)
     for index, view in photographs.items():
         K, other = scene.cameras[index].K, capture.views[view].camera.K
         if np.abs(K - other).max() > SAME_CAMERA:

@@ -68,9 +68,12 @@ class PlaneLayout:
 
 @dataclass(frozen=True, eq=False)
 class CameraList:
+    """colours: (Nc, 2, 3) float32 gains and offsets, None where the file has none."""
+
     names: tuple[str, ...]
     cameras: tuple[Camera, ...]
     held_out: NDArray[np.bool_]
+    colours: NDArray[np.float32] | None
 
     @property
     def encoded(self) -> int:
@@ -101,7 +104,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     if extension is None:
         return None
     version = extension["version"].text()
-    if version != limits.VERSION:
+    if version not in (limits.FIRST, limits.VERSION):
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )
@@ -127,6 +130,8 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         cameras = read_cameras(document, extension["cameras"])
     with findings.part():
         planes = read_planes(document, extension["planes"], cameras, findings)
+    with findings.part():
+        check_colours(extension["cameras"], cameras, planes)
     with findings.part():
         view_plane = read_view_plane(extension["viewPlane"])
     with findings.part():
@@ -241,7 +246,19 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
         Camera(k, np.ascontiguousarray(m[:, :3]), m[:, 3].copy(), int(w), int(h))
         for k, m, (w, h) in zip(K, matrices, sizes, strict=True)
     )
-    return CameraList(tuple(names), cameras, held_out)
+    colours = None
+    if entry.has("colour"):
+        colours = _table(document, entry["colour"], FLOAT, count, 6).reshape(count, 2, 3)
+        gain, offset = colours[:, 0], colours[:, 1]
+        good = (gain >= 1 / limits.MAX_GAIN) & (gain <= limits.MAX_GAIN) & (np.abs(offset) <= limits.MAX_OFFSET)
+        _refuse(entry, names, "colour", ~good.all(axis=1), "has a gain or an offset outside their range")
+    return CameraList(tuple(names), cameras, held_out, colours)
+
+
+def check_colours(entry: Value, cameras: CameraList | None, planes: tuple[PlaneLayout, ...] | None) -> None:
+    """Colours are those of R, G and B. FormatError: `camera-colour`."""
+    if cameras is not None and cameras.colours is not None and planes and planes[0].mean.channels != 3:
+        entry["colour"].fail("camera-colour", "colours of cameras, but the first plane has not three channels")
 
 
 def _table(document: Document, reference: Value, component: int, rows: int, columns: int) -> NDArray[Any]:
@@ -251,12 +268,16 @@ def _table(document: Document, reference: Value, component: int, rows: int, colu
     return array.reshape(rows, columns)
 
 
+def _refuse(entry: Value, names: list[str], key: str, bad: NDArray[np.bool_], what: str) -> None:
+    if bad.any():
+        entry[key].fail(f"camera-{key}", f"camera {quoted(names[int(np.flatnonzero(bad)[0])])} {what}")
+
+
 def _check_calibration(
     entry: Value, names: list[str], intrinsics: NDArray[Any], poses: NDArray[Any], sizes: NDArray[np.int64]
 ) -> None:
     def refuse(key: str, bad: NDArray[np.bool_], what: str) -> None:
-        if bad.any():
-            entry[key].fail(f"camera-{key}", f"camera {quoted(names[int(np.flatnonzero(bad)[0])])} {what}")
+        _refuse(entry, names, key, bad, what)
 
     inside = np.abs(intrinsics) <= _LARGEST
     refuse(

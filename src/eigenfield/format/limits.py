@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.0"  # a reader takes any 1.x
+VERSION = "1.1"  # a reader takes any 1.x
+FIRST = "1.0"  # what a file says that needs nothing of later versions
 FEATURES: frozenset[str] = frozenset()  # what an entry of "needs" may be
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
@@ -28,5 +29,8 @@ MAX_NAME = 1_024  # characters of a camera's name
 MAX_VERTICES = 2**26
 MAX_TRIANGLES = 2**27
 MAX_WEIGHTS = 2**28
+
+MAX_GAIN = 1_000.0  # of a camera's colours, and at least its reciprocal
+MAX_OFFSET = 1_000.0
 
 ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

@@ -45,18 +45,20 @@ def photographic(mean: NDArray[np.float32]) -> bool:
     return bool(mean.shape[2] == 3 and mean.min() >= -OVERSHOOT and mean.max() <= 1 + OVERSHOOT)
 
 
-def mean_codes(mean: NDArray[np.float32]) -> tuple[NDArray[np.uint8], Affine | None]:
+def mean_codes(mean: NDArray[np.float32], keep: bool = False) -> tuple[NDArray[np.uint8], Affine | None]:
     """(H, W, C) mean to codes, and the scale and zero (C,) of the way back; None for code / 255.
 
     That is where it lies in 0..1, or is photographic: what overshoots is cut, nothing is darker than black. Elsewhere
-    the codes 0..255 span each channel's range.
+    the codes 0..255 span each channel's range. keep: cut nothing even if photographic; one range for all channels.
     """
     if not np.isfinite(mean).all():
         raise ValueError("a mean that is not finite")
-    if unit_range(mean) or photographic(mean):
+    if unit_range(mean) or (photographic(mean) and not keep):
         return np.rint(mean.clip(0, 1) * np.float32(255)).astype(np.uint8), None
     flat = mean.reshape(-1, mean.shape[2]).astype(np.float64)
     low, high = flat.min(axis=0), flat.max(axis=0)
+    if keep:
+        low, high = np.full_like(low, min(low.min(), 0)), np.full_like(high, max(high.max(), 1))
     scale = np.where(high > low, (high - low) / 255, np.maximum(np.abs(low), 1) * CONSTANT)
     affine = Affine(scale, -low / scale)
     return np.rint(mean / affine.scale + affine.zero).clip(0, 255).astype(np.uint8), affine

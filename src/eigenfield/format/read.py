@@ -66,6 +66,7 @@ def load(path: str | os.PathLike[str]) -> Scene:
             settings=layout.settings,
             scores=layout.scores,
             generator=layout.generator,
+            colours=layout.cameras.colours,
         )
 
 

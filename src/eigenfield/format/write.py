@@ -144,11 +144,12 @@ def _code_pictures(scene: Scene, codec: str, quality: int, progress: Progress | 
     """Every picture of the scene, coded, the pictures shared among the threads."""
     fine = round(100 - MEAN_SHARE * (100 - quality))
     jobs: list[Callable[[], bytes]] = []
-    means = [quantise.mean_codes(plane.mean) for plane in scene.planes]
+    means = [quantise.mean_codes(plane.mean, _harmonised(scene, plane)) for plane in scene.planes]
     jobs.extend(partial(pictures.encode, codes, codec, fine) for codes, _ in means)
     steps = [
-        [quantise.basis_scale(basis, quantise.photographic(plane.mean)) for basis in plane.bases]
+        [quantise.basis_scale(basis, photographic) for basis in plane.bases]
         for plane in scene.planes
+        for photographic in [_harmonised(scene, plane) or quantise.photographic(plane.mean)]
     ]
     for plane, scales in zip(scene.planes, steps, strict=True):
         for basis, (scale, zero) in zip(plane.bases, scales, strict=True):
@@ -167,18 +168,21 @@ def _code_pictures(scene: Scene, codec: str, quality: int, progress: Progress | 
         )
         for i, plane in enumerate(scene.planes)
     ]
-    return _Coded(None if _mean_is_image(scene, codec) else _preview(scene.planes[0].mean), planes)
+    first = scene.planes[0].mean
+    if codec == "png" and first.shape[2] in (1, 3) and means[0][1] is None:
+        return _Coded(None, planes)  # the mean itself serves
+    return _Coded(_preview(first.clip(0, 1) if scene.colours is not None else first), planes)
+
+
+def _harmonised(scene: Scene, plane: Plane) -> bool:
+    """Whether a plane holds colours brought together by gains, which may lie beyond 0..1 and yet are photographs'."""
+    return scene.colours is not None and plane is scene.planes[0]
 
 
 def _code_texture(
     basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32], codec: str, quality: int
 ) -> bytes:
     return pictures.encode(quantise.texture_codes(basis, index, scale, zero), codec, quality)
-
-
-def _mean_is_image(scene: Scene, codec: str) -> bool:
-    mean = scene.planes[0].mean
-    return codec == "png" and mean.shape[2] in (1, 3) and (quantise.photographic(mean) or quantise.unit_range(mean))
 
 
 def _preview(mean: NDArray[np.float32]) -> bytes:
@@ -200,7 +204,7 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded, mime: str) -> dict[str, 
         for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
     ]
     extension: dict[str, Any] = {
-        "version": limits.VERSION,
+        "version": limits.FIRST if scene.colours is None else limits.VERSION,
         "needs": [],
         "planes": planes,
         "cameras": _cameras(scene, buffer),
@@ -287,13 +291,16 @@ def _cameras(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
     intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
     poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
     sizes = np.array([[c.width, c.height] for c in cameras])
-    return {
+    made = {
         "names": list(scene.names),
         "heldOut": np.flatnonzero(scene.held_out).tolist(),
         "intrinsics": buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR"),
         "poses": buffer.accessor(poses.ravel(), FLOAT, "SCALAR"),
         "sizes": buffer.accessor(sizes.ravel(), UINT32, "SCALAR"),
     }
+    if scene.colours is not None:
+        made["colour"] = buffer.accessor(scene.colours.ravel(), FLOAT, "SCALAR")
+    return made
 
 
 def _view_plane(scene: Scene, buffer: _Buffer) -> dict[str, Any]:

@@ -95,6 +95,16 @@ def _stretch(
     return float(l2), float((ratio * surface).sum() / surface.sum())
 
 
+def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
+    """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in it."""
+    p, q = vertices[faces], uv[faces]
+    surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
+    signed = _signed_area(q)
+    if (signed == 0).any() or surface.sum() == 0:
+        return float("inf")
+    return _stretch(p, q, surface, signed)[0]
+
+
 def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     """(m,) which chart each triangle is in: triangles that share a vertex are in one."""
     n, f = len(mesh.vertices), mesh.faces

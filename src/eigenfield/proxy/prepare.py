@@ -35,7 +35,7 @@ def prepare_proxy(
     mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
     check_seen(mesh, cameras, path)
     try:
-        return unwrapped(mesh, triangles=triangles, progress=progress)
+        return unwrapped(mesh, triangles=triangles, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
 

@@ -1,8 +1,7 @@
-"""A mesh with an atlas: its own where it has one, else charts by xatlas.
+"""A mesh with an atlas: its own where it has one, else a new one.
 
-xatlas cuts charts by the planarity and compactness of groups of triangles, lays them out by least-squares conformal
-maps (Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2002), flat ones by
-projection, and packs them at even density.
+xatlas cuts charts by the planarity and compactness of groups of triangles. They are laid out by least-squares conformal
+maps (`lscm`), sized by how densely the photographs see them (`lscm_charts`), and packed by xatlas again.
 """
 
 from __future__ import annotations
@@ -12,15 +11,20 @@ import logging
 import os
 import subprocess
 import sys
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.camera import Camera
 from eigenfield.errors import OptionError, ProxyError
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
-from eigenfield.proxy.atlas import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics
+from eigenfield.proxy.atlas import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.lscm import surface_areas
+from eigenfield.proxy.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.read import is_sliver
 
 log = logging.getLogger("eigenfield.proxy")
@@ -31,9 +35,16 @@ TICK = 0.2  # seconds between two calls of `progress` while xatlas works
 LOST_TOLERANCE = 0.01  # of the surface may be in no chart
 
 
-def unwrapped(mesh: Mesh, *, triangles: int | None = None, progress: Progress | None = None) -> Mesh:
+def unwrapped(
+    mesh: Mesh,
+    *,
+    triangles: int | None = None,
+    cameras: Sequence[Camera] | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
     """The mesh with a valid atlas (see `atlas_fault`), one UV a vertex.
 
+    cameras: give each new chart an area in proportion to how densely these see it (`chart_scales`); None: all alike.
     triangles: simplify to this many at most; None keeps a mesh that has an atlas as it is, and simplifies others to
     DEFAULT_TRIANGLES. A simplified mesh gets new charts. Raises OptionError `triangles`; ProxyError `proxy-unwrap`.
     """
@@ -54,7 +65,7 @@ def unwrapped(mesh: Mesh, *, triangles: int | None = None, progress: Progress | 
     if len(plain.faces) > limit:
         plain = simplified(plain, limit)
         log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(plain.faces))
-    result = _charts(plain, progress)
+    result = _new_atlas(plain, cameras, progress)
     statistics = atlas_statistics(result)
     log.info("atlas: %s", statistics)
     if statistics.overlap > OVERLAP_TOLERANCE:
@@ -102,19 +113,42 @@ def _frame(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
     return (low + high) / 2, float(edges.mean()) or 1.0
 
 
-def _charts(mesh: Mesh, progress: Progress | None) -> Mesh:
+def _new_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
+    if progress is not None:
+        progress("atlas", 0, 3)
     centre, scale = _frame(mesh)
-    vertices = ((mesh.vertices - centre) / scale).astype(np.float32)
-    message = io.BytesIO()
-    np.save(message, vertices)
-    np.save(message, mesh.faces.astype(np.uint32))
-    answer = io.BytesIO(_run_xatlas(message.getvalue(), progress))
-    origin, corners, texels, laid_out, size = (np.load(answer, allow_pickle=False) for _ in range(5))
+    cut = _taken_up(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, progress, 0))
+    if progress is not None:
+        progress("atlas", 1, 3)
+    laid = conformal_charts(cut)
+    assert laid.uv is not None
+    label = chart_labels(laid)
+    uv = laid.uv.astype(np.float64) / scale
+    if cameras:
+        uv *= chart_scales(laid, cameras)[_chart_of_vertex(laid, label)][:, None]
+    if progress is not None:
+        progress("atlas", 2, 3)
+    packed = _taken_up(laid, _run_xatlas(uv, laid.faces, label, progress, 2))
+    if progress is not None:
+        progress("atlas", 3, 3)
+    return packed
+
+
+def _chart_of_vertex(mesh: Mesh, label: NDArray[np.int32]) -> NDArray[np.int32]:
+    result = np.zeros(len(mesh.vertices), np.int32)
+    result[mesh.faces.reshape(-1)] = np.repeat(label, 3)
+    return result
+
+
+def _taken_up(mesh: Mesh, answer: bytes) -> Mesh:
+    """The mesh as xatlas gives it back: vertices doubled along seams, UVs in 0..1 at one scale along both axes."""
+    stream = io.BytesIO(answer)
+    origin, corners, texels, laid_out, size = (np.load(stream, allow_pickle=False) for _ in range(5))
     uv = (texels * (size / size.max())).astype(np.float32)  # xatlas divides each axis by its own size
-    faces = corners.astype(np.int32)
+    faces = corners.reshape(-1, 3).astype(np.int32)
     held = laid_out[faces].all(axis=1)
     if not held.all():
-        area = _areas(mesh.vertices[origin], faces)
+        area = surface_areas(mesh.vertices[origin].astype(np.float64), faces)
         if not held.any() or area[~held].sum() > LOST_TOLERANCE * area.sum():
             raise ProxyError(
                 "proxy-unwrap",
@@ -131,30 +165,36 @@ def _charts(mesh: Mesh, progress: Progress | None) -> Mesh:
     )
 
 
-def _areas(vertices: NDArray[np.float32], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    p = vertices[faces].astype(np.float64)
-    return np.asarray(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2)
-
-
-def _run_xatlas(message: bytes, progress: Progress | None) -> bytes:
-    """What `xatlas_process.py` answers; it is ended when the waiting is (Ctrl-C, or an exception from `progress`)."""
+def _run_xatlas(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    chart: NDArray[np.int32] | None,
+    progress: Progress | None,
+    done: int,
+) -> bytes:
+    """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting is
+    (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
     command = [sys.executable, "-P", str(Path(__file__).with_name("xatlas_process.py"))]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    if progress is not None:
-        progress("atlas", 0, 1)
-    process = subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-    )
-    pending: bytes | None = message
+    with tempfile.TemporaryFile() as message:  # a pipe would stay half sent when `communicate` runs into its timeout
+        for array in (
+            points.astype(np.float32),
+            faces.astype(np.uint32),
+            np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32),
+        ):
+            np.save(message, array, allow_pickle=False)
+        message.seek(0)
+        process = subprocess.Popen(
+            command, stdin=message, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
+        )
     try:
         while True:
             try:
-                answer, complaint = process.communicate(pending, timeout=TICK)
+                answer, complaint = process.communicate(timeout=TICK)
                 break
             except subprocess.TimeoutExpired:
-                pending = None  # already on its way
                 if progress is not None:
-                    progress("atlas", 0, 1)
+                    progress("atlas", done, 3)
     except BaseException:
         process.kill()
         process.communicate()
@@ -166,6 +206,4 @@ def _run_xatlas(message: bytes, progress: Progress | None) -> bytes:
             f"xatlas ended with {process.returncode}{': ' + last[0] if last else ''}",
             remedy="clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
         )
-    if progress is not None:
-        progress("atlas", 1, 1)
     return answer

@@ -15,6 +15,7 @@ import xatlas
 
 RESOLUTION = 1024  # the packing's goal; charts in many small pieces end up on a somewhat larger one
 PADDING = 4  # texels between charts at that size
+MOST_TRIED = 600  # charts: up to here every place in the atlas is tried, above random ones
 MAX_COST = 8.0  # of growing a chart; xatlas' 2 cuts a noisy mesh into more pieces at no gain in stretch
 
 
@@ -22,14 +23,19 @@ def main() -> None:
     answer = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # whatever xatlas prints must not get into the answer
     message = io.BytesIO(sys.stdin.buffer.read())
-    vertices, faces = (np.load(message, allow_pickle=False) for _ in range(2))
-    charts = xatlas.ChartOptions()
-    charts.max_cost = MAX_COST
-    packing = xatlas.PackOptions()
-    packing.resolution, packing.padding, packing.bilinear = RESOLUTION, PADDING, True
+    points, faces, chart = (np.load(message, allow_pickle=False) for _ in range(3))
+    options = xatlas.PackOptions()
+    options.resolution, options.padding, options.bilinear = RESOLUTION, PADDING, True
     atlas = xatlas.Atlas()
-    atlas.add_mesh(vertices, faces)
-    atlas.generate(charts, packing)
+    if points.shape[1] == 3:  # a surface: cut it into charts
+        charts = xatlas.ChartOptions()
+        charts.max_cost = MAX_COST
+        atlas.add_mesh(points, faces)
+        atlas.generate(charts, options)
+    else:  # charts that are laid out: only pack them, at the sizes they have
+        options.bruteForce = len(np.unique(chart)) <= MOST_TRIED
+        atlas.add_uv_mesh(points, faces, chart[:, None])
+        atlas.generate(pack_options=options)
     origin, corners, uv = atlas.get_mesh(0)
     sheet, _ = atlas.get_mesh_vertex_assignment(0)  # -1, as uint32, where a vertex is in no chart
     laid_out = np.asarray(sheet).astype(np.uint32) == 0

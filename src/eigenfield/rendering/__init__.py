@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from eigenfield.rendering.colours import camera_colour
 from eigenfield.rendering.drawing import FILTERS
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.paths import PATHS, path_points
@@ -14,6 +15,7 @@ from eigenfield.rendering.renderer import (
     render,
     renderer_of,
     viewpoint,
+    viewpoint_colour,
 )
 from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights
@@ -25,6 +27,7 @@ __all__ = [
     "Picture",
     "Renderer",
     "at_resolution",
+    "camera_colour",
     "camera_index",
     "camera_weights",
     "delaunay_triangles",
@@ -35,5 +38,6 @@ __all__ = [
     "renderer_of",
     "view_weights",
     "viewpoint",
+    "viewpoint_colour",
     "write_video",
 ]

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError, OptionError
 from eigenfield.mesh import Mesh
+from eigenfield.rendering.colours import camera_colour, undo_colour
 from eigenfield.rendering.drawing import (
     Frame,
     Surface,
@@ -69,14 +70,19 @@ class Renderer:
         background: Sequence[float] = BLACK,
         textures: int | None = None,
         samples: int | None = None,
+        colour: NDArray[np.float32] | None = None,
     ) -> Picture:
         """The view of `camera` with view weights (Ne,) over the encoded cameras.
 
         filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
         textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel, None to choose k from
-        the texels a pixel covers. Raises OptionError (`filter`, `samples`, `textures`, `background`).
+        the texels a pixel covers. colour: (2, 3) gain and offset of R, G, B that harmonised a captured camera
+        (`camera_colour`): its own exposure is given back to the surface; None leaves it as the scene keeps it.
+        Raises OptionError (`filter`, `samples`, `textures`, `background`).
         """
         image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
+        if colour is not None:
+            image = undo_colour(image, coverage, background_of(background, self.channels), colour)
         return Picture(image, coverage)
 
     def draw_uint8(
@@ -88,8 +94,12 @@ class Renderer:
         background: Sequence[float] = BLACK,
         textures: int | None = None,
         samples: int | None = None,
+        colour: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """(H, W, C) uint8: `draw(...).to_uint8()` without the way through floats."""
+        """(H, W, C) uint8: `draw(...).to_uint8()`, without a `colour` also without the way through floats."""
+        if colour is not None:
+            options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
+            return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
         image: NDArray[np.uint8] = self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
         return image
 
@@ -214,7 +224,8 @@ def render(
     samples: int | None = None,
 ) -> Picture:
     """Draw the view at view-plane coordinates `at` (X right, Y up, ±1 at the array's edges), or that of the capture
-    camera named `camera`; the reference camera's if neither is given.
+    camera named `camera`; the reference camera's if neither is given. In a harmonised scene a captured camera's picture
+    has that camera's own exposure, a viewpoint's the common one.
 
     resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. The rest as
     `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is not there
@@ -223,7 +234,10 @@ def render(
     view, mix = viewpoint(scene, at=at, camera=camera, weights=weights)
     if resolution is not None:
         view = at_resolution(view, resolution)
-    return renderer_of(scene).draw(view, mix, filter=filter, background=background, textures=textures, samples=samples)
+    colour = viewpoint_colour(scene, at=at, camera=camera)
+    return renderer_of(scene).draw(
+        view, mix, filter=filter, background=background, textures=textures, samples=samples, colour=colour
+    )
 
 
 def viewpoint(
@@ -236,6 +250,15 @@ def viewpoint(
         return novel_camera(scene, at), view_weights(scene, at, weights)
     index = scene.reference if camera is None else camera_index(scene, camera)
     return scene.cameras[index], camera_weights(scene, index, weights)
+
+
+def viewpoint_colour(
+    scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None
+) -> NDArray[np.float32] | None:
+    """The `colour` of `Renderer.draw` for what `viewpoint` names: a captured camera's own, None for a place."""
+    if at is not None:
+        return None
+    return camera_colour(scene, scene.reference if camera is None else camera_index(scene, camera))
 
 
 def camera_index(scene: Scene, name: str) -> int:

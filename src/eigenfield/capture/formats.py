@@ -1,0 +1,196 @@
+"""The table of capture formats, and which of them a folder is. A new reader is one file and one row."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from eigenfield.capture import colmap, transforms
+from eigenfield.capture.arrangement import Arrangement, Wanted
+from eigenfield.capture.bundler import find_bundler, read_bundler
+from eigenfield.capture.calibration import Calibration, printable
+from eigenfield.capture.folder import find_photographs, read_photographs
+from eigenfield.capture.gridnames import find_grid_names, read_grid_names
+from eigenfield.capture.hci import find_hci, read_hci
+from eigenfield.capture.llff import find_llff, read_llff
+from eigenfield.capture.metashape import find_metashape, read_metashape
+from eigenfield.capture.middlebury import find_middlebury, read_middlebury
+from eigenfield.capture.numbered import read_numbered
+from eigenfield.capture.opencv import find_opencv, read_opencv
+from eigenfield.capture.positions import find_positions, read_positions
+from eigenfield.capture.projections import find_projections, read_projections
+from eigenfield.capture.stanford import find_stanford, read_stanford
+from eigenfield.capture.strecha import find_strecha, read_strecha
+from eigenfield.capture.video import find_videos, read_videos
+from eigenfield.errors import CaptureError, OptionError
+
+# the order of claims: of those that claim a folder, the lowest rank wins; two of one rank are a question
+FIRST, SECOND, CAMERAS, NAMES, ASKED, ANY = range(6)
+
+
+@dataclass(frozen=True)
+class Format:
+    """One row.
+
+    name: for --format. title: one phrase for people. rank: whose claim goes first.
+    find: a folder -> what is to be read in it, or None. It looks at names and first bytes only.
+    read: what `find` found, and the folder of the photographs (`read_cameras`) or what the caller wants
+        (`read_names`) -> the calibration, or the arrangement that names tell.
+    endings: of file names that may be named directly as a calibration of this format.
+    uses: which of --grid and --frame mean something. cameras: whether it may yield cameras at all.
+    """
+
+    name: str
+    title: str
+    rank: int
+    find: Callable[[Path], Path | None]
+    read_cameras: Callable[[Path, Path], Calibration] | None = None
+    read_names: Callable[[Path, Wanted], Arrangement] | None = None
+    endings: tuple[str, ...] = ()
+    uses: tuple[str, ...] = ()
+    cameras: bool = True
+
+
+def _alone(read: Callable[[Path], Calibration]) -> Callable[[Path, Path], Calibration]:
+    """A reader of calibrations that name their photographs."""
+    return lambda found, root: read(found)
+
+
+def _never(folder: Path) -> Path | None:
+    """`find` of a format that must be asked for."""
+    return None
+
+
+def _cameras(
+    name: str,
+    title: str,
+    find: Callable[[Path], Path | None],
+    read: Callable[[Path, Path], Calibration],
+    *endings: str,
+    rank: int = CAMERAS,
+) -> Format:
+    return Format(name, title, rank, find, read_cameras=read, endings=endings)
+
+
+def _names(
+    name: str,
+    title: str,
+    find: Callable[[Path], Path | None],
+    read: Callable[[Path, Wanted], Arrangement],
+    *uses: str,
+    rank: int = NAMES,
+    cameras: bool = False,
+) -> Format:
+    return Format(name, title, rank, find, read_names=read, uses=uses, cameras=cameras)
+
+
+FORMATS = (
+    _cameras("transforms", "nerfstudio or instant-ngp transforms.json", transforms.find_transforms,
+             _alone(transforms.read_transforms), ".json", rank=FIRST),
+    _cameras("colmap", "COLMAP model", colmap.find_colmap, _alone(colmap.read_colmap), rank=SECOND),
+    _cameras("llff", "LLFF poses_bounds.npy", find_llff, read_llff, ".npy"),
+    _cameras("middlebury", "Middlebury *_par.txt", find_middlebury, _alone(read_middlebury), "_par.txt"),
+    _cameras("strecha", "Strecha *.camera", find_strecha, _alone(read_strecha), ".camera"),
+    _cameras("bundler", "Bundler bundle.out", find_bundler, _alone(read_bundler), ".out"),
+    _cameras("metashape", "Agisoft Metashape XML", find_metashape, _alone(read_metashape), ".xml"),
+    _cameras("opencv", "OpenCV YAML, XML or JSON", find_opencv, read_opencv, ".yml", ".yaml", ".xml"),
+    _cameras("projections", "3x4 projection matrices", find_projections, _alone(read_projections), "_p.txt", ".p"),
+    _names("positions", "parallel cameras in names (_RR_CC_A_B_LENS_SENSOR)", find_positions, read_positions, "grid",
+           cameras=True),
+    _names("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
+    _names("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
+    _names("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
+    _names("numbered", "numbered frames with --grid", _never, read_numbered, "grid", rank=ASKED),
+    _names("video", "one video a camera", find_videos, read_videos, "frame", rank=ANY),
+    _names("folder", "plain folder of photographs", find_photographs, read_photographs, rank=ANY),
+)  # fmt: skip
+BY_NAME = {row.name: row for row in FORMATS}
+
+
+@dataclass(frozen=True)
+class Claim:
+    """A format that a folder has, what is to be read, and what else was there (lines for people)."""
+
+    format: Format
+    found: Path
+    problems: tuple[str, ...] = ()
+
+
+def named_format(name: str) -> Format:
+    """The row of a name; OptionError `format-unknown`."""
+    if name not in BY_NAME:
+        raise OptionError("format-unknown", f"--format {name} is none", remedy=f"say one of {', '.join(BY_NAME)}")
+    return BY_NAME[name]
+
+
+def detect(folder: Path, formats: tuple[Format, ...], wanted: Wanted) -> Claim | None:
+    """The format of a folder among `formats`: every row is asked, cameras go before names, and names before nothing.
+
+    None where nothing claims it. Raises CaptureError `format-ambiguous` where two claims weigh the same.
+    """
+    if wanted.grid is not None and BY_NAME["numbered"] in formats:
+        claims = _claims(folder, tuple(row for row in formats if row.rank < ASKED))
+        if not claims and find_photographs(folder):
+            claims = [Claim(BY_NAME["numbered"], folder)]
+    else:
+        claims = _claims(folder, formats)
+    if not claims:
+        return None
+    rank = min(claim.format.rank for claim in claims)
+    best = [claim for claim in claims if claim.format.rank == rank]
+    if len(best) > 1:
+        names = [claim.format.name for claim in best]
+        titles = " or ".join(f"{claim.format.name}: {claim.format.title}" for claim in best)
+        raise CaptureError(
+            "format-ambiguous",
+            f"may be read as {titles}",
+            path=folder,
+            remedy="say " + " or ".join(f"--format {name}" for name in names),
+        )
+    also = [claim for claim in claims if rank < claim.format.rank < NAMES]
+    lines = tuple(f"{_shown(c.found, folder)} is there too, not read; --format {c.format.name} reads it" for c in also)
+    return Claim(best[0].format, best[0].found, lines)
+
+
+def _claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
+    """Each row's claim; where cameras claim the folder, names are not asked, and where names do, nothing else is."""
+    claims: list[Claim] = []
+    for ranks in ((FIRST, SECOND, CAMERAS), (NAMES,), (ASKED,), (ANY,)):
+        found = [(row, row.find(folder)) for row in formats if row.rank in ranks]
+        claims = [Claim(row, place) for row, place in found if place is not None]
+        if claims:
+            break
+    return claims
+
+
+def _shown(found: Path, folder: Path) -> str:
+    return printable(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
+
+
+def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
+    """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
+    if len(formats) > 1 and path.suffix.lower() == ".json":
+        return Claim(BY_NAME["transforms"], path)
+    if BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):
+        return Claim(BY_NAME["colmap"], path.parent)
+    if len(formats) == 1:
+        return Claim(formats[0], path)
+    fitting = [row for row in formats if path.name.lower().endswith(row.endings)]
+    certain = [row for row in fitting if row.find(path.parent) == path]
+    if len(certain or fitting) > 1:
+        names = [row.name for row in certain or fitting]
+        raise CaptureError(
+            "format-ambiguous",
+            f"may be read as {' or '.join(names)}",
+            path=path,
+            remedy="say " + " or ".join(f"--format {name}" for name in names),
+        )
+    if not fitting:
+        raise CaptureError(
+            "calibration-unknown",
+            "is no calibration",
+            path=path,
+            remedy="name a transforms.json, a COLMAP model, another that docs/captures.md lists, or a folder with one",
+        )
+    return Claim((certain or fitting)[0], path)

@@ -1,0 +1,193 @@
+"""The part of `eigenfield calibrate` that takes pictures of a chart: its options, and what it does."""
+
+from __future__ import annotations
+
+import functools
+import json
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+from eigenfield.cli.common import note, progress_bars
+from eigenfield.errors import OptionError
+
+if TYPE_CHECKING:
+    from eigenfield.calibrate.board import Board
+    from eigenfield.calibrate.chart import CameraReport, ChartCalibration
+
+F = TypeVar("F", bound=Callable[..., Any])
+BOARD_FILE = "charuco.toml"
+REPORT = "report.json"
+
+
+@dataclass(frozen=True)
+class ChartOptions:
+    """The chart as the command line describes it."""
+
+    chart: str
+    board: str | None
+    square: str | None
+    marker: str | None
+    dictionary: str | None
+    inverted: bool | None
+    legacy: bool | None
+
+
+def chart_options(function: F) -> F:
+    """Add --chart and what describes the board; the verb gets them as one `chart: ChartOptions | None`."""
+    options = [
+        click.option("--chart", type=click.Choice(["checkerboard", "charuco"]),
+                     help="FOLDER holds pictures or videos of a board of this kind, by camera."),
+        click.option("--board", metavar="CxR", help="Inner corners of a checkerboard (9x6), squares of a ChArUco board "
+                     "(4x5), columns first; or a charuco.toml.  [default: the charuco.toml in FOLDER or above it]"),
+        click.option("--square", metavar="LENGTH", help="Side of a square: 25mm, or a number in any unit."),
+        click.option("--marker", metavar="LENGTH", help="Side of a ChArUco board's marker."),
+        click.option("--dictionary", metavar="NAME", help="Of a ChArUco board's markers.  [default: DICT_4X4_1000]"),
+        click.option("--inverted/--not-inverted", default=None,
+                     help="The board is printed white on black.  [default: try both]"),
+        click.option("--legacy/--not-legacy", default=None,
+                     help="ChArUco as OpenCV drew it before 4.6.  [default: try both]"),
+    ]  # fmt: skip
+
+    @functools.wraps(function)
+    def collected(
+        *args: Any,
+        chart: str | None,
+        board: str | None,
+        square: str | None,
+        marker: str | None,
+        dictionary: str | None,
+        inverted: bool | None,
+        legacy: bool | None,
+        **kwargs: Any,
+    ) -> Any:
+        described = {"board": board, "square": square, "marker": marker, "dictionary": dictionary}
+        described |= {"inverted": inverted, "legacy": legacy}  # type: ignore[dict-item]
+        lone = next((name for name, value in described.items() if value is not None), None)
+        if chart is None and lone is not None:
+            raise OptionError(
+                "chart", f"--{lone} describes a chart", remedy="say --chart checkerboard or --chart charuco too"
+            )
+        chosen = None if chart is None else ChartOptions(chart, **described)  # type: ignore[arg-type]
+        return function(*args, chart=chosen, **kwargs)
+
+    decorated: Any = collected
+    for option in reversed(options):
+        decorated = option(decorated)
+    return decorated
+
+
+def board_of(options: ChartOptions, folder: Path) -> Board:
+    """The board that the options describe, or a charuco.toml in `folder` or above it.
+
+    Raises OptionError (`chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do), CaptureError
+    `board-file`.
+    """
+    from dataclasses import replace
+
+    from eigenfield.calibrate.board import (
+        DICTIONARY,
+        charuco,
+        checkerboard,
+        converted,
+        parse_length,
+        parse_size,
+        read_board,
+    )
+
+    if options.chart == "checkerboard":
+        _refuse(options, ("marker", "dictionary", "legacy"), "a checkerboard has none")
+        columns, rows = parse_size(_needed(options, "board", "inner corners, columns by rows: --board 9x6"))
+        square, unit = parse_length(_needed(options, "square", "the side of a square: --square 25mm"))
+        return checkerboard(columns, rows, square, unit, inverted=options.inverted)
+    file = _board_file(options, folder)
+    if file is not None:
+        _refuse(options, ("square", "marker", "dictionary"), f"{file} says it")
+        board = read_board(file)
+        inverted = board.inverted if options.inverted is None else options.inverted
+        legacy = board.legacy if options.legacy is None or board.rows % 2 else options.legacy
+        return replace(board, inverted=inverted, legacy=legacy)
+    columns, rows = parse_size(_needed(options, "board", "squares, columns by rows: --board 4x5"))
+    square, unit = parse_length(_needed(options, "square", "the side of a square: --square 54mm"))
+    marker, other = parse_length(_needed(options, "marker", "the side of a marker: --marker 40.5mm"))
+    return charuco(
+        columns, rows, square, converted(marker, other, unit), options.dictionary or DICTIONARY, unit,
+        inverted=options.inverted, legacy=options.legacy,
+    )  # fmt: skip
+
+
+def _needed(options: ChartOptions, name: str, what: str) -> str:
+    value = getattr(options, name)
+    if value is None:
+        raise OptionError("chart", f"--chart {options.chart} needs --{name}", remedy=f"say {what}")
+    return str(value)
+
+
+def _refuse(options: ChartOptions, names: tuple[str, ...], why: str) -> None:
+    for name in names:
+        if getattr(options, name) is not None:
+            raise OptionError("chart", f"--{name} does not go with it: {why}", remedy="leave it out")
+
+
+def _board_file(options: ChartOptions, folder: Path) -> Path | None:
+    if options.board is not None:
+        return Path(options.board) if options.board.lower().endswith(".toml") else None
+    return next((place / BOARD_FILE for place in (folder, folder.parent) if (place / BOARD_FILE).is_file()), None)
+
+
+def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, overwrite: bool, quiet: bool) -> None:
+    """Calibrate the rig whose charts are in `folder`; write transforms.json, sparse/0 and report.json to `output`; say
+    how good it is."""
+    from eigenfield.calibrate.chart import calibrate_charts
+    from eigenfield.capture.save import save_calibration
+
+    started = time.monotonic()
+    board = board_of(options, folder)
+    with progress_bars(quiet) as progress:
+        result = calibrate_charts(folder, board, progress=progress)
+    for problem in result.problems:
+        note(problem, quiet)
+    report = json.dumps(result.describe(), indent=1, allow_nan=False) + "\n"
+    save_calibration(result.light_field(output), output, overwrite=overwrite, more={REPORT: report.encode()})
+    for line in table(result):
+        click.echo(line)
+    click.echo(f"{output}: {summary(result)}, {time.monotonic() - started:.0f} s")
+
+
+def table(result: ChartCalibration) -> list[str]:
+    """One line a camera, under a heading."""
+    rows = [("camera", "boards", "corners", "rms", "median", "focal", "seen", "from first", "estimated")]
+    first = next(report.camera for report in result.reports if report.camera is not None)
+    for report in result.reports:
+        figures = ("-", "-", "-", _seen(report), "-", report.reason or "")
+        if report.camera is not None:
+            away = float(sum((report.camera.centre - first.centre) ** 2) ** 0.5)
+            figures = (
+                f"{report.rms:.2f} px", f"{report.median:.2f} px",
+                f"{report.camera.K[0, 0]:.1f} ± {report.focal_deviation:.1f}", _seen(report),
+                f"{away:.4g} {result.unit}".rstrip(), report.model,
+            )  # fmt: skip
+        rows.append((report.name, f"{report.used}/{report.boards}/{report.pictures}", str(report.corners), *figures))
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+
+
+def _seen(report: CameraReport) -> str:
+    if report.inverted is None:
+        return "-"
+    return ("inverted" if report.inverted else "as printed") + (", from behind" if report.mirrored else "")
+
+
+def summary(result: ChartCalibration) -> str:
+    """The rig in one line."""
+    cameras = [report for report in result.reports if report.camera is not None]
+    unit = f" in {result.unit}" if result.unit else ""
+    views = sum(report.used for report in cameras)
+    return (
+        f"{len(cameras)} of {len(result.reports)} cameras{unit}, {views} views of the {result.board}, "
+        f"reprojection {result.rms:.2f} px rms, {result.median:.2f} px median"
+    )

@@ -1,0 +1,95 @@
+"""Least-squares conformal maps (Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2002).
+
+The scale and turn of the map, which the paper fixes by pinning two vertices at a price in distortion near them, are
+fixed by the boundary as a whole: Mullen et al., "Spectral Conformal Parameterization" (2008).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
+
+SHIFT = 1e-9  # of the mean diagonal: keeps the factorisation regular
+ITERATIONS = 12  # of inverse iteration; the wanted pair of eigenvalues is far below the rest
+SMALLEST = 1e-12  # of the mean area: triangles below this say nothing about angles
+
+
+def conformal_map(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(n, 2) coordinates in the plane of a chart's (n, 3) vertices, its faces (m, 3) of positive area on the whole.
+
+    Least conformal energy sum |W_1 u_1 + W_2 u_2 + W_3 u_3|^2 / (2 area) over the triangles, u = x + i y, W_k the edge
+    opposite corner k as a complex number in the triangle's own plane (equation 4 of Lévy et al.), among maps whose
+    boundary has spread 1 about its middle. The total area is that of the surface. Every vertex must be in a face.
+    """
+    energy = conformal_energy(vertices, faces)
+    n = len(vertices)
+    rim = boundary_vertices(faces, n)
+    mass = np.tile(rim, 2).astype(np.float64)
+    size = float(energy.diagonal().mean()) or 1.0
+    solve = splu((energy + SHIFT * size * diags_array(np.ones(2 * n))).tocsc()).solve
+    z = _start(vertices, rim)
+    for _ in range(ITERATIONS):
+        z = solve(mass * z).reshape(2, n)
+        z -= z[:, rim].mean(axis=1, keepdims=True)
+        z = (z / np.sqrt((z[:, rim] ** 2).sum())).reshape(-1)
+    uv = z.reshape(2, n).T
+    area = _signed_areas(uv, faces)
+    if area.sum() < 0:  # the energy of a mirrored map is as large as can be; this is for maps that collapsed
+        uv = uv * (1, -1)
+    total = max(abs(float(area.sum())), 1e-300)
+    return np.ascontiguousarray(uv * np.sqrt(float(surface_areas(vertices, faces).sum()) / total))
+
+
+def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
+    """(2 n, 2 n) matrix of the energy, for (x_1 .. x_n, y_1 .. y_n): zero for a map that turns and scales only."""
+    p = vertices[faces]
+    along, side = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    twice = 2 * surface_areas(vertices, faces)
+    good = twice > SMALLEST * max(float(twice.mean()), 1e-300)
+    length, along, side, twice, f = length[good], along[good], side[good], twice[good], faces[good].astype(np.int64)
+    x2, y2 = (along * side).sum(axis=1) / length, twice / length
+    corner = np.stack([np.zeros_like(x2), length + 0j, x2 + 1j * y2], axis=1)
+    w = (np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)) / np.sqrt(twice)[:, None]
+    n, m = len(vertices), len(f)
+    row = np.repeat(np.arange(m), 3)
+    column, real, imaginary = f.reshape(-1), w.real.reshape(-1), w.imag.reshape(-1)
+    rows = np.r_[row, row, row + m, row + m]
+    columns = np.r_[column, column + n, column, column + n]
+    values = np.r_[real, -imaginary, imaginary, real]
+    matrix = coo_array((values, (rows, columns)), shape=(2 * m, 2 * n)).tocsr()
+    return (matrix.T @ matrix).tocsr()
+
+
+def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
+    """(n,) on an edge of one triangle only; all of them where there is none (a closed surface)."""
+    f = faces.astype(np.int64)
+    a, b = f.reshape(-1), np.roll(f, -1, axis=1).reshape(-1)
+    key, count = np.unique(np.minimum(a, b) * n + np.maximum(a, b), return_counts=True)
+    rim = np.zeros(n, np.bool_)
+    rim[key[count == 1] // n] = rim[key[count == 1] % n] = True
+    return rim if rim.any() else np.ones(n, np.bool_)
+
+
+def _start(vertices: NDArray[np.float64], rim: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Two principal directions of the boundary, signs fixed: not orthogonal to the answer, and always the same."""
+    centred = vertices - vertices[rim].mean(axis=0)
+    _, _, directions = np.linalg.svd(centred[rim], full_matrices=True)
+    directions = directions[:2]
+    largest = np.argmax(np.abs(directions), axis=1)
+    directions = directions * np.sign(directions[[0, 1], largest])[:, None]
+    return np.asarray(np.concatenate([centred @ directions[0], centred @ directions[1] + 0.1 * centred @ directions[0]]))
+
+
+def surface_areas(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(m,)"""
+    p = vertices[faces].astype(np.float64)
+    return np.asarray(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2)
+
+
+def _signed_areas(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    q = uv[faces]
+    a, b = q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

@@ -1,0 +1,55 @@
+"""The triangulation of a hole."""
+
+# mypy: disable-error-code="no-untyped-def,no-untyped-call"
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenfield.jit import kernel
+
+
+@kernel()
+def _area(a, b, c):
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    return np.sqrt(x * x + y * y + z * z)
+
+
+@kernel()
+def least_area(loop):
+    """(n - 2, 3) int64: the triangulation of the closed polygon loop (n, 3) float64 of least area.
+
+    Dynamic programming over runs of the loop (Barequet and Sharir, "Filling gaps in the boundary of a polyhedron",
+    1995): W[i, k] = min over i < j < k of W[i, j] + W[j, k] + area(i, j, k), in O(n^3).
+    """
+    n = loop.shape[0]
+    weight = np.zeros((n, n))
+    split = np.zeros((n, n), np.int64)
+    for length in range(2, n):
+        for i in range(n - length):
+            k = i + length
+            best = np.inf
+            for j in range(i + 1, k):
+                w = weight[i, j] + weight[j, k] + _area(loop[i], loop[j], loop[k])
+                if w < best:
+                    best = w
+                    split[i, k] = j
+            weight[i, k] = best
+    triangles = np.empty((max(n - 2, 0), 3), np.int64)
+    stack = np.empty((n + 1, 2), np.int64)
+    stack[0, 0], stack[0, 1] = 0, n - 1
+    height, count = 1, 0
+    while height > 0:
+        height -= 1
+        i, k = stack[height, 0], stack[height, 1]
+        if k - i < 2:
+            continue
+        j = split[i, k]
+        triangles[count, 0], triangles[count, 1], triangles[count, 2] = i, j, k
+        count += 1
+        stack[height, 0], stack[height, 1] = i, j
+        stack[height + 1, 0], stack[height + 1, 1] = j, k
+        height += 2
+    return triangles[:count]

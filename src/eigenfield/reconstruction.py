@@ -1,0 +1,512 @@
+"""From photographs to cameras and a proxy mesh (the paper's section 3.1): the stages in order, kept when finished."""
+
+from __future__ import annotations
+
+import json
+import logging
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.calibrate import (
+    Planar,
+    PlanarStart,
+    refine_planar,
+    register_views,
+    start_given,
+    start_planar,
+    structure_from_motion,
+)
+from eigenfield.calibrate.array import resized_camera
+from eigenfield.camera import Camera
+from eigenfield.capture import Lens, LightField, PhotoSet
+from eigenfield.capture.save import save_calibration
+from eigenfield.errors import CaptureError, OptionError
+from eigenfield.holdout import held_out_cameras
+from eigenfield.mesh import Mesh
+from eigenfield.parallel import parallel_map
+from eigenfield.progress import Progress
+from eigenfield.proxy import (
+    fill_background,
+    fit_sphere,
+    insert_primitive,
+    parse_primitive,
+    parse_region,
+    read_mesh,
+    relief_mesh,
+    second_layer,
+    surface_from_views,
+    unwrapped,
+    write_ply,
+)
+from eigenfield.stages import Stages, file_digest, stage_key
+from eigenfield.stereo import Canvas, depth_range
+from eigenfield.viewplane import fit_view_plane
+
+log = logging.getLogger("eigenfield.reconstruction")
+
+SURFACES = ("auto", "relief", "poisson")
+DEFAULT_TRIANGLES = 30_000
+PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
+OFF_PLANE = 0.2  # of the array's extent that cameras may stand off their plane, for a relief
+CUT = 4.0  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
+TOLERANCE = 0.16  # pixels there that the mesh may leave the depth map
+RANGE_VIEWS = 25  # round the central one, in which a range of depths is searched
+FEWEST_POINTS = 30  # of structure from motion that say a range of depths
+WIDENED = 0.15  # of that range, on both sides
+STRANGE, STRANGE_LEAST = 2.0, 8.0  # times the typical difference from the others, and grey levels more: another scene
+DENSE = 25  # given views from which on cameras are refined unless told otherwise
+ALIKE = 25.0  # degrees between a camera's axis and the mean axis, for a relief
+MESH, CAMERAS, DEPTH = "mesh.ply", "cameras.npz", "depth.npz"
+
+Capture = LightField | PhotoSet
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How photographs become a proxy; `reconstruct` describes each."""
+
+    surface: str = "auto"
+    refine: bool | None = None
+    triangles: int = DEFAULT_TRIANGLES
+    background: bool | None = None
+    primitives: tuple[str, ...] = ()
+    fit_spheres: tuple[str, ...] = ()
+    blind: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.surface not in SURFACES:
+            raise OptionError("surface", f"no surface is called {self.surface}", remedy=f"use {', '.join(SURFACES)}")
+        for text in self.primitives:
+            parse_primitive(text)
+        for text in self.fit_spheres:
+            parse_region(text)
+
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """Cameras and proxy of a capture.
+
+    light_field: the photographs with their cameras, those left out named in its problems.
+    mesh: with an atlas, in the cameras' world.
+    calibration: the folder with a transforms.json and a COLMAP model, where cameras were estimated or refined.
+    seconds: of each stage, in order; 0 where it was taken up from an earlier run.
+    """
+
+    light_field: LightField
+    mesh: Mesh
+    calibration: Path | None
+    seconds: dict[str, float]
+
+
+def reconstruct(
+    capture: Capture,
+    *,
+    surface: str = "auto",
+    refine: bool | None = None,
+    triangles: int = DEFAULT_TRIANGLES,
+    background: bool | None = None,
+    primitives: Sequence[str] = (),
+    fit_spheres: Sequence[str] = (),
+    blind: str | None = None,
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> Reconstruction:
+    """Estimate what a capture lacks: cameras where it has none, and a proxy mesh.
+
+    surface: "relief" for arrays that look one way (two layers seen from the centre), "poisson" for everything else,
+    "auto" to choose. refine: correct the cameras of an array together with its depth; None: where no calibration was
+    given and they are not exact. triangles: of the proxy, about so many at most. background: close the frustum behind
+    what was reconstructed; None: unless there are masks. primitives: `sphere:...` or `plane:...`, put in by hand.
+    fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline. blind: a rule of `hold_out`
+    (see `encode`): these views take no part, each only registers its own camera; arrays only. work: the folder of finished stages; None keeps none.
+
+    Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
+    """
+    settings = Settings(surface, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind)
+    with Stages(work) as stages:
+        run = _Run(stages, settings, progress, {})
+        identity = _identity(capture)
+        light_field, points, calibration = (
+            (capture, None, None) if _has_cameras(capture) else _by_motion(run, capture, identity)
+        )
+        if _wants_relief(light_field, settings):
+            light_field, mesh, folder = _relief(run, light_field, points, identity)
+            calibration = folder or calibration
+        else:
+            assert isinstance(light_field, LightField)
+            if settings.blind is not None:
+                raise OptionError(
+                    "blind", "only arrays that look one way can be reconstructed blind",
+                    remedy="leave out --blind: held-out views then help to find cameras and proxy",
+                )  # fmt: skip
+            mesh = _poisson(run, light_field, points, identity)
+        assert isinstance(light_field, LightField)
+        mesh = _finished(run, light_field, mesh, identity)
+        return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds)
+
+
+@dataclass(frozen=True)
+class _Run:
+    stages: Stages
+    settings: Settings
+    progress: Progress | None
+    seconds: dict[str, float]
+
+    def stage(self, name: str, inputs: Sequence[Any], build: Callable[[Path], None]) -> Path:
+        """The folder of a finished stage, and how long it took."""
+        started = time.monotonic()
+        key = stage_key([name, *inputs])
+        ready = self.stages.path(name, key).is_dir()
+        folder = self.stages.run(name, key, build)
+        self.seconds[name] = 0.0 if ready else time.monotonic() - started
+        log.info("%s: %s", name, "taken up" if ready else f"{self.seconds[name]:.1f} s")
+        return folder
+
+
+def _has_cameras(capture: Capture) -> bool:
+    """Cameras are known, or told by a grid."""
+    return isinstance(capture, LightField) or capture.layout is not None
+
+
+def _identity(capture: Capture) -> list[Any]:
+    """All that a result depends on: every file's bytes, cameras, lenses, layout."""
+    if isinstance(capture, LightField):
+        own: list[Any] = [
+            [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
+            for view in capture.views
+        ]
+        files = [(view.name, view.path, view.mask, view.upright) for view in capture.views]
+    else:
+        layout = capture.layout
+        own = [] if layout is None else [_plain(layout)]
+        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
+        files = [(shot.name, shot.path, shot.mask, shot.upright) for shot in capture.shots]
+    digests = parallel_map(
+        lambda file: [file[0], file_digest(file[1]), None if file[2] is None else file_digest(file[2]), file[3]], files
+    )
+    return [digests, own]
+
+
+def _plain(value: Any) -> dict[str, Any]:
+    """A dataclass of arrays and numbers as JSON can hold it."""
+    items = ((field.name, getattr(value, field.name)) for field in fields(value))
+    return {name: item.tolist() if isinstance(item, np.ndarray) else item for name, item in items}
+
+
+def _by_motion(run: _Run, photos: Capture, identity: list[Any]) -> tuple[LightField, NDArray[np.float64], Path]:
+    """Cameras of photographs of which nothing is known, by structure from motion."""
+    assert isinstance(photos, PhotoSet)
+
+    def build(folder: Path) -> None:
+        motion = structure_from_motion(photos, work=run.stages.folder / "matches", progress=run.progress)
+        save_calibration(motion.light_field, folder / "calibration", motion.points)
+        _write_cameras(folder / CAMERAS, photos, motion.light_field, motion.points.positions)
+
+    folder = run.stage("motion", [identity], build)
+    light_field, points = _read_cameras(folder / CAMERAS, photos)
+    return light_field, points, folder / "calibration"
+
+
+def _wants_relief(capture: Capture, settings: Settings) -> bool:
+    if isinstance(capture, PhotoSet):
+        if settings.surface == "poisson":
+            raise OptionError(
+                "surface", "a grid without calibration has no metric frame for a Poisson surface",
+                remedy="leave out --surface, or calibrate first",
+            )  # fmt: skip
+        return True
+    if settings.surface != "auto":
+        return settings.surface == "relief"
+    return looks_one_way(capture.cameras)
+
+
+def looks_one_way(cameras: Sequence[Camera]) -> bool:
+    """Whether cameras stand on a plane and look across it alike: a relief shows all that they see."""
+    plane = fit_view_plane(cameras)
+    axes = np.array([camera.R[2] for camera in cameras])
+    mean = axes.mean(axis=0)
+    if np.linalg.norm(mean) < 0.5:
+        return False
+    angles = np.degrees(np.arccos(np.clip(axes @ (mean / np.linalg.norm(mean)), -1, 1)))
+    normal = np.cross(plane.right, plane.up)
+    centres = np.array([camera.centre for camera in cameras]) - plane.origin
+    along = np.degrees(np.arccos(min(1.0, abs(float(normal @ mean)) / float(np.linalg.norm(mean)))))
+    thickness = float(np.abs(centres @ normal).max()) / float(np.linalg.norm(np.ptp(centres, axis=0)))
+    return bool(angles.max() < ALIKE and thickness < OFF_PLANE and (along < 2 * ALIKE or plane.extent.min() == 0))
+
+
+def _relief(
+    run: _Run, capture: Capture, points: NDArray[np.float64] | None, identity: list[Any]
+) -> tuple[LightField, Mesh, Path | None]:
+    """Cameras and depth of an array together, then the layered relief."""
+    refine = _refines(capture, run.settings)
+    known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, _positions(capture)))
+    inputs = [identity, refine, known.tolist(), None if points is None else len(points)]
+
+    def build(folder: Path) -> None:
+        pictures, scale = _pictures(capture)
+        part = capture.subset(known)
+        shown = pictures if len(known) == len(pictures) else pictures[known]
+        planar = refine_planar(shown, _start(part, shown, points), exact=not refine, progress=run.progress)
+        if len(known) < len(pictures):
+            new = np.setdiff1d(np.arange(len(pictures)), known)
+            bases = None if isinstance(capture, PhotoSet) else _resized(capture.cameras, pictures)
+            planar = register_views(planar, known, pictures[new], new, _positions(capture), bases)
+        light_field = _light_field(capture, planar, scale)
+        save_calibration(light_field, folder / "calibration")
+        _write_cameras(folder / CAMERAS, capture, light_field, np.zeros((0, 3)))
+        _write_planar(folder / DEPTH, planar)
+
+    folder = run.stage("array", inputs, build)
+    light_field, _ = _read_cameras(folder / CAMERAS, capture)
+
+    def mesh(place: Path) -> None:
+        pictures, _ = _pictures(capture)
+        depth = _read_planar(folder / DEPTH)
+        keep = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
+        reach = float(np.abs(depth.matrices[:, :2, 2]).max())
+        cut, tolerance = CUT / reach, TOLERANCE / reach
+        valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
+        second = second_layer(pictures[keep], depth.matrices[keep], depth.d, valid, cut=cut)
+        layers = relief_mesh(
+            depth.canvas, depth.d, valid, second, cut=cut, tolerance=tolerance, triangles=run.settings.triangles
+        )
+        write_ply(layers, place / MESH)
+
+    relief = run.stage("relief", [inputs, run.settings.triangles], mesh)
+    return light_field, read_mesh(relief / MESH), folder / "calibration"
+
+
+def _refines(capture: Capture, settings: Settings) -> bool:
+    if settings.refine is not None:
+        return settings.refine
+    if capture.layout is not None and capture.layout.exact:
+        return False
+    return isinstance(capture, PhotoSet) or len(capture) >= DENSE
+
+
+def _pictures(capture: Capture) -> tuple[NDArray[np.uint8], float]:
+    """(n, H, W, 3) all photographs, lenses removed, at a common size that keeps within PIXELS; and the scale."""
+    sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
+    width, height = (max(side) for side in zip(*sizes, strict=True))
+    scale = min(1.0, (PIXELS / (len(sizes) * width * height)) ** 0.5)
+    size = max(2, round(scale * width)), max(2, round(scale * height))
+
+    def read(index: int) -> NDArray[np.uint8]:
+        pixels = np.rint(capture.photograph(index).pixels * 255).astype(np.uint8)
+        missing = height - pixels.shape[0], width - pixels.shape[1]
+        if any(missing):  # photographs of one camera may differ by a row or two
+            pixels = np.pad(pixels, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
+        return pixels if scale == 1 else cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+
+    result = np.empty((len(sizes), size[1], size[0], 3), np.uint8)
+
+    def put(index: int) -> None:
+        result[index] = read(index)
+
+    parallel_map(put, range(len(sizes)))
+    return result, scale
+
+
+def _start(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
+    if isinstance(capture, PhotoSet):
+        assert capture.layout is not None
+        return start_planar(pictures, capture.layout, capture.names)
+    cameras = _resized(capture.cameras, pictures)
+    low, high = _inverse_depths(capture, cameras, pictures, points)
+    return start_given(cameras, low, high)
+
+
+def _resized(cameras: Sequence[Camera], pictures: NDArray[np.uint8]) -> list[Camera]:
+    height, width = pictures.shape[1:3]
+    return [resized_camera(camera, width, height) for camera in cameras]
+
+
+def _positions(capture: Capture) -> NDArray[np.float64]:
+    """(n, 2) on the array's plane, any unit."""
+    if isinstance(capture, PhotoSet):
+        assert capture.layout is not None
+        return capture.layout.positions
+    return fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
+
+
+def _light_field(capture: Capture, planar: Planar, scale: float) -> LightField:
+    """The capture with the cameras that were found, at full size, without the views that fit nowhere."""
+    views = np.arange(len(capture))
+    cameras = planar.model.cameras(views, planar.parameters)
+    error = planar.error
+    strange = np.zeros(len(error), np.bool_)
+    typical = float(np.nanmedian(error)) if planar.refined else 0.0
+    if planar.refined:
+        strange = ~(error <= max(STRANGE * typical, typical + STRANGE_LEAST))
+    problems = [
+        f"{capture.names[i]} shows something else, or its camera was moved: it differs by {error[i]:.0f} grey levels "
+        f"from the others (they by {typical:.0f}); left out"
+        for i in np.flatnonzero(strange)
+    ]
+    for problem in problems:
+        log.warning("%s", problem)
+    keep = [int(i) for i in np.flatnonzero(~strange)]
+    chosen = capture.subset(keep)
+    sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
+    grown = []
+    for index in keep:
+        K = np.diag([1 / scale, 1 / scale, 1.0]) @ cameras[index].K
+        grown.append(replace(cameras[index], K=K, width=sizes[index][0], height=sizes[index][1]))
+    if isinstance(chosen, PhotoSet):
+        return chosen.calibrated(grown, problems=problems)
+    views_ = tuple(replace(view, camera=camera) for view, camera in zip(chosen.views, grown, strict=True))
+    return replace(chosen, views=views_, problems=(*chosen.problems, *problems))
+
+
+def _poisson(run: _Run, light_field: LightField, points: NDArray[np.float64] | None, identity: list[Any]) -> Mesh:
+    settings = run.settings
+    inputs = [identity, None if points is None else len(points), settings.triangles]
+
+    def build(folder: Path) -> None:
+        surface = surface_from_views(
+            light_field, points, triangles=settings.triangles, background=False, progress=run.progress
+        )
+        write_ply(surface.mesh, folder / MESH)
+
+    return read_mesh(run.stage("surface", inputs, build) / MESH)
+
+
+def _finished(run: _Run, light_field: LightField, mesh: Mesh, identity: list[Any]) -> Mesh:
+    """Primitives and background put in, and an atlas for all."""
+    settings = run.settings
+    masked = any(view.mask is not None for view in light_field.views)
+    background = settings.background if settings.background is not None else not masked
+    relief = mesh.uv is not None
+    if relief and not settings.primitives and not settings.fit_spheres:
+        return mesh  # the relief covers what the array sees, and has its atlas
+    inputs = [identity, relief, settings.primitives, settings.fit_spheres, background, settings.triangles]
+
+    def build(folder: Path) -> None:
+        result = mesh
+        cameras = light_field.cameras
+        for text in settings.primitives:
+            result = insert_primitive(result, parse_primitive(text), cameras)
+        for text in settings.fit_spheres:
+            region = parse_region(text)
+            fitted = fit_sphere(
+                _view_named(light_field, region.view), region, cameras,
+                lambda index: light_field.photograph(index).pixels, progress=run.progress,
+            )  # fmt: skip
+            log.info("%s: %s", text, fitted)
+            result = insert_primitive(result, fitted.sphere, cameras)
+        if background and not relief:
+            result = fill_background(result, cameras)
+        limit = max(settings.triangles, len(result.faces))
+        write_ply(unwrapped(result, triangles=limit, cameras=cameras, progress=run.progress), folder / MESH)
+
+    return read_mesh(run.stage("proxy", inputs, build) / MESH)
+
+
+def _view_named(light_field: LightField, name: str) -> int:
+    if name not in light_field.names:
+        raise OptionError("fit-sphere", f"no photograph is called {name}", remedy="eigenfield inspect lists the names")
+    return light_field.names.index(name)
+
+
+def _write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:
+    index = {name: i for i, name in enumerate(capture.names)}
+    cameras = light_field.cameras
+    lenses = [
+        "" if view.lens is None else json.dumps([view.lens.model, list(view.lens.coefficients)])
+        for view in light_field.views
+    ]
+    np.savez(
+        path, kept=[index[name] for name in light_field.names], K=[c.K for c in cameras], R=[c.R for c in cameras],
+        t=[c.t for c in cameras], sizes=[(c.width, c.height) for c in cameras], lenses=np.array(lenses),
+        problems=np.array(light_field.problems, dtype=str), points=points,
+    )  # fmt: skip
+
+
+def _read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.float64]]:
+    with np.load(path) as data:
+        kept = [int(i) for i in data["kept"]]
+        cameras = [
+            Camera(K, R, t, int(size[0]), int(size[1]))
+            for K, R, t, size in zip(data["K"], data["R"], data["t"], data["sizes"], strict=True)
+        ]
+        lenses = [None if not text else Lens(*json.loads(str(text))) for text in data["lenses"]]
+        problems, points = tuple(map(str, data["problems"])), data["points"]
+    chosen = capture.subset(kept)
+    if isinstance(chosen, PhotoSet):
+        light_field = chosen.calibrated(cameras, lenses)
+    else:
+        views = tuple(replace(view, camera=camera) for view, camera in zip(chosen.views, cameras, strict=True))
+        light_field = replace(chosen, views=views)
+    return replace(light_field, problems=problems), points
+
+
+def _write_planar(path: Path, planar: Planar) -> None:
+    canvas = planar.canvas
+    views = np.arange(len(planar.parameters))
+    np.savez(
+        path, d=planar.d, confidence=planar.confidence, texture=planar.texture, count=planar.count, K=canvas.camera.K,
+        R=canvas.camera.R, t=canvas.camera.t, canvas=[canvas.margin, canvas.offset, canvas.scale],
+        matrices=planar.model.matrices(canvas, views, planar.parameters), range=[planar.low, planar.high],
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Depth:
+    """What `_write_planar` kept: the depth map of an array, and how its views look at it."""
+
+    canvas: Canvas
+    d: NDArray[np.float32]
+    confidence: NDArray[np.float32]
+    texture: NDArray[np.float32]
+    count: NDArray[np.int32]
+    matrices: NDArray[np.float64]
+    low: float
+    high: float
+
+
+def _read_planar(path: Path) -> _Depth:
+    with np.load(path) as data:
+        d = data["d"]
+        margin, offset, scale = data["canvas"].tolist()
+        camera = Camera(data["K"], data["R"], data["t"], d.shape[1], d.shape[0])
+        low, high = data["range"].tolist()
+        return _Depth(
+            Canvas(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
+            data["matrices"], low, high,
+        )  # fmt: skip
+
+
+def _inverse_depths(
+    capture: LightField, cameras: Sequence[Camera], pictures: NDArray[np.uint8], points: NDArray[np.float64] | None
+) -> tuple[float, float]:
+    """The range of inverse depths seen from the camera in the middle, 1 / world units."""
+    plane = fit_view_plane(cameras)
+    middle = cameras[int(np.argmin(np.linalg.norm(plane.coordinates([c.centre for c in cameras]), axis=1)))]
+    if points is not None and len(points) >= FEWEST_POINTS:
+        pixels, depth = middle.project(points)
+        inside = (depth > 0) & (pixels > 0).all(axis=1) & (pixels < (middle.width, middle.height)).all(axis=1)
+        if inside.sum() >= FEWEST_POINTS:
+            low, high = np.percentile(1 / depth[inside], [1, 99])
+            return max(float(low - WIDENED * (high - low)), 0.3 * float(low)), float(high + WIDENED * (high - low))
+    # disparities of one step, from infinity to a fifth of the picture
+    provisional = start_given(cameras, *(1e-3, 1.0))
+    canvas = provisional.model.canvas(0)
+    matrices = provisional.model.matrices(canvas, np.arange(len(cameras)), provisional.parameters)
+    chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[:RANGE_VIEWS]
+    found = depth_range(pictures[chosen], matrices[chosen], canvas.shape, (0.0, canvas.camera.width / 5))
+    if found is None:
+        raise CaptureError(
+            "depth-nothing",
+            "no depth agrees with the photographs and their cameras",
+            path=capture.root,
+            remedy="look at the calibration (eigenfield inspect), or let it be estimated: eigenfield calibrate",
+        )
+    return max(found[0], 0.02 * found[1]) * canvas.scale, found[1] * canvas.scale
