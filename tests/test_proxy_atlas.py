@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 import time
 
 import numpy as np
@@ -130,7 +131,7 @@ def test_a_mesh_without_uvs_gets_charts_that_hold():
     assert atlas_fault(result) is None
     statistics = atlas_statistics(result)
     assert statistics.overlap == 0 and statistics.fill > 0.4 and statistics.stretch < 1.2
-    assert calls[0] == ("atlas", 0, 1) and calls[-1] == ("atlas", 1, 1)
+    assert calls[0] == ("atlas", 0, 3) and calls[-1] == ("atlas", 3, 3)
     assert len(result.faces) == len(mesh.faces)
     theirs = np.sort(np.linalg.norm(mesh.vertices[mesh.faces].sum(axis=1), axis=1))
     ours = np.sort(np.linalg.norm(result.vertices[result.faces].sum(axis=1), axis=1))
@@ -199,6 +200,18 @@ def test_too_few_triangles_are_refused():
     with pytest.raises(OptionError) as caught:
         unwrapped(grid(3), triangles=0)
     assert caught.value.code == "triangles"
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a shell script stands for the process")
+def test_a_mesh_larger_than_a_pipe_reaches_a_slow_xatlas(monkeypatch, tmp_path):
+    """The process starts to read only after several ticks: none of the mesh may get lost on the way."""
+    script = tmp_path / "python"
+    script.write_text(f'#!/bin/sh\nsleep {5 * unwrap.TICK}\nexec "{sys.executable}" "$@"\n')
+    script.chmod(0o755)
+    monkeypatch.setattr(unwrap.sys, "executable", str(script))
+    mesh = grid(70, uv=False, height=0.05)
+    assert mesh.vertices.nbytes + mesh.faces.nbytes > 65536
+    assert len(unwrapped(mesh).faces) == len(mesh.faces)
 
 
 def test_ctrl_c_ends_xatlas_too(monkeypatch):
@@ -289,4 +302,4 @@ def test_the_cube_gets_an_atlas(data):
     result = unwrapped(mesh)
     statistics = atlas_statistics(result)
     assert atlas_fault(result) is None
-    assert statistics.fill > 0.35 and statistics.stretch < 1.1 and statistics.overlap < 0.002
+    assert statistics.fill > 0.45 and statistics.stretch < 1.02 and statistics.overlap == 0

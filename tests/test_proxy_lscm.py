@@ -37,7 +37,7 @@ def dome(u, v):
 
 
 def singular_ratio(vertices, uv, faces):
-    """(m,) large over small singular value of the map, by its definition: the 2 x 2 matrix between the triangles' frames."""
+    """(m,) large over small singular value of the 2 x 2 matrix between each triangle's frames."""
     p, q = vertices[faces], uv[faces]
     one, two = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     x = one / np.linalg.norm(one, axis=1, keepdims=True)
@@ -51,7 +51,7 @@ def singular_ratio(vertices, uv, faces):
 
 @pytest.mark.parametrize("shape", [cylinder, cone])
 def test_developable_surfaces_are_unrolled(shape):
-    """A fine cylinder or cone patch is a polyhedron that can be unrolled exactly only in strips; what is left is tiny."""
+    """Their triangulations can be unrolled exactly only in strips; what is left is tiny."""
     vertices, faces = patch(40, 60, shape)
     uv = conformal_map(vertices, faces)
     assert singular_ratio(vertices, uv, faces).max() < 1.003
@@ -78,14 +78,14 @@ def test_a_plane_keeps_its_shape_wherever_it_lies(seed, scale):
     np.testing.assert_allclose(here, there, atol=1e-5 * scale)
 
 
-def test_energy_is_zero_for_similarities_and_the_area_for_mirrored_ones():
-    """E = E_Dirichlet - area; for an isometry the first is the area, for a mirrored one the area counts negative."""
+def test_energy_is_zero_for_similarities_and_not_for_mirrored_ones():
+    """Of a mirrored triangle W_1 u_1 + W_2 u_2 + W_3 u_3 is 4 i times its area: 16 A^2 / (2 A)."""
     flat, faces = patch(3, 5, lambda u, v: (u, v, 0 * u))
     energy = conformal_energy(flat, faces)
     turned = np.r_[2 * flat[:, 0] - flat[:, 1], flat[:, 0] + 2 * flat[:, 1]]
     mirrored = np.r_[-flat[:, 0], flat[:, 1]]
     assert turned @ energy @ turned == pytest.approx(0, abs=1e-12)
-    assert mirrored @ energy @ mirrored == pytest.approx(4 * surface_areas(flat, faces).sum())
+    assert mirrored @ energy @ mirrored == pytest.approx(8 * surface_areas(flat, faces).sum())
 
 
 def test_the_map_has_less_energy_than_the_projection():
@@ -188,14 +188,16 @@ def test_scales_are_bounded_and_unseen_charts_get_the_least():
     np.testing.assert_array_equal(chart_scales(mesh, [looking_along(0, 1, -30.0)]), np.ones(6))  # sees nothing
 
 
-@settings(max_examples=6, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(seed=st.integers(0, 100))
 def test_rough_surfaces_get_an_atlas_without_overlap(seed):
     random = np.random.default_rng(seed)
     bumps = random.normal(0, 1, (3, 3))
 
     def place(u, v):
-        waves = sum(bumps[i, j] * np.sin((i + 1) * 3 * u + j) * np.cos((j + 1) * 3 * v + i) for i in range(3) for j in range(3))
+        waves = sum(
+            bumps[i, j] * np.sin((i + 1) * 3 * u + j) * np.cos((j + 1) * 3 * v + i) for i in range(3) for j in range(3)
+        )
         return u, v, 0.1 * waves
 
     vertices, faces = patch(14, 14, place)

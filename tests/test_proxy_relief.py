@@ -8,14 +8,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.ndimage import binary_erosion, gaussian_filter
+from scipy.ndimage import distance_transform_edt, gaussian_filter
 
 from eigenfield.camera import Camera
 from eigenfield.errors import ProxyError
-from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, relief_mesh, second_layer
+from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, relief_mesh, relief_sheet, second_layer
 from eigenfield.proxy.relief_contours import contour_chains, cut_sides, straightened
-from eigenfield.proxy.relief_sheet import make_sheet
-from eigenfield.raster import rasterise_view
+from eigenfield.proxy.relief_kernels import LATTICE, label_pixels
+from eigenfield.proxy.relief_sheet import make_sheet, sheet_components
+from eigenfield.raster import rasterise_atlas, rasterise_view
 from eigenfield.stereo import Canvas, view_matrices
 
 OFFSET, SCALE = 0.25, 0.01  # 1/Z = OFFSET + SCALE d
@@ -39,6 +40,14 @@ def depth_of(mesh, frame):
 def ramp(height=40, width=60):
     y, x = np.mgrid[:height, :width]
     return (0.03 * x - 0.05 * y + 1).astype(np.float32)
+
+
+def covers(sheet, valid):
+    """Does a triangle lie over the centre of every valid pixel? In whole numbers, so exactly."""
+    owner = np.empty(valid.shape, np.int32)
+    points = np.rint(np.stack([sheet.x, sheet.y], axis=1) * LATTICE).astype(np.int64)
+    label_pixels(points, sheet.faces.astype(np.int64), len(sheet.faces), owner)
+    return bool((owner[valid] >= 0).all())
 
 
 def everywhere(d):
@@ -84,8 +93,6 @@ def test_a_cut_that_ends_inside_leaves_one_surface():
     y, x = np.mgrid[:60, :80]
     d = np.where(x < 40, 0.0, np.maximum(0, 3 - 0.1 * y)).astype(np.float32)
     sheet = make_sheet(d, everywhere(d), cut=0.5, tolerance=0.05)
-    from eigenfield.proxy.relief_sheet import sheet_components
-
     assert sheet_components(sheet.faces, len(sheet.x)).max() == 0
     on = np.abs(sheet.x - 39.5) < 0.6
     places, count = np.unique(np.stack([sheet.x[on], sheet.y[on]], 1).round(4), axis=0, return_counts=True)
@@ -125,7 +132,7 @@ def bumpy(seed, height=48, width=64):
         near = gaussian_filter(random.normal(size=(height, width)), random.uniform(1.5, 6))
         d = np.where(near > np.quantile(near, random.uniform(0.7, 0.97)), d + random.uniform(1, 4), d)
     gone = gaussian_filter(random.normal(size=(height, width)), 3)
-    return d.astype(np.float32), gone < np.quantile(gone, random.uniform(0.8, 1.01))
+    return d.astype(np.float32), gone <= np.quantile(gone, random.uniform(0.8, 1))
 
 
 @settings(max_examples=40, deadline=None)
@@ -137,9 +144,8 @@ def test_every_relief_covers_its_pixels_within_the_tolerance(seed, tolerance):
     frame = canvas(*d.shape)
     mesh = relief_mesh(frame, d, valid, cut=0.6, tolerance=tolerance)
     shown, covered = depth_of(mesh, frame)
-    solid = binary_erosion(valid, border_value=True)
-    assert (covered | ~valid).mean() > 0.995
-    assert covered[solid].mean() > 0.995
+    assert covered[valid].mean() > 0.99  # float32 vertices leave hairlines at cuts
+    assert covers(make_sheet(d, valid, cut=0.6, tolerance=tolerance), valid)
     beside, below = cut_sides(d, valid, 0.6)
     mixed = np.zeros(d.shape, np.bool_)
     mixed[:, 1:] |= beside
@@ -167,33 +173,44 @@ def test_every_pixel_of_noise_is_cut_without_crossings(seed):
     a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     area = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
     assert (area > 0).all()
-    assert area.sum() == pytest.approx(24 * 24, abs=2)
+    assert area.sum() == pytest.approx(26 * 26, rel=0.03)  # a pixel more all round
+    assert covers(sheet, everywhere(d))
+
+
+def test_lines_that_cross_when_straightened_go_back_to_their_chains(monkeypatch):
+    random = np.random.default_rng(9)
+    hills = gaussian_filter(random.normal(size=(80, 80)), 2.2)
+    d = np.digitize(hills, np.quantile(hills, [0.2, 0.4, 0.6, 0.8])).astype(np.float32)
+    clashes = []
+    real = relief_sheet._constrained
+
+    def spy(*arguments):
+        result = real(*arguments)
+        clashes.append(int(result[1].sum()))
+        return result
+
+    monkeypatch.setattr(relief_sheet, "_constrained", spy)
+    assert covers(make_sheet(d, everywhere(d), cut=0.5, tolerance=0.1), everywhere(d))
+    assert clashes[0] >= 1 and clashes[-1] == 0
 
 
 def test_two_layers_share_the_atlas_without_overlap():
-    d, valid = bumpy(5, 120, 160)
-    behind = d - 2
+    y, x = np.mgrid[:120, :160]
+    d = (0.02 * x + np.sin(y / 9)).astype(np.float32)
     near = gaussian_filter((np.random.default_rng(1).random(d.shape) > 0.995).astype(np.float64), 4) > 0.005
     frame = canvas(*d.shape)
-    mesh = relief_mesh(frame, d, valid, (behind, near), cut=0.6, tolerance=0.1, gutter=4)
+    mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1, gutter=4)
     statistics = atlas_statistics(mesh)
-    assert statistics.overlap == 0 and statistics.fill > 0.5
+    assert statistics.overlap == 0 and statistics.fill > 0.6
     assert atlas_fault(mesh) is None
     label = chart_labels(mesh)
-    assert label.max() >= 1
-    side = 1 / np.median(texels(mesh, frame))
-    drawn = np.full((round(side), round(side)), -1)
-    from eigenfield.raster import rasterise_atlas
-
-    face = rasterise_atlas(mesh, *drawn.shape).face
-    second = mesh.vertices[mesh.faces].mean(axis=1)
-    assert len(second)
+    side = round(1 / np.median(texels(mesh, frame)))  # one texel a canvas pixel
+    face = rasterise_atlas(mesh, side, side).face
     chart = np.where(face >= 0, label[face], -1)
-    first = chart == label[np.argmax(np.bincount(label)[label])]
-    others = (chart >= 0) & ~first
-    from scipy.ndimage import distance_transform_edt
-
-    assert distance_transform_edt(~first)[others].min() >= 3  # canvas pixels: a layer apart from its neighbours
+    assert len(np.unique(chart)) > 3
+    for one in range(label.max() + 1):
+        others = (chart >= 0) & (chart != one)
+        assert distance_transform_edt(chart != one)[others].min() >= 4
 
 
 def texels(mesh, frame):
@@ -242,8 +259,11 @@ def test_labels_beyond_infinity_are_put_far_away():
 
 def world(at, width=64, height=48):
     """A textured card in front of a textured wall as a camera at (x, y, 0) sees it: photograph and depth labels."""
+
     def pattern(x, y, phase):
-        waves = np.sin(3 * x + phase) + np.sin(5 * y + 2 * phase) + np.sin(7 * x - 4 * y) + np.cos(11 * x + 9 * y + phase)
+        waves = (
+            np.sin(3 * x + phase) + np.sin(5 * y + 2 * phase) + np.sin(7 * x - 4 * y) + np.cos(11 * x + 9 * y + phase)
+        )
         return 127 + 30 * waves
 
     y, x = np.mgrid[:height, :width]

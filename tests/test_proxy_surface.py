@@ -233,8 +233,9 @@ def test_simplification_reports_its_error(points, cameras, whole):
 def test_masks_cut_the_surface(scene, cameras):
     masks = [rasterise_view(ball(), camera).face >= 0 for camera in cameras]
     mesh = within_masks(scene, cameras, masks)
-    assert np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1).max() < 1e-4  # the ball stays, the wall goes
-    assert len(mesh.faces) == 20480
+    on_ball = np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1) < 1e-4
+    assert on_ball.sum() == 10242 and len(mesh.faces) < 20600  # all of the ball, of the wall only what it hides
+    assert np.linalg.norm(mesh.vertices[~on_ball][:, :2], axis=1).max() < 0.9
     assert len(within_masks(ball(), cameras, [None] * 9).faces) == len(ball().faces)
     with pytest.raises(ProxyError) as caught:
         within_masks(scene, cameras, [np.zeros((120, 160), np.bool_)] * 9)
@@ -461,10 +462,11 @@ def test_photographs_with_masks_give_the_foreground_without_a_background(scene, 
     masks = [rasterise_view(ball(), camera).face >= 0 for camera in cameras]
     points = ball(level=3).vertices.astype(np.float64)
     surface = surface_from_views(Drawn(scene, cameras, masks), points, triangles=4000)
-    off = np.abs(np.linalg.norm(surface.mesh.vertices, axis=1) - 1)
-    assert np.median(off) < 0.03 and np.percentile(off, 98) < 0.2  # Poisson rounds the rim of what is seen
+    near = surface.mesh.vertices[surface.mesh.vertices[:, 2] < 0.2]  # what is behind no camera sees
+    off = np.abs(np.linalg.norm(near, axis=1) - 1)
+    assert np.median(off) < 0.03 and np.percentile(off, 90) < 0.15
     seen = rasterise_view(surface.mesh, cameras[4]).face >= 0
-    assert (seen & masks[4]).sum() > 0.9 * masks[4].sum() and (seen & ~masks[4]).sum() < 0.1 * masks[4].sum()
+    assert (seen & masks[4]).sum() > 0.85 * masks[4].sum() and (seen & ~masks[4]).sum() < 0.1 * masks[4].sum()
 
 
 def test_photographs_that_are_all_masked(scene, cameras):

@@ -2,13 +2,13 @@
 
 Both kinds are a relief over directions from a centre: vertex = centre + direction / w, with one inverse distance w a
 direction. For cameras that look one way it is a sheet over the plane of a virtual camera in the array's middle; for
-cameras that look at each other's places, a dome about them. w is a thin plate below the farthest b_i of what was
-reconstructed in each direction: it minimises
+cameras that look at each other's places, a dome about them. In each direction b_i is the farthest of what was
+reconstructed, and a morphological opening takes out what stands before it and is small: the sheet goes on behind it. w
+is the thin plate under tension, with c_i the share of samples,
 
-    sum_i c_i a_i (w_i - b_i)^2 + STIFFNESS sum_i (L w)_i^2 + TENSION w . L w,    a_i = 1 if b_i <= w_i, else NEARER,
+    sum_i c_i (w_i - b_i)^2 + STIFFNESS sum_i (L w)_i^2 + TENSION w . L w,
 
-so a thing in front of the background is bridged rather than followed (asymmetric least squares, Eilers 2005), and a
-plane, affine in w, is continued beyond what was seen of it.
+so a plane, affine in w, is continued for a while beyond what was seen of it, and nothing runs away.
 """
 
 from __future__ import annotations
@@ -36,11 +36,9 @@ CELLS = 56  # of the sheet along its longer side
 WIDEST = 70.0  # degrees from the middle axis that a sheet reaches; cameras that look farther aside get a dome
 BEYOND = 0.08  # of the sheet's size, added on every side
 BEHIND = 0.01  # relative: the sheet is that much farther than what it hides
-STIFFNESS = 100.0  # against one direction that is full of samples: bends are a few directions wide
-TENSION = 0.05  # against the plate's running away where nothing was seen
-NEARER = 1e-3  # weight of what lies in front of the background
-TIGHT = 0.005  # relative: as far in front it still belongs to the background
-PASSES = 20  # of the asymmetric fit at most
+STIFFNESS = 30.0  # against one direction that is full of samples: bends are a few directions wide
+TENSION = 0.5
+OPENING = 8  # directions: what is less than twice as wide counts as standing before the background
 SAMPLES = 200_000
 FARTHEST = 0.1  # quantile of inverse distance in a cell that counts as its background
 LIMIT = 0.5  # of the scene's smallest inverse distance (1st percentile): the background is no farther
@@ -225,6 +223,7 @@ def _relief(directions: Directions, samples: NDArray[np.float64], cameras: Seque
     target, weight = _quantiles(nearest[outside], w[outside], count)
     if not (weight > 0).any():
         target, weight = ceiling * 0.5, np.full(count, 1e-3)
+    target = _opened(directions.faces, target, weight > 0)
     smooth = np.clip(_plate(directions.faces, target, weight), low, w[outside].max() if outside.any() else None)
     envelope = np.minimum(_minimum(nearest[outside], w[outside], count), ceiling)
     result = np.minimum(smooth, envelope * (1 - BEHIND))
@@ -239,16 +238,26 @@ def _plate(faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArra
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian
-    stiff = STIFFNESS * (bend.T @ bend) + TENSION * laplacian + diags_array(np.full(count, 1e-9))
-    side = np.ones(count)
-    w = target
-    for _ in range(PASSES):
-        data = weight * side
-        w = spsolve((stiff + diags_array(data)).tocsc(), data * target)
-        before, side = side, np.where(target <= w * (1 + TIGHT), 1.0, NEARER)
-        if (before == side).all():
-            break
-    return w
+    stiff = STIFFNESS * (bend.T @ bend) + TENSION * laplacian + diags_array(weight + 1e-9)
+    return np.asarray(spsolve(stiff.tocsc(), weight * target))
+
+
+def _opened(faces: NDArray[np.int32], target: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """The target without peaks less than 2 OPENING directions wide; unchanged where it is not known."""
+    a = faces.reshape(-1)
+    b = np.roll(faces, -1, axis=1).reshape(-1)
+
+    def spread(values: NDArray[np.float64], least: np.ufunc) -> NDArray[np.float64]:
+        for _ in range(OPENING):
+            result = values.copy()
+            least.at(result, a, values[b])
+            least.at(result, b, values[a])
+            values = result
+        return values
+
+    eroded = spread(np.where(known, target, np.inf), np.minimum)
+    opened = spread(np.where(np.isfinite(eroded), eroded, -np.inf), np.maximum)
+    return np.where(known, np.minimum(target, opened), target)
 
 
 def _quantiles(

@@ -13,7 +13,7 @@ import logging
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, minimum_filter, uniform_filter
-from scipy.sparse import coo_array, diags_array
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from eigenfield.proxy.layers_kernels import mark_revealed
@@ -41,7 +41,11 @@ RING = 12  # pixels of the far side on which the layer hangs
 UNDER = 4  # pixels by which it reaches under the far side, so that no gap opens between them
 SURE = 2.0  # confidence of `semi_global` at which a depth has half its say
 AGREED = 12.0  # grey levels above which photographs do not agree
-PLATE, MEMBRANE, ANCHOR = 100.0, 0.02, 100.0  # weights of curvature, of slope and of the far side, over those of a depth
+PLATE, MEMBRANE, ANCHOR = (
+    100.0,
+    0.02,
+    100.0,
+)  # weights of curvature, of slope and of the far side, over those of a depth
 
 
 def second_layer(
@@ -139,9 +143,7 @@ def _swept(
     return np.minimum(guess, np.where(want, ceiling, np.inf)).astype(np.float32), trust.astype(np.float32)
 
 
-def _plate(
-    guess: NDArray[np.float32], weight: NDArray[np.float32], inside: NDArray[np.bool_]
-) -> NDArray[np.float64]:
+def _plate(guess: NDArray[np.float32], weight: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float64]:
     """z over `inside` that makes sum weight (z - guess)^2 + PLATE |second differences|^2 + MEMBRANE |differences|^2 least."""
     index = np.full(inside.shape, -1, np.int64)
     index[inside] = np.arange(inside.sum())
@@ -162,7 +164,7 @@ def _plate(
     return result
 
 
-def _stencil(index: NDArray[np.int64], stencil: tuple[tuple[int, int, float], ...], n: int) -> coo_array:
+def _stencil(index: NDArray[np.int64], stencil: tuple[tuple[int, int, float], ...], n: int) -> csr_array:
     """One row for each place where all points of the stencil (row, column, factor) are inside."""
     padded = np.pad(index, 1, constant_values=-1)
     h, w = index.shape

@@ -80,7 +80,9 @@ def _start(vertices: NDArray[np.float64], rim: NDArray[np.bool_]) -> NDArray[np.
     directions = directions[:2]
     largest = np.argmax(np.abs(directions), axis=1)
     directions = directions * np.sign(directions[[0, 1], largest])[:, None]
-    return np.asarray(np.concatenate([centred @ directions[0], centred @ directions[1] + 0.1 * centred @ directions[0]]))
+    return np.asarray(
+        np.concatenate([centred @ directions[0], centred @ directions[1] + 0.1 * centred @ directions[0]])
+    )
 
 
 def surface_areas(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:

@@ -90,9 +90,7 @@ def _without_overlaps(
     claim_texels(grid, corners, order.astype(np.int64), OVERLAP_MARGIN, np.zeros((side, side), np.uint8), claimed)
     if claimed.all():
         return []
-    return [
-        piece for part in (claimed, ~claimed) for piece in _grouped(faces[part], edge_components(corners[part]))
-    ]
+    return [piece for part in (claimed, ~claimed) for piece in _grouped(faces[part], edge_components(corners[part]))]
 
 
 def _on_raster(uv: NDArray[np.float64], triangles: int) -> tuple[NDArray[np.float64], int]:
@@ -159,9 +157,7 @@ def _signed(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.flo
     return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
-def _scaled(
-    uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _scaled(uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     """At the area of the surface, and of positive area on the whole."""
     area = float(_signed(uv, faces).sum())
     factor = np.sqrt(surface_areas(vertices, faces).sum() / abs(area)) if area != 0 else 1.0

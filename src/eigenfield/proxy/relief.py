@@ -61,9 +61,7 @@ def relief_mesh(
             "relief-empty", "the depth map has no surface", remedy="widen the depth range, or look at the masks"
         )
     parts, places, side = packed_layers(used_part(front), behind, gutter)
-    uv = np.concatenate(
-        [(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)]
-    )
+    uv = np.concatenate([(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)])
     starts = np.cumsum([0, *(len(p.x) for p in parts[:-1])])
     faces = np.concatenate([p.faces + start for p, start in zip(parts, starts, strict=True)])
     x, y, z = (np.concatenate([getattr(p, name) for p in parts]) for name in "xyd")
@@ -74,4 +72,3 @@ def relief_mesh(
         np.ascontiguousarray(faces[:, ::-1]).astype(np.int32),  # y is down: positive area is clockwise to the camera
         np.clip(uv, 0, 1).astype(np.float32),
     )
-

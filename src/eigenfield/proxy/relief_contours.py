@@ -12,10 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
-from eigenfield.proxy.relief_kernels import simplify_chain
+from eigenfield.proxy.relief_kernels import split_chain
 
 ANCHOR = 1e-3  # weight of where the knots were in the fit of a chain: decides where the fit leaves them free
-FIT_LIMIT = 0.5  # pixels by which the fit may move a knot
+FIT_LIMIT = 0.75  # pixels by which the fit may move a knot
+WINDOW = 10  # points of the chain by which a corner may be found late
 
 
 def cut_sides(
@@ -91,12 +92,12 @@ def _links(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> NDArray[np.in
 
 
 def straightened(chain: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
-    """Few points of a chain within `tolerance` pixels of all (Douglas and Peucker), then moved to where the
-    polyline through them fits all points best. The ends stay."""
+    """A polyline with a line for each run of the chain that is straight within `tolerance` pixels, its joints moved to
+    where it fits all points best. The ends stay."""
     if len(chain) < 4:
         return chain
     kept = np.zeros(len(chain), np.bool_)
-    simplify_chain(chain, tolerance, kept)
+    split_chain(chain, tolerance, WINDOW, kept)
     knots = np.flatnonzero(kept)
     return _fitted(chain, knots)
 
@@ -114,9 +115,10 @@ def _fitted(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.
     n = len(knots)
     diagonal = np.bincount(part, (1 - t) ** 2, n) + np.bincount(part + 1, t**2, n) + ANCHOR
     beside = np.bincount(part, t * (1 - t), n)[:-1]
-    right = np.stack(
-        [np.bincount(part, (1 - t) * c, n) + np.bincount(part + 1, t * c, n) for c in chain.T], axis=1
-    ) + ANCHOR * chain[knots]
+    right = (
+        np.stack([np.bincount(part, (1 - t) * c, n) + np.bincount(part + 1, t * c, n) for c in chain.T], axis=1)
+        + ANCHOR * chain[knots]
+    )
     right[1] -= beside[0] * found[0]
     right[-2] -= beside[-1] * found[-1]
     bands = np.zeros((2, inner))

@@ -390,8 +390,20 @@ def worst_pixel(points, height, tri, t, d, valid, mixed, worst, place, value):
             if not valid[y, x]:
                 continue
             X, Y = x * LATTICE, y * LATTICE
-            wa = float((points[c, 0] - points[b, 0]) * (Y - points[b, 1]) - (points[c, 1] - points[b, 1]) * (X - points[b, 0])) / area
-            wb = float((points[a, 0] - points[c, 0]) * (Y - points[c, 1]) - (points[a, 1] - points[c, 1]) * (X - points[c, 0])) / area
+            wa = (
+                float(
+                    (points[c, 0] - points[b, 0]) * (Y - points[b, 1])
+                    - (points[c, 1] - points[b, 1]) * (X - points[b, 0])
+                )
+                / area
+            )
+            wb = (
+                float(
+                    (points[a, 0] - points[c, 0]) * (Y - points[c, 1])
+                    - (points[a, 1] - points[c, 1]) * (X - points[c, 0])
+                )
+                / area
+            )
             z = wa * height[a] + wb * height[b] + (1 - wa - wb) * height[c]
             error, found = misfit(d, valid, mixed, y, x, z)
             if error > worst[t] and not is_corner(points, a, b, c, X, Y):
@@ -442,34 +454,69 @@ def refine(points, height, tri, across, fixed, at, vertices, count, d, valid, mi
 
 
 @kernel()
-def simplify_chain(chain, tolerance, kept):
-    """Douglas and Peucker: kept (n,) bool, out: the points of chain (n, 2) whose polyline is within `tolerance` of all. A closed
-    chain is halved at the point farthest from its start."""
-    stack = np.empty((chain.shape[0] + 2, 2), np.int64)
-    stack[0, 0], stack[0, 1] = 0, chain.shape[0] - 1
-    kept[0] = kept[-1] = True
-    top = 1
-    while top:
-        top -= 1
-        first, last = stack[top]
-        dx, dy = chain[last, 0] - chain[first, 0], chain[last, 1] - chain[first, 1]
-        length = np.hypot(dx, dy)
-        worst, where = tolerance, -1
-        for i in range(first + 1, last):
-            x, y = chain[i, 0] - chain[first, 0], chain[i, 1] - chain[first, 1]
-            off = abs(dx * y - dy * x) / length if length > 0 else np.hypot(x, y)
-            if length > 0:  # past an end, that end counts
-                along = (dx * x + dy * y) / length
-                over = max(-along, along - length)
-                if over > 0:
-                    off = np.hypot(off, over)
-            if off > worst:
-                worst, where = off, i
-        if where >= 0:
-            kept[where] = True
-            stack[top, 0], stack[top, 1] = first, where
-            stack[top + 1, 0], stack[top + 1, 1] = where, last
-            top += 2
+def line_through(sums, first, last):
+    """The line nearest to points [first, last] of a chain with prefix sums (n + 1, 5) of x, y, x x, x y, y y: a point on it, its
+    normal, and the sum of squared distances (the smaller eigenvalue of the scatter matrix)."""
+    n = last - first + 1
+    x = (sums[last + 1, 0] - sums[first, 0]) / n
+    y = (sums[last + 1, 1] - sums[first, 1]) / n
+    xx = sums[last + 1, 2] - sums[first, 2] - n * x * x
+    xy = sums[last + 1, 3] - sums[first, 3] - n * x * y
+    yy = sums[last + 1, 4] - sums[first, 4] - n * y * y
+    turn = 0.5 * np.arctan2(2 * xy, xx - yy)
+    rest = 0.5 * (xx + yy) - np.hypot(0.5 * (xx - yy), xy)
+    return x, y, -np.sin(turn), np.cos(turn), max(rest, 0.0)
+
+
+@kernel()
+def is_straight(chain, sums, first, last, tolerance):
+    x, y, nx, ny, _ = line_through(sums, first, last)
+    for i in range(first, last + 1):
+        if abs((chain[i, 0] - x) * nx + (chain[i, 1] - y) * ny) > tolerance:
+            return False
+    return True
+
+
+@kernel()
+def split_chain(chain, tolerance, window, kept):
+    """kept (n,) bool, out: the ends of runs of chain (n, 2) that lie within `tolerance` of a line each. A run is taken as long as
+    it goes; then each joint moves, within `window` points, to where the two runs fit their lines best."""
+    n = chain.shape[0]
+    sums = np.zeros((n + 1, 5))
+    for i in range(n):
+        x, y = chain[i, 0] - chain[0, 0], chain[i, 1] - chain[0, 1]
+        for k, term in enumerate((x, y, x * x, x * y, y * y)):
+            sums[i + 1, k] = sums[i, k] + term
+    local = chain - chain[0]
+    knots = np.zeros(n, np.int64)
+    count, first = 1, 0
+    while first < n - 1:
+        good, bad, step = first + 1, n, 2
+        while first + step < n and is_straight(local, sums, first, first + step, tolerance):
+            good, step = first + step, 2 * step
+        if good < n - 1:
+            bad = min(first + step, n)
+            if bad == n and is_straight(local, sums, first, n - 1, tolerance):
+                good = n - 1
+        while bad - good > 1 and good < n - 1:
+            middle = (good + bad) // 2
+            if is_straight(local, sums, first, middle, tolerance):
+                good = middle
+            else:
+                bad = middle
+        knots[count] = good
+        count += 1
+        first = good
+    for k in range(1, count - 1):
+        before, after = knots[k - 1], knots[k + 1]
+        best, place = np.inf, knots[k]
+        for i in range(max(before + 1, knots[k] - window), min(after - 1, knots[k] + window) + 1):
+            error = line_through(sums, before, i)[4] + line_through(sums, i, after)[4]
+            if error < best:
+                best, place = error, i
+        knots[k] = place
+    for k in range(count):
+        kept[knots[k]] = True
 
 
 @kernel()

@@ -20,7 +20,9 @@ CELLS = 320  # about this many cells make a side of the raster
 GROWTH = 1.01  # from one side that is too small to the next
 
 
-def packed_layers(first: Sheet, second: Sheet | None, gutter: float) -> tuple[list[Sheet], list[NDArray[np.float64]], float]:
+def packed_layers(
+    first: Sheet, second: Sheet | None, gutter: float
+) -> tuple[list[Sheet], list[NDArray[np.float64]], float]:
     """The first layer whole and the second in pieces, by how much each moves, and the side of the square that holds all.
 
     Pieces too wide for the strips that a square leaves beside the first layer would waste most of it: several widths are
@@ -91,9 +93,7 @@ def pack(parts: Sequence[Sheet], gutter: float) -> tuple[list[NDArray[np.float64
     filled = sum(int(mask.sum()) for mask in masks)
     cell = max(1, round(np.sqrt(filled) / CELLS))
     coarse = [_pooled(mask, cell) for mask in masks]
-    side = max(
-        int(np.sqrt(sum(int(mask.sum()) for mask in coarse))), *(max(mask.shape) for mask in coarse), 1
-    )
+    side = max(int(np.sqrt(sum(int(mask.sum()) for mask in coarse))), *(max(mask.shape) for mask in coarse), 1)
     while True:
         taken = np.zeros((side, side), np.bool_)
         places = np.zeros((len(coarse), 2), np.int64)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import binary_dilation, distance_transform_edt
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg
@@ -29,9 +30,10 @@ from eigenfield.proxy.relief_kernels import (
 
 log = logging.getLogger("eigenfield.proxy")
 
-STRAIGHT = 0.5  # pixels that a contour may leave the chain of cut sides by
+STRAIGHT = 0.6  # pixels that cut sides may be off their line: a straight edge leaves them up to 0.5
 COARSEST = 4.0  # pixels, when the limit of triangles leaves no other way
 BORDER_SHARE = 0.6  # of the limit that triangles at contours may take
+PADDING = 2  # pixels
 FRAME = 4  # pixels from the depth map to the rectangle round it
 WEDGE = 4  # pixels round a vertex of a contour whose depths it may take
 SLOPE_RIDGE = 0.03  # squared pixels
@@ -66,12 +68,24 @@ def make_sheet(
     Outside a pixel's width of the cuts the sheet is within `tolerance` of d at every valid pixel (the last fit may
     exceed it a little), unless `limit` triangles do not suffice: then it is as near as they allow, and the log says so.
     """
-    d, valid = np.pad(d, 1), np.pad(valid, 1)
-    beside, below = cut_sides(d, valid, cut)
-    chains = contour_chains(beside, below)
-    flat = _outlined(chains, d.shape, None if limit is None else int(BORDER_SHARE * limit))
-    sheet = _refined(_opened(flat, valid), d, valid, _mixed(beside, below, valid), tolerance, limit)
-    return Sheet(sheet.x - 1, sheet.y - 1, sheet.d, sheet.faces)
+    d, valid, ground = _bordered(d, valid)
+    beside, below = cut_sides(d, ground, cut)
+    flat = _outlined(contour_chains(beside, below), d.shape, None if limit is None else int(BORDER_SHARE * limit))
+    sheet = _refined(_opened(flat, ground), d, valid, _mixed(beside, below, valid), tolerance, limit)
+    return Sheet(sheet.x - PADDING, sheet.y - PADDING, sheet.d, sheet.faces)
+
+
+def _bordered(
+    d: NDArray[np.float32], valid: NDArray[np.bool_]
+) -> tuple[NDArray[np.float32], NDArray[np.bool_], NDArray[np.bool_]]:
+    """d and valid with PADDING pixels around, and the ground that the sheet is to take: a pixel more than is valid, so that
+    straightening its border uncovers nothing. There d is that of the nearest valid pixel, which tells only where cuts go
+    on."""
+    d, valid = np.pad(d, PADDING), np.pad(valid, PADDING)
+    if not valid.any():
+        return d, valid, valid
+    row, column = distance_transform_edt(~valid, return_distances=False, return_indices=True)
+    return d[row, column], valid, binary_dilation(valid, np.ones((3, 3)))
 
 
 def _outlined(chains: list[NDArray[np.float64]], shape: tuple[int, int], limit: int | None) -> _Triangulation:
@@ -91,9 +105,7 @@ def _outlined(chains: list[NDArray[np.float64]], shape: tuple[int, int], limit: 
             lines[index] = chains[index]
 
 
-def _constrained(
-    lines: list[NDArray[np.float64]], shape: tuple[int, int]
-) -> tuple[_Triangulation, NDArray[np.bool_]]:
+def _constrained(lines: list[NDArray[np.float64]], shape: tuple[int, int]) -> tuple[_Triangulation, NDArray[np.bool_]]:
     """The triangulation with every line in it, and which lines cross another."""
     h, w = shape
     frame = [(-FRAME, -FRAME), (w + FRAME, -FRAME), (w + FRAME, h + FRAME), (-FRAME, h + FRAME)]
@@ -141,9 +153,7 @@ def _components(n: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDA
     return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
 
-def _mixed(
-    beside: NDArray[np.bool_], below: NDArray[np.bool_], valid: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def _mixed(beside: NDArray[np.bool_], below: NDArray[np.bool_], valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """(h, w) pixels at a cut between two depths (not at a border): which side of the contour they are on is open."""
     beside, below = beside & valid[:, 1:] & valid[:, :-1], below & valid[1:] & valid[:-1]
     mixed = np.zeros(valid.shape, np.bool_)

@@ -71,8 +71,10 @@ def trimmed(mesh: Mesh, points: Points, *, reach: float = REACH, gap: float = GA
 def within_masks(
     mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray[np.bool_] | None], *, island: float = ISLAND
 ) -> Mesh:
-    """Without what no view has in its frame, or more than a tenth of those that do see outside their masks, (H, W) bool at
-    the cameras' sizes, by more than a pixel. Raises ProxyError `surface-empty`."""
+    """Without what no view has in its frame, and what more than a tenth of those that do see outside their masks.
+
+    masks: (H, W) bool at the cameras' sizes; a pixel outside is forgiven. Raises ProxyError `surface-empty`.
+    """
     positions = mesh.vertices.astype(np.float64)
     seen, hidden = np.zeros(len(positions), np.int64), np.zeros(len(positions), np.int64)
     for camera, mask in zip(cameras, masks, strict=True):

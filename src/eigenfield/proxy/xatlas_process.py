@@ -13,9 +13,10 @@ import sys
 import numpy as np
 import xatlas
 
-RESOLUTION = 1024  # the packing's goal; charts in many small pieces end up on a somewhat larger one
-PADDING = 4  # texels between charts at that size
-MOST_TRIED = 600  # charts: up to here every place in the atlas is tried, above random ones
+RESOLUTION = 1024  # the packing's goal; packed charts end up on one about 1.7 times as large
+PADDING = (4, 7)  # texels between charts on that: at least, and with few charts ..
+PADDING_SHARE = 0.1  # .. of the side of a chart of mean size
+MOST_TRIED = 200  # charts: up to here every place in the atlas is tried (in steps of 4), above random ones
 MAX_COST = 8.0  # of growing a chart; xatlas' 2 cuts a noisy mesh into more pieces at no gain in stretch
 
 
@@ -25,7 +26,7 @@ def main() -> None:
     message = io.BytesIO(sys.stdin.buffer.read())
     points, faces, chart = (np.load(message, allow_pickle=False) for _ in range(3))
     options = xatlas.PackOptions()
-    options.resolution, options.padding, options.bilinear = RESOLUTION, PADDING, True
+    options.resolution, options.padding, options.bilinear = RESOLUTION, PADDING[0], True
     atlas = xatlas.Atlas()
     if points.shape[1] == 3:  # a surface: cut it into charts
         charts = xatlas.ChartOptions()
@@ -33,7 +34,9 @@ def main() -> None:
         atlas.add_mesh(points, faces)
         atlas.generate(charts, options)
     else:  # charts that are laid out: only pack them, at the sizes they have
-        options.bruteForce = len(np.unique(chart)) <= MOST_TRIED
+        count = len(np.unique(chart))
+        options.padding = int(np.clip(PADDING_SHARE * RESOLUTION / np.sqrt(count), *PADDING))
+        options.bruteForce = options.blockAlign = count <= MOST_TRIED
         atlas.add_uv_mesh(points, faces, chart[:, None])
         atlas.generate(pack_options=options)
     origin, corners, uv = atlas.get_mesh(0)

@@ -7,6 +7,10 @@ The model, for each channel on its own: camera c shows the point x of the surfac
 with one mean map M for all cameras, as in the compensation of exposures for panoramas (Brown and Lowe, IJCV 2007). The
 noise stands on the photograph's side: fitted the other way round, noise in T would pull every gain towards 0.
 
+An exposure changes the whole picture alike; a gloss that comes and goes with the viewpoint does not, and taking the
+average of it for an exposure would only spoil the maps. So the fit also looks at how far the blocks of the surface
+depart from it, each on its own, and colours are believed only as far as they explain more than that (`_belief`).
+
 A resampling filter sums to 1, so gain and offset pass through it: a harmonised map is the map of the harmonised
 photograph, and no photograph is decoded twice.
 """
@@ -37,7 +41,8 @@ CAUCHY = 2.385  # residuals of this many standard deviations count half
 LEAST_NOISE = 1 / 255
 PRIOR_GAIN, PRIOR_OFFSET = 0.3, 0.1  # standard deviations round (1, 0), and
 PRIOR_CELLS = 25  # how many residuals of average size the prior weighs as much as
-LARGEST_GAIN = 8.0
+LARGEST_GAIN = 4.0
+BLOCKS = 4  # of the surface along each of its two longest axes
 FEWEST = 8  # cells that a camera must share with others
 
 
@@ -50,10 +55,10 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     do not count. Raises OptionError for an unknown model.
     """
     check_model(model)
-    values, weights = _cells(maps, progress)
+    values, weights, blocks = _cells(maps, progress)
     channels = range(maps.channels)
     with threadpool_limits(1, "blas"):
-        fits = parallel_map(lambda c: fit_colours(values[..., c], weights[..., c], model), channels)
+        fits = parallel_map(lambda c: fit_colours(values[..., c], weights[..., c], blocks, model), channels)
     colours = np.stack(fits, axis=2).astype(np.float32)
     left = maps.cameras - int(np.any([_sharing(weights[..., c]) for c in channels], axis=0).sum())
     if left:
@@ -83,10 +88,13 @@ def harmonised(
     return result
 
 
-def fit_colours(values: NDArray[np.float64], weights: NDArray[np.float64], model: str = "gain") -> NDArray[np.float64]:
+def fit_colours(
+    values: NDArray[np.float64], weights: NDArray[np.float64], blocks: NDArray[np.int64], model: str = "gain"
+) -> NDArray[np.float64]:
     """(Nc, 2) gains and offsets of one channel.
 
     values: (Nc, m), what each camera shows of m places. weights: (Nc, m), 0 where that does not count.
+    blocks: (m,) in which part of the surface each place lies.
 
     Iteratively reweighted least squares (Cauchy's weights) of T - a M - b with a = 1 / g, b = -o / g. Each round is a
     Gauss-Newton step in all a and b at once, the map M eliminated by its Schur complement: alternating between map and
@@ -100,7 +108,7 @@ def fit_colours(values: NDArray[np.float64], weights: NDArray[np.float64], model
         return result
     T, w = values[active], weights[active]
     shared = (w > 0).sum(axis=0) >= 2
-    T, base = np.ascontiguousarray(T[:, shared]), np.ascontiguousarray(w[:, shared])
+    T, base, blocks = np.ascontiguousarray(T[:, shared]), np.ascontiguousarray(w[:, shared]), blocks[shared]
     a, b = np.ones(len(T)), np.zeros(len(T))
     M = _map(T, base, a, b)
     for count in range(ROUNDS):
@@ -117,8 +125,34 @@ def fit_colours(values: NDArray[np.float64], weights: NDArray[np.float64], model
         M = _map(T, w, a, b)
         if count and np.abs(1 / a - before).max() < CLOSE:
             break
-    result[active] = np.stack([1 / a, -b / a], axis=1)
+    belief = _belief(T, w, a, b, M, blocks)
+    result[active] = np.stack([a**-belief, -belief * b / a], axis=1)
     return result
+
+
+def _belief(
+    T: NDArray[np.float64],
+    w: NDArray[np.float64],
+    a: NDArray[np.float64],
+    b: NDArray[np.float64],
+    M: NDArray[np.float64],
+    blocks: NDArray[np.int64],
+) -> float:
+    """From 0 to 1, max(0, 1 - V / E): the positive part of James and Stein's factor.
+
+    E: squares of what the colours change, Σ w (a M + b - M)². V: what gains of each block's own would change on top of
+    that, Σ over cameras and blocks of (Σ w r M)² / Σ w M², with the residuals r.
+    """
+    change = (a[:, None] - 1) * M + b[:, None]
+    explained = float((w * change**2).sum())
+    residual = T - a[:, None] * M - b[:, None]
+    apart = 0.0
+    for block in np.unique(blocks):
+        here = blocks == block
+        above = (w[:, here] * residual[:, here] * M[here]).sum(axis=1)
+        below = (w[:, here] * M[here] ** 2).sum(axis=1)
+        apart += float(np.divide(above**2, below, out=np.zeros_like(above), where=below > 0).sum())
+    return max(0.0, 1 - apart / explained) if explained > 0 else 0.0
 
 
 def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -176,9 +210,21 @@ def _step(
     return step[:n], step[n:] if affine else np.zeros(n)
 
 
-def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _blocks(positions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(m,) the block of each of (m, 3) positions: as many in each quarter along the longest axis, and across it."""
+    centred = positions - positions.mean(axis=0)
+    axes = np.linalg.eigh(centred.T @ centred)[1][:, :0:-1]
+    rank = np.argsort(np.argsort(centred @ axes, axis=0, kind="stable"), axis=0, kind="stable")
+    quarter = rank * BLOCKS // len(positions)
+    return np.asarray(quarter[:, 0] * BLOCKS + quarter[:, 1], np.int64)
+
+
+def _cells(
+    maps: TextureMaps, progress: Progress | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
     """(Nc, m, C) averages over square cells of the atlas and (Nc, m, C) how much each counts: the part of the cell that
-    charts cover where the camera sees the cell and no texel of it is at an end of the range, else 0.
+    charts cover where the camera sees the cell and no texel of it is at an end of the range, else 0. (m,) the block of
+    the surface in which the cell lies.
 
     Averages, since single texels differ from camera to camera by what calibration and proxy are off.
     """
@@ -205,4 +251,5 @@ def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[NDArray[np.flo
 
     for _ in track(parallel_stream(average, range(maps.cameras)), "colours", maps.cameras, progress):
         pass
-    return values, weights
+    place = np.stack([np.bincount(cell, atlas.position[:, axis], len(texels)) for axis in range(3)], axis=1)
+    return values, weights, _blocks(place / texels[:, None])
