@@ -1,6 +1,6 @@
 """How good the geometry is that photographs alone give.
 
-    EIGENFIELD_DATA=captures python benchmarks/proxy.py [hci-antinous]
+    EIGENFIELD_DATA=captures python benchmarks/proxy.py [CASE ...]
 
 Results go to benchmarks/results/proxy-NAME.json.
 """
@@ -8,10 +8,13 @@ Results go to benchmarks/results/proxy-NAME.json.
 from __future__ import annotations
 
 import argparse
+import functools
 import json
 import os
+import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -78,7 +81,84 @@ def hci_antinous() -> dict[str, Any]:
     }
 
 
-CASES: dict[str, Callable[[], dict[str, Any]]] = {"hci-antinous": hci_antinous}
+@dataclass(frozen=True)
+class SceneCase:
+    """One command from a capture to a scene, measured. options: of `encode`; circles: `evaluate --exclude-circles`."""
+
+    folder: str
+    options: tuple[str, ...]
+    circles: str | None = None
+
+
+SCENES = {
+    "tarot": SceneCase("tarot_17x17_512", ("--hold-out", "odd", "--density", "1"), "ball.json"),
+    "tarot-blind": SceneCase("tarot_17x17_512", ("--hold-out", "odd", "--density", "1", "--blind"), "ball.json"),
+    "tarot-5x4": SceneCase("tarot_5x4_1024", ("--hold-out", "every:5", "--textures", "7")),
+    "amethyst": SceneCase("amethyst_17x17_512", ("--hold-out", "odd")),
+    "jellybeans": SceneCase("jellybeans_17x17_768x384", ("--hold-out", "odd")),
+    "shop": SceneCase("shop_9x9", ("--hold-out", "odd")),
+    "boxes": SceneCase("hci_boxes_9x9", ("--hold-out", "odd")),
+    "antinous": SceneCase("hci_antinous_9x9", ("--hold-out", "odd")),
+    "fern": SceneCase("llff_fern", ("--hold-out", "every:5", "--textures", "7")),
+    "cube": SceneCase("cube_colmap_mesh", ("--hold-out", "every:4", "--textures", "5")),
+    "fountain": SceneCase("fountain_P11_half", ("--hold-out", "every:4", "--textures", "5")),
+    "fox": SceneCase(
+        "fox_transforms_half",
+        (
+            "--hold-out",
+            "every:8",
+        ),
+    ),
+    "temple": SceneCase("temple_ring16", ("--hold-out", "every:5", "--textures", "7")),
+}
+
+
+def scene(case: SceneCase) -> dict[str, Any]:
+    """`eigenfield encode FOLDER` and `eigenfield evaluate`: seconds, memory, coverage, quality."""
+    folder = data() / case.folder
+    with tempfile.TemporaryDirectory() as place:
+        output = Path(place) / "scene.glb"
+        encode = ["-m", "eigenfield", "encode", str(folder), "-o", str(output), *case.options]
+        made = measure.run(encode)
+        evaluate = ["-m", "eigenfield", "evaluate", str(output), str(folder), "--json"]
+        if case.circles is not None:
+            evaluate += ["--exclude-circles", str(folder / case.circles)]
+        figures = json.loads(measure.run(evaluate)["output"])
+        size = output.stat().st_size
+        uncoded = None
+        if case.circles is not None:  # what the geometry allows, before coding
+            png = [*encode, "--codec", "png", "--overwrite"]
+            measure.run(png)
+            uncoded = _shortened(json.loads(measure.run(evaluate)["output"]))
+    return {
+        "command": f"eigenfield encode {case.folder} {' '.join(case.options)}",
+        "seconds": made["seconds"],
+        "peak_anonymous_mb": made["peak_anonymous_mb"],
+        "bytes": size,
+        "summary": made["output"].strip().replace(str(output), "scene.glb"),
+        **_shortened(figures),
+        **({} if uncoded is None else {"png": uncoded}),
+    }
+
+
+def _shortened(figures: dict[str, Any]) -> dict[str, Any]:
+    """The means over encoded and over held-out cameras."""
+    keys = ("cameras", "psnr", "ssim", "psnr_full", "coverage")
+    result: dict[str, Any] = {}
+    for part in ("encoded", "held_out"):
+        values = figures["image"][part]
+        if values is None:
+            continue
+        result[part] = {key: values[key] for key in keys}
+        if "outside" in values:
+            result[part]["psnr_outside"] = values["outside"]["psnr"]
+    return result
+
+
+CASES: dict[str, Callable[[], dict[str, Any]]] = {
+    "hci-antinous": hci_antinous,
+    **{f"scene-{name}": functools.partial(scene, case) for name, case in SCENES.items()},
+}
 
 
 def main() -> None:

@@ -8,6 +8,7 @@ import tomllib
 from dataclasses import replace
 
 import av
+import charts
 import click
 import cv2
 import numpy as np
@@ -16,7 +17,6 @@ from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import charts
 from eigenfield.calibrate import board as boards
 from eigenfield.calibrate.bundle import Rig, adjust
 from eigenfield.calibrate.chart import calibrate_charts

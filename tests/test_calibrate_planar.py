@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from test_stereo_depth import everywhere, paint, photograph
+from planes import everywhere, paint, photograph
 
 from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
 from eigenfield.calibrate.array import PARAMETERS, ArrayModel

@@ -10,14 +10,14 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+import calibrations as write
 import cv2
 import numpy as np
 import pytest
+from calibrations import CUBE, HEIGHT, NAMES, WIDTH, stations
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import calibrations as write
-from calibrations import CUBE, HEIGHT, NAMES, WIDTH, stations
 from eigenfield.capture import open_capture
 from eigenfield.capture.bundler import find_bundler, read_bundler
 from eigenfield.capture.filestorage import load_storage

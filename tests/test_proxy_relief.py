@@ -14,8 +14,9 @@ from eigenfield.camera import Camera
 from eigenfield.errors import ProxyError
 from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, relief_mesh, relief_sheet, second_layer
 from eigenfield.proxy.relief_contours import contour_chains, cut_sides, straightened
-from eigenfield.proxy.relief_kernels import LATTICE, label_pixels
+from eigenfield.proxy.relief_kernels import label_pixels
 from eigenfield.proxy.relief_sheet import make_sheet, sheet_components
+from eigenfield.proxy.relief_triangulation import LATTICE
 from eigenfield.raster import rasterise_atlas, rasterise_view
 from eigenfield.stereo import Canvas, view_matrices
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 
 from eigenfield import parallel
 from eigenfield.camera import Camera
+from eigenfield.capture.lens import Lens, source_positions
 from eigenfield.capture.lightfield import LightField, Photograph, View
 from eigenfield.errors import ProxyError
 from eigenfield.mesh import Mesh
@@ -482,6 +485,20 @@ def test_photographs_that_share_nothing(scene):
     with pytest.raises(ProxyError) as caught:
         surface_from_views(Drawn(scene, apart), points)
     assert caught.value.code == "surface-overlap" and "4 photographs" in str(caught.value)
+
+
+def test_the_border_that_lens_removal_leaves_is_no_mask(scene, cameras):
+    lens = Lens("brown", (0.3, 0.0, 0.0, 0.0, 0.0))
+    K = cameras[0].K
+    inside = source_positions(K, lens, 160, 120)[2]
+    assert 0.5 < inside.mean() < 0.99
+    drawn = rasterise_view(ball(), cameras[0]).face >= 0
+    for mask, real in ((inside, False), (inside & drawn, True)):
+        light_field = Drawn(scene, cameras, [mask] * 9)
+        object.__setattr__(light_field, "views", tuple(replace(view, lens=lens) for view in light_field.views))
+        picture = multiview._pictures(light_field, [0], 100_000, None)[0]
+        assert (picture.mask is not None) == real
+        assert picture.known is not None and np.array_equal(picture.known, inside)
 
 
 def test_resizing_keeps_what_a_camera_sees():

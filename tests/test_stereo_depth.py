@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from planes import everywhere, paint, photograph
 
 from eigenfield.camera import Camera
 from eigenfield.parallel import set_threads
@@ -41,52 +42,6 @@ def grid_matrices(side: int = GRID) -> np.ndarray:
     return matrices
 
 
-def paint(seed: int, size: int = 256, detail: float = 3.0) -> np.ndarray:
-    """(size, size, 3) smooth random colours that repeat at the edges."""
-    rng = np.random.default_rng(seed)
-    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(size), np.fft.fftfreq(size)))
-    noise = np.fft.fft2(rng.standard_normal((size, size, 3)), axes=(0, 1))
-    noise *= np.exp(-((frequency * np.pi * detail) ** 2))[..., None]
-    values = np.real(np.fft.ifft2(noise, axes=(0, 1)))
-    return np.clip(128 + 45 * values / values.std(), 0, 255)
-
-
-def look_up(texture: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Bilinear, repeating."""
-    size = len(texture)
-    i, j = np.floor(x).astype(int), np.floor(y).astype(int)
-    fx, fy = (x - i)[..., None], (y - j)[..., None]
-    at = lambda a, b: texture[a % size, b % size]  # noqa: E731
-    upper = (1 - fx) * at(j, i) + fx * at(j, i + 1)
-    return (1 - fy) * upper + fy * ((1 - fx) * at(j + 1, i) + fx * at(j + 1, i + 1))
-
-
-def photograph(layers: list, matrices: np.ndarray, side: int = SIDE) -> np.ndarray:
-    """(V, side, side, 3) uint8. layers, near to far: (a, b, c, texture, inside): the plane d = a + b x + c y of canvas
-    coordinates, where inside(x, y) holds.
-
-    A pixel's ray meets the plane where M (x, y, a + b x + c y, 1) is the pixel: a homography, inverted.
-    """
-    v, u = np.mgrid[0:side, 0:side].astype(float)
-    result = np.zeros((len(matrices), side, side, 3), np.uint8)
-    for picture, matrix in zip(result, matrices, strict=True):
-        colour = np.full((side, side, 3), 0.0)
-        empty = np.ones((side, side), bool)
-        for a, b, c, texture, inside in layers:
-            plane = np.array([[1, 0, 0], [0, 1, 0], [b, c, a], [0, 0, 1]])
-            x, y, w = np.moveaxis(np.stack([u, v, np.ones_like(u)], -1) @ np.linalg.inv(matrix @ plane).T, -1, 0)
-            x, y = x / w, y / w
-            hit = empty & inside(x, y)
-            colour[hit] = look_up(texture, x, y)[hit]
-            empty &= ~hit
-        picture[:] = np.rint(colour)
-    return result
-
-
-def everywhere(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    return np.ones(x.shape, bool)
-
-
 def middle(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return (abs(x - SIDE / 2) < 20) & (abs(y - SIDE / 2) < 20)
 
@@ -95,14 +50,14 @@ def middle(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 def slanted():
     layer = (0.3, 0.008, -0.006, paint(1), everywhere)
     y, x = np.mgrid[0:SIDE, 0:SIDE]
-    return photograph([layer], grid_matrices()), 0.3 + 0.008 * x - 0.006 * y
+    return photograph([layer], grid_matrices(), SIDE), 0.3 + 0.008 * x - 0.006 * y
 
 
 @pytest.fixture(scope="module")
 def two_layers():
     layers = [(1.55, 0, 0, paint(2), middle), (-1.05, 0, 0, paint(3), everywhere)]
     y, x = np.mgrid[0:SIDE, 0:SIDE]
-    return photograph(layers, grid_matrices()), np.where(middle(x, y), 1.55, -1.05)
+    return photograph(layers, grid_matrices(), SIDE), np.where(middle(x, y), 1.55, -1.05)
 
 
 @given(st.floats(-1.5, 1.5))
@@ -336,7 +291,7 @@ def test_maps_of_one_plane_agree_and_a_false_map_is_not_confirmed():
 def test_the_range_is_found_and_its_absence_is_said(two_layers):
     matrices = grid_matrices()
     layers = [(1.5, 0, 0, paint(2, detail=6), middle), (-1.0, 0, 0, paint(3, detail=6), everywhere)]
-    pictures = photograph(layers, matrices)
+    pictures = photograph(layers, matrices, SIDE)
     found = depth_range(pictures, matrices, (SIDE, SIDE), (-6, 6))
     assert found is not None
     assert -2.2 < found[0] < -0.95 and 1.4 < found[1] < 2.7

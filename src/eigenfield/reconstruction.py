@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import logging
 import time
@@ -33,7 +34,9 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_map
 from eigenfield.progress import Progress
 from eigenfield.proxy import (
-    fill_background,
+    Primitive,
+    atlas_statistics,
+    find_view,
     fit_sphere,
     insert_primitive,
     parse_primitive,
@@ -124,8 +127,9 @@ def reconstruct(
     "auto" to choose. refine: correct the cameras of an array together with its depth; None: where no calibration was
     given and they are not exact. triangles: of the proxy, about so many at most. background: close the frustum behind
     what was reconstructed; None: unless there are masks. primitives: `sphere:...` or `plane:...`, put in by hand.
-    fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline. blind: a rule of `hold_out`
-    (see `encode`): these views take no part, each only registers its own camera; arrays only. work: the folder of finished stages; None keeps none.
+    fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline.
+    blind: a rule of `hold_out` (see `encode`): these views take no part, each only registers its own camera; arrays
+    only. work: the folder of finished stages; None keeps none.
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
@@ -304,7 +308,9 @@ def _pictures(capture: Capture) -> tuple[NDArray[np.uint8], float]:
         missing = height - pixels.shape[0], width - pixels.shape[1]
         if any(missing):  # photographs of one camera may differ by a row or two
             pixels = np.pad(pixels, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
-        return pixels if scale == 1 else cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+        if scale < 1:
+            pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
+        return pixels
 
     result = np.empty((len(sizes), size[1], size[0], 3), np.uint8)
 
@@ -368,52 +374,57 @@ def _light_field(capture: Capture, planar: Planar, scale: float) -> LightField:
 
 def _poisson(run: _Run, light_field: LightField, points: NDArray[np.float64] | None, identity: list[Any]) -> Mesh:
     settings = run.settings
-    inputs = [identity, None if points is None else len(points), settings.triangles]
+    by_hand = [settings.primitives, settings.fit_spheres, settings.background]
+    inputs = [identity, None if points is None else len(points), settings.triangles, by_hand]
 
     def build(folder: Path) -> None:
         surface = surface_from_views(
-            light_field, points, triangles=settings.triangles, background=False, progress=run.progress
-        )
+            light_field, points, triangles=settings.triangles, background=settings.background,
+            primitives=_by_hand(run, light_field), progress=run.progress,
+        )  # fmt: skip
+        log.info("surface: %d points from %d depth maps, error %s", surface.points, surface.views, surface.error)
         write_ply(surface.mesh, folder / MESH)
 
     return read_mesh(run.stage("surface", inputs, build) / MESH)
 
 
 def _finished(run: _Run, light_field: LightField, mesh: Mesh, identity: list[Any]) -> Mesh:
-    """Primitives and background put in, and an atlas for all."""
+    """With an atlas; in a relief, primitives are put in first."""
     settings = run.settings
-    masked = any(view.mask is not None for view in light_field.views)
-    background = settings.background if settings.background is not None else not masked
     relief = mesh.uv is not None
-    if relief and not settings.primitives and not settings.fit_spheres:
-        return mesh  # the relief covers what the array sees, and has its atlas
-    inputs = [identity, relief, settings.primitives, settings.fit_spheres, background, settings.triangles]
+    by_hand = [settings.primitives, settings.fit_spheres] if relief else []
+    if relief and not any(by_hand):
+        return mesh
+    inputs = [identity, mesh_digest(mesh), by_hand]
 
     def build(folder: Path) -> None:
         result = mesh
-        cameras = light_field.cameras
-        for text in settings.primitives:
-            result = insert_primitive(result, parse_primitive(text), cameras)
-        for text in settings.fit_spheres:
-            region = parse_region(text)
-            fitted = fit_sphere(
-                _view_named(light_field, region.view), region, cameras,
-                lambda index: light_field.photograph(index).pixels, progress=run.progress,
-            )  # fmt: skip
-            log.info("%s: %s", text, fitted)
-            result = insert_primitive(result, fitted.sphere, cameras)
-        if background and not relief:
-            result = fill_background(result, cameras)
-        limit = max(settings.triangles, len(result.faces))
-        write_ply(unwrapped(result, triangles=limit, cameras=cameras, progress=run.progress), folder / MESH)
+        for primitive in _by_hand(run, light_field) if relief else ():
+            result = insert_primitive(result, primitive, light_field.cameras)
+        result = unwrapped(result, triangles=len(result.faces), cameras=light_field.cameras, progress=run.progress)
+        log.info("atlas: %s", atlas_statistics(result))
+        write_ply(result, folder / MESH)
 
     return read_mesh(run.stage("proxy", inputs, build) / MESH)
 
 
-def _view_named(light_field: LightField, name: str) -> int:
-    if name not in light_field.names:
-        raise OptionError("fit-sphere", f"no photograph is called {name}", remedy="eigenfield inspect lists the names")
-    return light_field.names.index(name)
+def mesh_digest(mesh: Mesh) -> str:
+    """A digest of a mesh's vertices and faces."""
+    return hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
+
+
+def _by_hand(run: _Run, light_field: LightField) -> list[Primitive]:
+    """The primitives that were asked for, spheres fitted to their outlines."""
+    shapes = [parse_primitive(text) for text in run.settings.primitives]
+    for text in run.settings.fit_spheres:
+        region = parse_region(text)
+        fitted = fit_sphere(
+            find_view(region, light_field.names), region, light_field.cameras,
+            lambda index: light_field.photograph(index).pixels, progress=run.progress,
+        )  # fmt: skip
+        log.info("%s: %s", text, fitted)
+        shapes.append(fitted.sphere)
+    return shapes
 
 
 def _write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:

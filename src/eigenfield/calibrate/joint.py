@@ -39,7 +39,7 @@ SEEN = 0.15  # of the views must see a point
 CORRELATED = 100
 TAU = 15.0  # grey levels: residuals beyond count less (Cauchy)
 BIAS = 0.96  # pixels at the outermost camera by which a buffer may hide a point
-SWEEP_STEP = 0.8  # pixels at the outermost camera between two labels
+SWEEP_STEP = 1.2  # pixels at the outermost camera between two labels
 SMOOTH = 0.63  # pixels at the outermost camera within which neighbours are one surface
 SURE = 2.7  # squared grey levels per squared pixel there: curvature of the cost that makes a depth half sure
 DEPTH_STEPS = (0.64, 0.48, 0.48, 0.32, 0.24)  # likewise, of the rounds of refinement
@@ -188,7 +188,7 @@ class _Joint:
         cost = sweep(self.half[views], matrices, small.shape, labels, reference=reference, known=known, unseen=MOST)
         guide = cv2.cvtColor(reference, cv2.COLOR_RGB2GRAY).astype(np.float32)
         d, _ = semi_global(cost, guide, labels)
-        self.d = cv2.resize(d, self.canvas.shape[::-1], interpolation=cv2.INTER_LINEAR)
+        self.d = np.asarray(cv2.resize(d, self.canvas.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)
         log.info("sweep: %d views, %d labels", len(views), len(labels))
 
     def reach_of(self, views: NDArray[np.int64]) -> float:
@@ -412,7 +412,7 @@ def _is_reversed(joint: _Joint, rings: Sequence[NDArray[np.int64]]) -> bool:
 
 
 def _blurred(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    return pack(cv2.GaussianBlur(unpack(picture), (0, 0), 2.0)[None])[0]
+    return pack(np.asarray(cv2.GaussianBlur(unpack(picture), (0, 0), 2.0), np.uint8)[None])[0]
 
 
 def _framed(picture: NDArray[np.uint8], shape: tuple[int, int]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
@@ -421,4 +421,5 @@ def _framed(picture: NDArray[np.uint8], shape: tuple[int, int]) -> tuple[NDArray
     bottom, right = shape[0] - picture.shape[0] - top, shape[1] - picture.shape[1] - left
     known = np.zeros(shape, np.bool_)
     known[top : top + picture.shape[0], left : left + picture.shape[1]] = True
-    return cv2.copyMakeBorder(picture, top, bottom, left, right, cv2.BORDER_REPLICATE), known
+    drawn_out = cv2.copyMakeBorder(picture, top, bottom, left, right, cv2.BORDER_REPLICATE)
+    return np.asarray(drawn_out, np.uint8), known

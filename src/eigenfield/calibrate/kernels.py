@@ -78,9 +78,9 @@ def occlusion_votes(picture, reference, matrix, d, gap, contrast, near, far):  #
     """Which of two surfaces shows where both project to one pixel of `picture`.
 
     reference: (h, w, 3), the picture that d belongs to (no margin). near, far: (H, W) int64 scratch, -1.
-    Every pixel of `picture` notes the reference pixels of largest and smallest d that land on it. Where these differ by
-    more than `gap` in d and `contrast` grey levels in colour, and one is clearly closer to what is seen, it gets a vote.
-    Returns the votes for the larger d and for the smaller.
+    Every pixel of `picture` notes the reference pixels of largest and smallest d that land on it. Where these differ
+    by more than `gap` in d and `contrast` grey levels in colour, and one is clearly closer to what is seen, it gets a
+    vote. Returns the votes for the larger d and for the smaller.
     """
     height, width = near.shape
     rows, columns = d.shape

@@ -47,7 +47,9 @@ class PlanarStart:
     given: bool = False
 
 
-def start_planar(pictures: Sequence[NDArray[np.uint8]], layout: Layout, names: Sequence[str]) -> PlanarStart:
+def start_planar(
+    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: Layout, names: Sequence[str]
+) -> PlanarStart:
     """Estimate spacing, direction and disparities of a planar array from points tracked round its centre.
 
     pictures: n of (H, W, 3), one size. Raises CaptureError: `grid-texture` (too few points), `grid-motion` (points do

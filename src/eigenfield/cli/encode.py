@@ -180,7 +180,7 @@ def command(
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
-    place = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
+    place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
         if proxy is not None:
             refuse_unused(settings, blind)

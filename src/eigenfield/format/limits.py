@@ -30,7 +30,7 @@ MAX_VERTICES = 2**26
 MAX_TRIANGLES = 2**27
 MAX_WEIGHTS = 2**28
 
-MAX_GAIN = 1_000.0  # of a camera's colours, and at least its reciprocal
-MAX_OFFSET = 1_000.0
+MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal
+MAX_OFFSET = 1_000
 
 ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

@@ -5,16 +5,17 @@ from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.layers import second_layer
 from eigenfield.proxy.multiview import Surface, surface_from_views
 from eigenfield.proxy.prepare import check_seen, prepare_proxy
-from eigenfield.proxy.primitives import insert_primitive, parse_primitive
+from eigenfield.proxy.primitives import Primitive, insert_primitive, parse_primitive
 from eigenfield.proxy.read import read_mesh
 from eigenfield.proxy.relief import relief_mesh
-from eigenfield.proxy.sphere_fit import fit_sphere, parse_region
+from eigenfield.proxy.sphere_fit import find_view, fit_sphere, parse_region
 from eigenfield.proxy.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped
 from eigenfield.proxy.write import check_mesh_name, write_mesh, write_ply
 
 __all__ = [
     "DEFAULT_TRIANGLES",
     "AtlasStatistics",
+    "Primitive",
     "Surface",
     "atlas_fault",
     "atlas_statistics",
@@ -22,6 +23,7 @@ __all__ = [
     "check_mesh_name",
     "check_seen",
     "fill_background",
+    "find_view",
     "fit_sphere",
     "insert_primitive",
     "parse_primitive",

@@ -96,7 +96,8 @@ def _stretch(
 
 
 def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
-    """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in it."""
+    """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in
+    it."""
     p, q = vertices[faces], uv[faces]
     surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
     signed = _signed_area(q)

@@ -117,7 +117,8 @@ def _swept(
     cut: float,
     moves: NDArray[np.float64],
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Depth of the wanted pixels from the views that see past the first layer, and how far it is to be trusted (0..1)."""
+    """Depth of the wanted pixels from the views that see past the first layer, and how far it is to be trusted
+    (0..1)."""
     chosen = np.arange(0, len(matrices), -(-len(matrices) // MOST_VIEWS))
     packed, matrices = pack(pictures[chosen]), matrices[chosen]
     low, high = float(floor[want].min()), float(ceiling[want].max())
@@ -144,7 +145,8 @@ def _swept(
 
 
 def _plate(guess: NDArray[np.float32], weight: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """z over `inside` that makes sum weight (z - guess)^2 + PLATE |second differences|^2 + MEMBRANE |differences|^2 least."""
+    """z over `inside` that makes sum weight (z - guess)^2 + PLATE |second differences|^2 + MEMBRANE |differences|^2
+    least."""
     index = np.full(inside.shape, -1, np.int64)
     index[inside] = np.arange(inside.sum())
     n = int(inside.sum())

@@ -14,11 +14,12 @@ NEAR_SHARE = 0.6  # of the jump above the far side: what belongs to the near sid
 
 @kernel()
 def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
-    """For every side between two valid pixels whose depths differ by more than `cut`: the pixels of its near side that are uncovered.
+    """For every side between two valid pixels whose depths differ by more than `cut`: the pixels of its near side
+    that are uncovered.
 
-    reach (4,): pixels to the right, down, left and up that a point moves at most for one unit of d. The near pixel of a jump J covers
-    from its cut reach J pixels, towards where it moves. want, ceiling (h, w): out, the pixels, and the least over their cuts of the
-    far side's d + slack.
+    reach (4,): pixels to the right, down, left and up that a point moves at most for one unit of d. The near pixel of
+    a jump J covers from its cut reach J pixels, towards where it moves. want, ceiling (h, w): out, the pixels, and
+    the least over their cuts of the far side's d + slack.
     """
     h, w = d.shape
     for y in range(h):

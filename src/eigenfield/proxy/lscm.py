@@ -1,4 +1,5 @@
-"""Least-squares conformal maps (Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2002).
+"""Least-squares conformal maps (Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation",
+2002).
 
 The scale and turn of the map, which the paper fixes by pinning two vertices at a price in distortion near them, are
 fixed by the boundary as a whole: Mullen et al., "Spectral Conformal Parameterization" (2008).

@@ -34,8 +34,9 @@ def conformal_charts(mesh: Mesh) -> Mesh:
     """Every chart of a mesh with UVs laid out by `conformal_map`, at the area of its surface.
 
     A chart hangs together by edges: at a single vertex the map could turn and shrink one side freely. Where the map
-    folds, overlaps or stretches more than the mesh's own UVs, those are kept (at the same area). Where those fold or overlap as well, the triangles that do are cut out. The UVs of the result lie
-    over each other, charts are to be packed; its faces keep their order.
+    folds, overlaps or stretches more than the mesh's own UVs, those are kept (at the same area). Where those fold or
+    overlap as well, the triangles that do are cut out. The UVs of the result lie over each other, charts are to be
+    packed; its faces keep their order.
     """
     assert mesh.uv is not None
     groups = _grouped(np.arange(len(mesh.faces)), edge_components(mesh.faces))
@@ -72,7 +73,7 @@ def _laid_out(mesh: Mesh, chart: NDArray[np.int64]) -> list[_Piece]:
         if len(faces) > 1 and not _sound(uv, points, corners):
             waiting += _without_overlaps(uv, corners, faces) or _halves(points, corners, faces)
         else:
-            done.append(_Piece(faces, used, corners, uv - uv.min(axis=0), conformal))
+            done.append(_Piece(faces, used.astype(np.int64), corners, uv - uv.min(axis=0), conformal))
     return done
 
 

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
-from eigenfield.capture import LightField
+from eigenfield.capture.lens import source_positions
+from eigenfield.capture.lightfield import LightField, View
 from eigenfield.errors import ProxyError
 from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_stream
@@ -46,6 +47,7 @@ QUANTILES = (0.5, 99.5)  # percent, of the points' inverse depths
 FEWEST_POINTS = 30  # in view, for a range of one's own
 ROUNDS = 2  # of refinement of a depth map
 END = 0.25  # pixels: depths this near the ends of the range are none
+FRAYED = 0.01  # of the pixels: what a mask may hide beyond the lens's border and still be that border
 TOLERANCE = (0.004, 0.02)  # least and largest relative tolerance of fusion
 
 
@@ -66,11 +68,13 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class _Picture:
-    """A photograph at the working resolution: pixels (H, W, 3) uint8, mask (H, W) bool or None."""
+    """A photograph at the working resolution: pixels (H, W, 3) uint8; mask (H, W) bool, the foreground, or None; known
+    (H, W) bool, where the removal of the lens left a picture, or None."""
 
     camera: Camera
     pixels: NDArray[np.uint8]
     mask: NDArray[np.bool_] | None
+    known: NDArray[np.bool_] | None
 
 
 def surface_from_views(
@@ -129,9 +133,20 @@ def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progres
         small = camera.resized(max(2, round(camera.width * scale)), max(2, round(camera.height * scale)))
         pixels = _resampled(photograph.pixels, camera, small)
         mask = None if photograph.mask is None else _resampled(photograph.mask, camera, small) > 0.5
-        return _Picture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask)
+        known = _lens_frame(light_field.views[index], small)
+        if mask is not None and known is not None and (known & ~mask).mean() < FRAYED:
+            mask = None  # it says no more than where the lens left no picture
+        return _Picture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
 
     return list(track(parallel_stream(one, chosen), "photographs", len(chosen), progress))
+
+
+def _lens_frame(view: View, small: Camera) -> NDArray[np.bool_] | None:
+    """Where the removal of the lens leaves a picture, at the working resolution; None: everywhere."""
+    if view.lens is None:
+        return None
+    _, _, inside = source_positions(view.camera.K, view.lens, view.camera.width, view.camera.height)
+    return None if inside.all() else _resampled(inside.astype(np.float32), view.camera, small) > 0.5
 
 
 def _resampled(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDArray[np.float32]:
@@ -218,6 +233,7 @@ def _depth_map(
     depth = estimate_depth(stack, [own.camera, *cameras], canvas, (0.0, reach), rounds=ROUNDS)
     w = canvas.offset + canvas.scale * depth.d
     w[(depth.d <= END) | (depth.d >= reach - END)] = 0
-    if own.mask is not None:
-        w[~own.mask] = 0
+    for kept in (own.mask, own.known):
+        if kept is not None:
+            w[~kept] = 0
     return w.astype(np.float32), unit / float(np.median(w[w > 0])) if (w > 0).any() else 0.0

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
-from eigenfield.proxy.relief_kernels import LATTICE, first_fit, label_pixels
+from eigenfield.proxy.relief_kernels import first_fit, label_pixels
 from eigenfield.proxy.relief_sheet import Sheet, sheet_components, used_part
+from eigenfield.proxy.relief_triangulation import LATTICE
 
 FULL = 0.6  # part of its box that a piece should fill
 SMALLEST = 24.0  # pixels, longer side of a box that is not divided further
@@ -23,10 +24,11 @@ GROWTH = 1.01  # from one side that is too small to the next
 def packed_layers(
     first: Sheet, second: Sheet | None, gutter: float
 ) -> tuple[list[Sheet], list[NDArray[np.float64]], float]:
-    """The first layer whole and the second in pieces, by how much each moves, and the side of the square that holds all.
+    """The first layer whole and the second in pieces, by how much each moves, and the side of the square that holds
+    all.
 
-    Pieces too wide for the strips that a square leaves beside the first layer would waste most of it: several widths are
-    tried, and the smallest square is taken.
+    Pieces too wide for the strips that a square leaves beside the first layer would waste most of it: several widths
+    are tried, and the smallest square is taken.
     """
     if second is None or len(second.faces) == 0:
         return [first], *pack([first], gutter)
@@ -39,7 +41,8 @@ def packed_layers(
 
 
 def pieces_of(sheet: Sheet, room: float) -> list[Sheet]:
-    """A sheet divided into pieces that hang together, fill their boxes and fit into a strip `room` wide; largest first."""
+    """A sheet divided into pieces that hang together, fill their boxes and fit into a strip `room` wide; largest
+    first."""
     pieces: list[NDArray[np.int64]] = []
     corners = np.stack([sheet.x, sheet.y], axis=1)[sheet.faces]
     component = sheet_components(sheet.faces, len(sheet.x))

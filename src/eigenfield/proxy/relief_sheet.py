@@ -18,15 +18,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg
 
 from eigenfield.proxy.relief_contours import contour_chains, cut_sides, straightened
-from eigenfield.proxy.relief_kernels import (
-    LATTICE,
-    constrain,
-    label_pixels,
-    refine,
-    restore,
-    triangulate,
-    wedge_moments,
-)
+from eigenfield.proxy.relief_kernels import label_pixels, refine, wedge_moments
+from eigenfield.proxy.relief_triangulation import LATTICE, constrain, restore, triangulate
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -57,7 +50,7 @@ class _Triangulation:
     points: NDArray[np.int64]
     tri: NDArray[np.int64]
     across: NDArray[np.int64]
-    fixed: NDArray[np.bool_]
+    fixed: NDArray[np.int64]
 
 
 def make_sheet(
@@ -78,14 +71,14 @@ def make_sheet(
 def _bordered(
     d: NDArray[np.float32], valid: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_], NDArray[np.bool_]]:
-    """d and valid with PADDING pixels around, and the ground that the sheet is to take: a pixel more than is valid, so that
-    straightening its border uncovers nothing. There d is that of the nearest valid pixel, which tells only where cuts go
-    on."""
+    """d and valid with PADDING pixels around, and the ground that the sheet is to take: a pixel more than is valid,
+    so that straightening its border uncovers nothing. There d is that of the nearest valid pixel, which tells only
+    where cuts go on."""
     d, valid = np.pad(d, PADDING), np.pad(valid, PADDING)
     if not valid.any():
         return d, valid, valid
     row, column = distance_transform_edt(~valid, return_distances=False, return_indices=True)
-    return d[row, column], valid, binary_dilation(valid, np.ones((3, 3)))
+    return d[row, column], valid, binary_dilation(valid, np.ones((3, 3), np.bool_))
 
 
 def _outlined(chains: list[NDArray[np.float64]], shape: tuple[int, int], limit: int | None) -> _Triangulation:
@@ -188,8 +181,8 @@ def _first_depths(
 
 
 def _planes(moments: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n,) value at the origin of the planes with moments sum w (1, x, y, x x, x y, y y, d, x d, y d); few pixels in a row hold
-    the slope at zero."""
+    """(n,) value at the origin of the planes with moments sum w (1, x, y, x x, x y, y y, d, x d, y d); few pixels in
+    a row hold the slope at zero."""
     w, x, y, xx, xy, yy, d, xd, yd = moments.T
     ridge = SLOPE_RIDGE * w
     matrix = np.stack([w, x, y, x, xx + ridge, xy, y, xy, yy + ridge], axis=1).reshape(-1, 3, 3)
@@ -241,8 +234,9 @@ def _fitted(
     mixed: NDArray[np.bool_],
     tolerance: float,
 ) -> NDArray[np.float64]:
-    """Depths of the vertices for which the squared difference to the depth map is least, over pixels away from cuts that were
-    within OUTLIER tolerances: A^T (A z - d) + STIFF (z - z0) = 0, A the barycentric coordinates of the pixels."""
+    """Depths of the vertices for which the squared difference to the depth map is least, over pixels away from cuts
+    that were within OUTLIER tolerances: A^T (A z - d) + STIFF (z - z0) = 0, A the barycentric coordinates of the
+    pixels."""
     owner = np.empty(d.shape, np.int32)
     label_pixels(points, tri, len(tri), owner)
     y, x = np.nonzero((owner >= 0) & valid & ~mixed)

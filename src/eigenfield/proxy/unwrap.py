@@ -172,8 +172,8 @@ def _run_xatlas(
     progress: Progress | None,
     done: int,
 ) -> bytes:
-    """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting is
-    (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
+    """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting
+    is (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
     command = [sys.executable, "-P", str(Path(__file__).with_name("xatlas_process.py"))]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     with tempfile.TemporaryFile() as message:  # a pipe would stay half sent when `communicate` runs into its timeout

@@ -19,14 +19,16 @@ def extended(d: NDArray[np.float32], known: NDArray[np.bool_], low: float, high:
     """
     if known.all() or not known.any():
         return d
-    known = _without_islands(cv2.erode(known.astype(np.uint8), np.ones((2 * RIM + 1, 2 * RIM + 1)), borderValue=1))
+    eroded = cv2.erode(known.astype(np.uint8), np.ones((2 * RIM + 1, 2 * RIM + 1)), borderValue=1)
+    known = _without_islands(np.asarray(eroded, np.uint8))
     if not known.any():
         return d
     weight = known.astype(np.float32)
     y, x = np.mgrid[: d.shape[0], : d.shape[1]].astype(np.float32)
 
     def mean(values: NDArray[np.float32]) -> NDArray[np.float32]:
-        return cv2.GaussianBlur(values * weight, (0, 0), REACH, borderType=cv2.BORDER_CONSTANT) / total
+        blurred = cv2.GaussianBlur(values * weight, (0, 0), REACH, borderType=cv2.BORDER_CONSTANT)
+        return np.asarray(blurred / total, np.float32)
 
     total = np.maximum(cv2.GaussianBlur(weight, (0, 0), REACH, borderType=cv2.BORDER_CONSTANT), 1e-6)
     x -= d.shape[1] / 2

@@ -42,7 +42,8 @@ LEAST_NOISE = 1 / 255
 PRIOR_GAIN, PRIOR_OFFSET = 0.3, 0.1  # standard deviations round (1, 0), and
 PRIOR_CELLS = 25  # how many residuals of average size the prior weighs as much as
 LARGEST_GAIN = 4.0
-BLOCKS = 4  # of the surface along each of its two longest axes
+BLOCKS = 4  # of the surface along each of its two longest axes, and
+ALONE = 4  # how many of all of them a gloss changes independently of each other
 FEWEST = 8  # cells that a camera must share with others
 
 
@@ -138,10 +139,11 @@ def _belief(
     M: NDArray[np.float64],
     blocks: NDArray[np.int64],
 ) -> float:
-    """From 0 to 1, max(0, 1 - V / E): the positive part of James and Stein's factor.
+    """From 0 to 1, max(0, 1 - V / (ALONE E)): the positive part of James and Stein's factor.
 
     E: squares of what the colours change, Σ w (a M + b - M)². V: what gains of each block's own would change on top of
-    that, Σ over cameras and blocks of (Σ w r M)² / Σ w M², with the residuals r.
+    that, Σ over cameras and blocks of (Σ w r M)² / Σ w M², with the residuals r. Were V all there is, the average
+    over blocks would make E = V / ALONE of it.
     """
     change = (a[:, None] - 1) * M + b[:, None]
     explained = float((w * change**2).sum())
@@ -152,7 +154,7 @@ def _belief(
         above = (w[:, here] * residual[:, here] * M[here]).sum(axis=1)
         below = (w[:, here] * M[here] ** 2).sum(axis=1)
         apart += float(np.divide(above**2, below, out=np.zeros_like(above), where=below > 0).sum())
-    return max(0.0, 1 - apart / explained) if explained > 0 else 0.0
+    return max(0.0, 1 - apart / (ALONE * explained)) if explained > 0 else 0.0
 
 
 def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
