@@ -168,10 +168,9 @@ def main() -> None:
     if unknown := set(cases) - set(CASES):
         parser.error(f"no such case: {', '.join(sorted(unknown))}")
     for name in cases:
-        result = {"case": name, "commit": measure.commit(), "machine": measure.machine(), **CASES[name]()}
-        text = json.dumps(result, indent=1)
-        print(text)
-        (measure.RESULTS / f"proxy-{name}.json").write_text(text + "\n", encoding="utf-8")
+        figures = {"case": name, **CASES[name]()}
+        print(json.dumps(figures, indent=1))
+        measure.store(f"proxy-{name}", figures)
 
 
 if __name__ == "__main__":

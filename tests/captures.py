@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
+from planes import everywhere, paint, photograph
 from scenes import bumpy_square, row_grid, smooth_pictures
 
 from eigenfield.camera import Camera
@@ -57,3 +59,16 @@ def write_capture(folder: Path, cameras: tuple[Camera, ...] | None = None, mesh:
     (folder / "transforms.json").write_text(json.dumps({"camera_model": "PINHOLE", "frames": frames}), encoding="utf-8")
     write_ply(mesh, folder / "proxy.ply")
     return folder
+
+
+def write_array(folder, side=4, pixels=96):
+    """Bare photographs of an array, named by row and column: a slanted plane and a square before it."""
+    folder.mkdir(parents=True)
+    row, column = (index.ravel() for index in np.mgrid[:side, :side])
+    matrices = np.zeros((side * side, 3, 4))
+    matrices[:, 0, 0] = matrices[:, 1, 1] = matrices[:, 2, 3] = 1
+    matrices[:, 0, 2], matrices[:, 1, 2] = side // 2 - column, 0.9 * (side // 2 - row)
+    square = lambda x, y: (abs(x - pixels / 2) < 20) & (abs(y - pixels / 2 + 6) < 18)  # noqa: E731
+    layers = [(2.5, 0.0, 0.0, paint(5, detail=2.0), square), (-1.2, 0.0, 0.006, paint(6, detail=2.0), everywhere)]
+    for r, c, picture in zip(row, column, photograph(layers, matrices, pixels), strict=True):
+        Image.fromarray(picture).save(folder / f"view_{r:02d}_{c:02d}.png")

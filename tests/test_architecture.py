@@ -13,8 +13,20 @@ import eigenfield
 
 ROOT = Path(eigenfield.__file__).parent
 FLOORS = {
-    0: ["camera", "mesh", "scene", "viewplane", "raster", "errors"]
-    + ["files", "stages", "jit", "parallel", "progress", "metrics"],
+    0: [
+        "camera",
+        "mesh",
+        "scene",
+        "viewplane",
+        "raster",
+        "errors",
+        "files",
+        "stages",
+        "jit",
+        "parallel",
+        "progress",
+        "metrics",
+    ],
     1: ["capture", "stereo"],
     2: ["calibrate", "proxy", "basis", "texturing"],
     3: ["rendering", "format", "pipeline", "holdout", "reconstruction"],

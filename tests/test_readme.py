@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from captures import write_capture
+from captures import write_array, write_capture
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -25,13 +25,14 @@ def blocks(language):
 def place(tmp_path_factory):
     folder = tmp_path_factory.mktemp("readme")
     write_capture(folder / "capture")
+    write_array(folder / "photos")
     return folder
 
 
 def test_the_commands_run_in_order(place):
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
     assert [shlex.split(line)[1] for line in lines] == [
-        "inspect", "encode", "render", "render", "evaluate", "info", "validate",
+        "inspect", "encode", "proxy", "inspect", "encode", "render", "render", "evaluate", "info", "validate",
     ]  # fmt: skip
     for line in lines:
         words = shlex.split(line, comments=True)
@@ -39,11 +40,21 @@ def test_the_commands_run_in_order(place):
             words += ["--frames", "4"]
         done = subprocess.run([sys.executable, "-m", *words], cwd=place, capture_output=True, text=True)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
-    assert {"overlay.png", "scene.glb", "view.png", "flight.mp4", "plots"} <= {path.name for path in place.iterdir()}
+    assert {
+        "photos.glb",
+        "mesh.glb",
+        "mesh.cameras",
+        "overlay.png",
+        "scene.glb",
+        "view.png",
+        "flight.mp4",
+        "plots",
+    } <= {path.name for path in place.iterdir()}
 
 
 def test_the_python_runs(tmp_path):
     write_capture(tmp_path / "capture")
+    write_array(tmp_path / "photos")
     code = "\n".join(blocks("python"))
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
 

@@ -2,8 +2,8 @@
 
     import eigenfield as ef
 
-    capture = ef.open_capture("capture/")
-    scene = ef.encode(capture, proxy="capture/proxy.ply", textures=15)
+    made = ef.reconstruct(ef.open_any("photos/"))
+    scene = ef.encode(made.light_field, made.mesh, textures=15)
     scene.save("scene.glb")
     picture = ef.render(ef.load("scene.glb"), at=(0.3, -0.2))
 
@@ -20,7 +20,10 @@ __version__ = "0.1.0"
 if TYPE_CHECKING:
     from eigenfield.camera import Camera as Camera
     from eigenfield.capture import LightField as LightField
+    from eigenfield.capture import PhotoSet as PhotoSet
+    from eigenfield.capture import open_any as open_any
     from eigenfield.capture import open_capture as open_capture
+    from eigenfield.capture import open_photographs as open_photographs
     from eigenfield.errors import CaptureError as CaptureError
     from eigenfield.errors import EigenfieldError as EigenfieldError
     from eigenfield.errors import FormatError as FormatError
@@ -33,6 +36,8 @@ if TYPE_CHECKING:
     from eigenfield.parallel import set_threads as set_threads
     from eigenfield.pipeline import encode as encode
     from eigenfield.progress import Progress as Progress
+    from eigenfield.reconstruction import Reconstruction as Reconstruction
+    from eigenfield.reconstruction import reconstruct as reconstruct
     from eigenfield.rendering import render as render
     from eigenfield.scene import Scene as Scene
 
@@ -45,13 +50,18 @@ _HOME = {
     "Mesh": "mesh",
     "OptionError": "errors",
     "OutputError": "errors",
+    "PhotoSet": "capture",
     "Progress": "progress",
     "ProxyError": "errors",
+    "Reconstruction": "reconstruction",
     "Scene": "scene",
     "encode": "pipeline",
     "evaluate": "evaluation",
     "load": "format",
+    "open_any": "capture",
     "open_capture": "capture",
+    "open_photographs": "capture",
+    "reconstruct": "reconstruction",
     "render": "rendering",
     "set_threads": "parallel",
 }

@@ -50,6 +50,7 @@ from eigenfield.proxy import (
 )
 from eigenfield.stages import Stages, file_digest, stage_key
 from eigenfield.stereo import Canvas, depth_range
+from eigenfield.stereo.extend import without_specks
 from eigenfield.viewplane import fit_view_plane
 
 log = logging.getLogger("eigenfield.reconstruction")
@@ -57,7 +58,9 @@ log = logging.getLogger("eigenfield.reconstruction")
 SURFACES = ("auto", "relief", "poisson")
 DEFAULT_TRIANGLES = 30_000
 PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
-OFF_PLANE = 0.2  # of the array's extent that cameras may stand off their plane, for a relief
+OFF_PLANE = 0.15  # of the array's extent that cameras may stand off their plane, for a relief
+SPECK = 2e-4  # of the canvas: smaller pieces that stand apart in depth are taken for errors
+CUT_ROUNDS = 4  # of making fewer cuts
 CUT = 4.0  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
 TOLERANCE = 0.16  # pixels there that the mesh may leave the depth map
 RANGE_VIEWS = 25  # round the central one, in which a range of depths is searched
@@ -65,7 +68,8 @@ FEWEST_POINTS = 30  # of structure from motion that say a range of depths
 WIDENED = 0.15  # of that range, on both sides
 STRANGE, STRANGE_LEAST = 2.0, 8.0  # times the typical difference from the others, and grey levels more: another scene
 DENSE = 25  # given views from which on cameras are refined unless told otherwise
-ALIKE = 25.0  # degrees between a camera's axis and the mean axis, for a relief
+ALIKE = 12.0  # degrees between a camera's axis and the mean axis, for a relief
+FACING = 25.0  # degrees between the mean axis and the normal of the array's plane, likewise
 MESH, CAMERAS, DEPTH = "mesh.ply", "cameras.npz", "depth.npz"
 
 Capture = LightField | PhotoSet
@@ -243,7 +247,7 @@ def looks_one_way(cameras: Sequence[Camera]) -> bool:
     centres = np.array([camera.centre for camera in cameras]) - plane.origin
     along = np.degrees(np.arccos(min(1.0, abs(float(normal @ mean)) / float(np.linalg.norm(mean)))))
     thickness = float(np.abs(centres @ normal).max()) / float(np.linalg.norm(np.ptp(centres, axis=0)))
-    return bool(angles.max() < ALIKE and thickness < OFF_PLANE and (along < 2 * ALIKE or plane.extent.min() == 0))
+    return bool(angles.max() < ALIKE and thickness < OFF_PLANE and (along < FACING or plane.extent.min() == 0))
 
 
 def _relief(
@@ -275,17 +279,26 @@ def _relief(
         pictures, _ = _pictures(capture)
         depth = _read_planar(folder / DEPTH)
         keep = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
-        reach = float(np.abs(depth.matrices[:, :2, 2]).max())
-        cut, tolerance = CUT / reach, TOLERANCE / reach
-        valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
-        second = second_layer(pictures[keep], depth.matrices[keep], depth.d, valid, cut=cut)
-        layers = relief_mesh(
-            depth.canvas, depth.d, valid, second, cut=cut, tolerance=tolerance, triangles=run.settings.triangles
-        )
-        write_ply(layers, place / MESH)
+        write_ply(_layers(depth, pictures[keep], depth.matrices[keep], run.settings.triangles), place / MESH)
 
     relief = run.stage("relief", [inputs, run.settings.triangles], mesh)
     return light_field, read_mesh(relief / MESH), folder / "calibration"
+
+
+def _layers(depth: _Depth, pictures: NDArray[np.uint8], matrices: NDArray[np.float64], triangles: int) -> Mesh:
+    """The layered relief of a depth map. Where its cuts alone take more than `triangles`, the depth is a noisy one:
+    fewer are made."""
+    valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
+    reach = float(np.abs(matrices[:, :2, 2]).max())
+    cut, speck = CUT / reach, SPECK
+    for _ in range(CUT_ROUNDS):
+        d = without_specks(depth.d, cut, round(speck * depth.d.size))
+        second = second_layer(pictures, matrices, d, valid, cut=cut)
+        mesh = relief_mesh(depth.canvas, d, valid, second, cut=cut, tolerance=TOLERANCE / reach, triangles=triangles)
+        if len(mesh.faces) <= 1.1 * triangles:
+            break
+        cut, speck = 1.6 * cut, 2 * speck
+    return mesh
 
 
 def _refines(capture: Capture, settings: Settings) -> bool:

@@ -40,9 +40,11 @@ CORRELATED = 100
 TAU = 15.0  # grey levels: residuals beyond count less (Cauchy)
 BIAS = 0.96  # pixels at the outermost camera by which a buffer may hide a point
 SWEEP_STEP = 1.2  # pixels at the outermost camera between two labels
-SMOOTH = 0.63  # pixels at the outermost camera within which neighbours are one surface
+SMOOTH = 1.2  # pixels at the outermost camera within which neighbours are one surface
+FINE = 0.6  # likewise, in the last rounds
 SURE = 2.7  # squared grey levels per squared pixel there: curvature of the cost that makes a depth half sure
 DEPTH_STEPS = (0.64, 0.48, 0.48, 0.32, 0.24)  # likewise, of the rounds of refinement
+LAST_STEPS = (0.24, 0.16)  # and of those after the cameras are done
 REGULAR = 0.1  # pixels: cameras this close to a regular grid, or to their calibration, are left as they are
 LOOKING = 0.02  # of the views must see a point for its depth to be its own
 SWEPT = 90  # views of a plane sweep
@@ -232,10 +234,10 @@ class _Joint:
         self.d = ((self.d - offset) * scale).astype(np.float32)
         self.low, self.high = (self.low - offset) * scale, (self.high - offset) * scale
 
-    def refine_depth(self, views: NDArray[np.int64], step: float) -> None:
+    def refine_depth(self, views: NDArray[np.int64], step: float, smooth: float = SMOOTH) -> None:
         pictures = self.chosen(views, self.pictures)
         matrices, buffers = self.look(views, pictures)
-        apart = SMOOTH / self.reach
+        apart = smooth / self.reach
         d, confidence = refine_depth(
             pictures, matrices, self.d, step / self.reach, buffers=buffers, texture=self.texture,
             bias=BIAS / self.reach, depth=apart,
@@ -310,7 +312,8 @@ def _correct(joint: _Joint, rings: Sequence[NDArray[np.int64]], report: Progress
         joint.refine_depth(everything, step)
         joint.move_cameras(everything, 6 if number == 0 else PARAMETERS, 2, fixed=number == 0)
         report("cameras and depth", len(rings) + number + 1, total)
-    joint.refine_depth(everything, DEPTH_STEPS[-1])
+    for step in LAST_STEPS:
+        joint.refine_depth(everything, step, FINE)
     return True
 
 

@@ -172,7 +172,7 @@ def command(
     calibration (eigenfield inspect CAPTURE says what is found in it).
     """  # fmt: skip
     from eigenfield.capture import open_any, open_capture
-    from eigenfield.files import refuse_existing
+    from eigenfield.files import mended, refuse_existing
     from eigenfield.format import parts, save
     from eigenfield.mesh import Mesh
     from eigenfield.pipeline import encode
@@ -187,6 +187,8 @@ def command(
             light_field = open_capture(capture, **place)
             mesh: Path | Mesh = proxy
             scratch = work if work is not None else output.absolute().parent
+            with mended(scratch):
+                scratch.mkdir(parents=True, exist_ok=True)
             tell(light_field.problems, quiet)
         else:
             scratch = work if work is not None else output.with_suffix(".work")

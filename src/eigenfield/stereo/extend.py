@@ -9,6 +9,7 @@ from scipy import ndimage
 
 REACH = 16.0  # pixels, one sigma, over which the slope at the border is taken
 STEEPEST = 2.0  # times the range of d over the canvas's longer side: steeper slopes are noise
+SPECK_LEVELS = 8  # whole numbers to a cut, for the search of specks
 RIM = 4  # pixels next to the unknown that are not trusted either: windows there reach beyond
 
 
@@ -44,6 +45,23 @@ def extended(d: NDArray[np.float32], known: NDArray[np.bool_], low: float, high:
     drawn = d[row, column] + slope_x[row, column] * (x - x[row, column]) + slope_y[row, column] * (y - y[row, column])
     blurred = cv2.GaussianBlur(np.where(known, d, drawn), (0, 0), 2.0)  # the nearest point changes abruptly
     return np.where(known, d, np.clip(blurred, low, high)).astype(np.float32)
+
+
+def without_specks(d: NDArray[np.float32], cut: float, smallest: int) -> NDArray[np.float32]:
+    """d (h, w) without pieces of fewer than `smallest` pixels that jumps of more than `cut` set apart from all around.
+
+    They take the depth of the nearest pixel that stays.
+    """
+    steps = np.rint((d - d.min()) * (SPECK_LEVELS / cut))
+    if steps.max() > np.iinfo(np.int16).max:  # a range of hundreds of cuts: coarser steps will do
+        steps *= np.iinfo(np.int16).max / steps.max()
+    marked = steps.astype(np.int16)
+    cv2.filterSpeckles(marked, -1, smallest, SPECK_LEVELS)
+    specks = marked < 0
+    if not specks.any() or specks.all():
+        return d
+    row, column = ndimage.distance_transform_edt(specks, return_distances=False, return_indices=True)
+    return np.asarray(d[row, column], np.float32)
 
 
 def _without_islands(known: NDArray[np.uint8]) -> NDArray[np.bool_]:

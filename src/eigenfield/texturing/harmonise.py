@@ -31,7 +31,8 @@ from eigenfield.texturing.project import TextureMaps
 log = logging.getLogger("eigenfield.texturing")
 
 MODELS = ("gain", "affine")
-DARK, BRIGHT = 2 / 255, 253 / 255  # at and beyond these a photograph says no more than "dark" or "bright"
+DARK = 16 / 255  # up to here stray light, clipping and noise are as large as what a gain would change
+BRIGHT = 253 / 255  # from here on a photograph says no more than "bright"
 CELLS = 4096  # of the atlas, at most, that the fit looks at
 NUMBERS = 4_000_000  # camera x cell, at most
 WHOLE = 0.9  # of a cell's texels that a camera must see
@@ -39,7 +40,7 @@ ROUNDS = 30
 CLOSE = 1e-4  # a round that moves no gain further is the last
 CAUCHY = 2.385  # residuals of this many standard deviations count half
 LEAST_NOISE = 1 / 255
-PRIOR_GAIN, PRIOR_OFFSET = 0.3, 0.1  # standard deviations round (1, 0), and
+PRIOR_GAIN, PRIOR_OFFSET = 0.1, 0.03  # standard deviations round (1, 0), and
 PRIOR_CELLS = 25  # how many residuals of average size the prior weighs as much as
 LARGEST_GAIN = 4.0
 BLOCKS = 4  # of the surface along each of its two longest axes, and
