@@ -62,7 +62,7 @@ OFF_PLANE = 0.15  # of the array's extent that cameras may stand off their plane
 SPECK = 2e-4  # of the canvas: smaller pieces that stand apart in depth are taken for errors
 CUT_ROUNDS = 4  # of making fewer cuts
 CUT = 4.0  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
-TOLERANCE = 0.16  # pixels there that the mesh may leave the depth map
+TOLERANCE = 0.08  # pixels there that the mesh may leave the depth map
 RANGE_VIEWS = 25  # round the central one, in which a range of depths is searched
 FEWEST_POINTS = 30  # of structure from motion that say a range of depths
 WIDENED = 0.15  # of that range, on both sides
@@ -361,10 +361,8 @@ def _light_field(capture: Capture, planar: Planar, scale: float) -> LightField:
     views = np.arange(len(capture))
     cameras = planar.model.cameras(views, planar.parameters)
     error = planar.error
-    strange = np.zeros(len(error), np.bool_)
-    typical = float(np.nanmedian(error)) if planar.refined else 0.0
-    if planar.refined:
-        strange = ~(error <= max(STRANGE * typical, typical + STRANGE_LEAST))
+    typical = float(np.nanmedian(error))
+    strange = ~(error <= max(STRANGE * typical, typical + STRANGE_LEAST))
     problems = [
         f"{capture.names[i]} shows something else, or its camera was moved: it differs by {error[i]:.0f} grey levels "
         f"from the others (they by {typical:.0f}); left out"

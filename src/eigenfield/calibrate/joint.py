@@ -221,6 +221,14 @@ class _Joint:
         error = np.nanmedian(self.error[views])
         log.info("cameras: %d views, %d parameters, %.2f grey levels", len(views), count, error)
 
+    def measure(self, views: NDArray[np.int64]) -> None:
+        """How far each photograph is from the mean texture, cameras as they are."""
+        pictures = self.chosen(views, self.pictures)
+        _, buffers = self.look(views, pictures)
+        points = textured_points(self.d, self.texture, self.count > max(2, SEEN * len(views)))
+        sight = Sight(self.canvas, pictures, buffers, *points, BIAS / self.reach)
+        _, self.error[views] = camera_step(self.model, views, self.parameters[views], sight, 2, TAU)
+
     def fix_gauge(self, views: NDArray[np.int64]) -> None:
         """Shifts in proportion to positions are an offset of depth; the mean step is one."""
         if self.start.given:
@@ -278,7 +286,7 @@ def refine_planar(
         joint.d, joint.confidence = depth.d, depth.confidence
         joint.look(everything, pictures)
         joint.extend(len(pictures))
-    joint.look(everything, pictures)
+    joint.measure(everything)
     report("cameras and depth", total, total)
     return Planar(
         joint.model, joint.parameters, joint.canvas, joint.d, joint.confidence, joint.texture, joint.count,
