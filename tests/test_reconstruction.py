@@ -16,7 +16,7 @@ from captures import write_array
 from PIL import Image
 
 from eigenfield.capture import open_any, open_capture
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.errors import CaptureError, OptionError, ProxyError
 from eigenfield.pipeline import encode
 from eigenfield.proxy import atlas_fault, read_mesh
 from eigenfield.raster import rasterise_view
@@ -182,3 +182,23 @@ def test_a_killed_run_goes_on(photos, tmp_path):
     assert again.returncode == 0, again.stderr
     assert "array    taken up" in again.stderr
     assert not list(work.glob(".*.part"))
+
+
+def test_masks_restrict_the_relief(photos, tmp_path):
+    masks = tmp_path / "masks"
+    masks.mkdir()
+    for path in photos.iterdir():
+        shown = np.zeros((96, 96), np.uint8)
+        shown[:, :48] = 255
+        Image.fromarray(shown).save(masks / path.name)
+    result = reconstruct(open_any(photos, masks=masks))
+    covered = [(rasterise_view(result.mesh, camera).face >= 0) for camera in result.light_field.cameras]
+    assert np.mean([part[:, :36].mean() for part in covered]) > 0.97
+    assert np.mean([part[:, 66:].mean() for part in covered]) < 0.05
+    black = tmp_path / "black"
+    black.mkdir()
+    for path in photos.iterdir():
+        Image.fromarray(np.pad(np.full((1, 1), 255, np.uint8), ((0, 95), (0, 95)))).save(black / path.name)
+    with pytest.raises(ProxyError) as error:
+        reconstruct(open_any(photos, masks=black))
+    assert error.value.code in ("surface-masked", "relief-empty")

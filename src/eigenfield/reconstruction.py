@@ -24,11 +24,10 @@ from eigenfield.calibrate import (
     start_planar,
     structure_from_motion,
 )
-from eigenfield.calibrate.array import resized_camera
 from eigenfield.camera import Camera
 from eigenfield.capture import Lens, LightField, PhotoSet
 from eigenfield.capture.save import save_calibration
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.errors import CaptureError, OptionError, ProxyError
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_map
@@ -49,7 +48,7 @@ from eigenfield.proxy import (
     write_ply,
 )
 from eigenfield.stages import Stages, file_digest, stage_key
-from eigenfield.stereo import Canvas, depth_range
+from eigenfield.stereo import Canvas, depth_buffers, depth_range, mean_texture
 from eigenfield.stereo.extend import without_specks
 from eigenfield.viewplane import fit_view_plane
 
@@ -259,15 +258,15 @@ def _relief(
     inputs = [identity, refine, known.tolist(), None if points is None else len(points)]
 
     def build(folder: Path) -> None:
-        pictures, scale = _pictures(capture)
+        pictures = _pictures(capture)
         part = capture.subset(known)
         shown = pictures if len(known) == len(pictures) else pictures[known]
         planar = refine_planar(shown, _start(part, shown, points), exact=not refine, progress=run.progress)
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
-            bases = None if isinstance(capture, PhotoSet) else _resized(capture.cameras, pictures)
+            bases = None if isinstance(capture, PhotoSet) else _resized(capture)
             planar = register_views(planar, known, pictures[new], new, _positions(capture), bases)
-        light_field = _light_field(capture, planar, scale)
+        light_field = _light_field(capture, planar)
         save_calibration(light_field, folder / "calibration")
         _write_cameras(folder / CAMERAS, capture, light_field, np.zeros((0, 3)))
         _write_planar(folder / DEPTH, planar)
@@ -276,19 +275,30 @@ def _relief(
     light_field, _ = _read_cameras(folder / CAMERAS, capture)
 
     def mesh(place: Path) -> None:
-        pictures, _ = _pictures(capture)
+        pictures = _pictures(capture)
+        masks = _masks(capture)
         depth = _read_planar(folder / DEPTH)
         keep = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
-        write_ply(_layers(depth, pictures[keep], depth.matrices[keep], run.settings.triangles), place / MESH)
+        shown = None if masks is None else masks[keep]
+        layers = _layers(depth, pictures[keep], shown, depth.matrices[keep], run.settings.triangles)
+        write_ply(layers, place / MESH)
 
     relief = run.stage("relief", [inputs, run.settings.triangles], mesh)
     return light_field, read_mesh(relief / MESH), folder / "calibration"
 
 
-def _layers(depth: _Depth, pictures: NDArray[np.uint8], matrices: NDArray[np.float64], triangles: int) -> Mesh:
+def _layers(
+    depth: _Depth,
+    pictures: NDArray[np.uint8],
+    masks: NDArray[np.uint8] | None,
+    matrices: NDArray[np.float64],
+    triangles: int,
+) -> Mesh:
     """The layered relief of a depth map. Where its cuts alone take more than `triangles`, the depth is a noisy one:
     fewer are made."""
     valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
+    if masks is not None:
+        valid &= _counts(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
     cut, speck = CUT / reach, SPECK
     for _ in range(CUT_ROUNDS):
@@ -301,6 +311,18 @@ def _layers(depth: _Depth, pictures: NDArray[np.uint8], matrices: NDArray[np.flo
     return mesh
 
 
+def _counts(masks: NDArray[np.uint8], matrices: NDArray[np.float64], depth: _Depth) -> NDArray[np.bool_]:
+    """Where most of the views that see a point have it inside their masks."""
+    buffers = depth_buffers(matrices, depth.d, masks.shape[1:3])
+    share, _ = mean_texture(masks, matrices, depth.d, buffers)
+    counts = share[..., 0] > 127
+    if not counts.any():
+        raise ProxyError(
+            "surface-masked", "the masks hide every pixel", remedy="white counts, black is left out: invert the masks?"
+        )
+    return counts
+
+
 def _refines(capture: Capture, settings: Settings) -> bool:
     if settings.refine is not None:
         return settings.refine
@@ -309,43 +331,73 @@ def _refines(capture: Capture, settings: Settings) -> bool:
     return isinstance(capture, PhotoSet) or len(capture) >= DENSE
 
 
-def _pictures(capture: Capture) -> tuple[NDArray[np.uint8], float]:
-    """(n, H, W, 3) all photographs, lenses removed, at a common size that keeps within PIXELS; and the scale."""
+def _frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
+    """(width, height) that holds every photograph, and the same reduced to keep all within PIXELS."""
     sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
     width, height = (max(side) for side in zip(*sizes, strict=True))
     scale = min(1.0, (PIXELS / (len(sizes) * width * height)) ** 0.5)
-    size = max(2, round(scale * width)), max(2, round(scale * height))
+    return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
 
-    def read(index: int) -> NDArray[np.uint8]:
-        pixels = np.rint(capture.photograph(index).pixels * 255).astype(np.uint8)
-        missing = height - pixels.shape[0], width - pixels.shape[1]
-        if any(missing):  # photographs of one camera may differ by a row or two
-            pixels = np.pad(pixels, ((0, missing[0]), (0, missing[1]), (0, 0)), mode="edge")
-        if scale < 1:
-            pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
-        return pixels
 
-    result = np.empty((len(sizes), size[1], size[0], 3), np.uint8)
+def _fitted(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
+    """A photograph in the common frame (those of one camera may differ by a row or two), reduced."""
+    missing = whole[1] - picture.shape[0], whole[0] - picture.shape[1]
+    if any(missing):
+        sides = ((0, missing[0]), (0, missing[1]), (0, 0))[: picture.ndim]
+        picture = np.pad(picture, sides, mode="edge")
+    if small != whole:
+        picture = cv2.resize(picture, small, interpolation=cv2.INTER_AREA)
+    return np.asarray(picture, np.uint8)
+
+
+def _pictures(capture: Capture) -> NDArray[np.uint8]:
+    """(n, H, W, 3) all photographs, lenses removed, in their common frame."""
+    whole, small = _frame(capture)
+    result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
 
     def put(index: int) -> None:
-        result[index] = read(index)
+        result[index] = _fitted(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
 
-    parallel_map(put, range(len(sizes)))
-    return result, scale
+    parallel_map(put, range(len(capture)))
+    return result
+
+
+def _masks(capture: Capture) -> NDArray[np.uint8] | None:
+    """(n, H, W, 3) the masks of the photographs, 255 where they count; None where there are none.
+
+    What a removed lens leaves out at the border is no mask: the array's other views see behind it.
+    """
+    views = capture.shots if isinstance(capture, PhotoSet) else capture.views
+    whole, small = _frame(capture)
+    result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
+
+    def put(index: int) -> bool:
+        view = views[index]
+        if view.mask is None and getattr(view, "lens", None) is not None:
+            return False
+        mask = capture.photograph(index).mask
+        if mask is None:
+            return False
+        result[index] = _fitted(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
+        return True
+
+    return result if any(parallel_map(put, range(len(capture)))) else None
 
 
 def _start(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
     if isinstance(capture, PhotoSet):
         assert capture.layout is not None
         return start_planar(pictures, capture.layout, capture.names)
-    cameras = _resized(capture.cameras, pictures)
+    cameras = _resized(capture)
     low, high = _inverse_depths(capture, cameras, pictures, points)
     return start_given(cameras, low, high)
 
 
-def _resized(cameras: Sequence[Camera], pictures: NDArray[np.uint8]) -> list[Camera]:
-    height, width = pictures.shape[1:3]
-    return [resized_camera(camera, width, height) for camera in cameras]
+def _resized(capture: LightField) -> list[Camera]:
+    """The cameras in the common frame of `_pictures`."""
+    whole, small = _frame(capture)
+    scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
+    return [replace(camera, K=scale @ camera.K, width=small[0], height=small[1]) for camera in capture.cameras]
 
 
 def _positions(capture: Capture) -> NDArray[np.float64]:
@@ -356,7 +408,7 @@ def _positions(capture: Capture) -> NDArray[np.float64]:
     return fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
 
 
-def _light_field(capture: Capture, planar: Planar, scale: float) -> LightField:
+def _light_field(capture: Capture, planar: Planar) -> LightField:
     """The capture with the cameras that were found, at full size, without the views that fit nowhere."""
     views = np.arange(len(capture))
     cameras = planar.model.cameras(views, planar.parameters)
@@ -373,9 +425,10 @@ def _light_field(capture: Capture, planar: Planar, scale: float) -> LightField:
     keep = [int(i) for i in np.flatnonzero(~strange)]
     chosen = capture.subset(keep)
     sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
+    whole, small = _frame(capture)
     grown = []
     for index in keep:
-        K = np.diag([1 / scale, 1 / scale, 1.0]) @ cameras[index].K
+        K = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0]) @ cameras[index].K
         grown.append(replace(cameras[index], K=K, width=sizes[index][0], height=sizes[index][1]))
     if isinstance(chosen, PhotoSet):
         return chosen.calibrated(grown, problems=problems)

@@ -107,9 +107,3 @@ class ArrayModel:
     def subset(self, views: Sequence[int]) -> ArrayModel:
         """The model of some of the views."""
         return replace(self, bases=tuple(self.bases[view] for view in views))
-
-
-def resized_camera(camera: Camera, width: int, height: int) -> Camera:
-    """The camera of the same picture at another size: pixel edges map to pixel edges."""
-    scale = np.diag([width / camera.width, height / camera.height, 1.0])
-    return replace(camera, K=scale @ camera.K, width=width, height=height)
