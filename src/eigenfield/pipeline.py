@@ -249,7 +249,8 @@ def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mes
     worst = 0.0
     for before, after in zip(exact, kept, strict=True):
         (first, depth), (second, _) = before.project(points), after.project(points)
-        moved = np.abs(first - second)[depth > 0]
+        seen = (depth > 0) & (first > 0).all(axis=1) & (first < (before.width, before.height)).all(axis=1)
+        moved = np.abs(first - second)[seen]
         worst = max(worst, float(moved.max(initial=0.0)))
     if worst > ROUNDING_LIMIT:
         log.warning("float32 cameras move the mesh by %.2f px: shift the world's origin to the array", worst)

@@ -34,8 +34,8 @@ from eigenfield.stereo.estimate import estimate_depth
 log = logging.getLogger("eigenfield.proxy")
 
 MOST_VIEWS = 60  # views that get a depth map
-MOST_PIXELS = 1_000_000  # of one depth map
-ALL_PIXELS = 14_000_000  # of all depth maps together
+MOST_PIXELS = 800_000  # of one depth map
+ALL_PIXELS = 9_000_000  # of all depth maps together
 COARSE_PIXELS = 40_000  # of a depth map of the first pass
 COARSE_VIEWS = 24
 NEIGHBOURS = 8
