@@ -20,10 +20,10 @@ from eigenfield.proxy import (
     DEFAULT_TRIANGLES,
     atlas_fault,
     atlas_statistics,
+    child,
     prepare_proxy,
     read_mesh,
     simplified,
-    unwrap,
     unwrapped,
     write_ply,
 )
@@ -206,9 +206,9 @@ def test_too_few_triangles_are_refused():
 def test_a_mesh_larger_than_a_pipe_reaches_a_slow_xatlas(monkeypatch, tmp_path):
     """The process starts to read only after several ticks: none of the mesh may get lost on the way."""
     script = tmp_path / "python"
-    script.write_text(f'#!/bin/sh\nsleep {5 * unwrap.TICK}\nexec "{sys.executable}" "$@"\n')
+    script.write_text(f'#!/bin/sh\nsleep {5 * child.TICK}\nexec "{sys.executable}" "$@"\n')
     script.chmod(0o755)
-    monkeypatch.setattr(unwrap.sys, "executable", str(script))
+    monkeypatch.setattr(child.sys, "executable", str(script))
     mesh = grid(70, uv=False, height=0.05)
     assert mesh.vertices.nbytes + mesh.faces.nbytes > 65536
     assert len(unwrapped(mesh).faces) == len(mesh.faces)
@@ -216,7 +216,7 @@ def test_a_mesh_larger_than_a_pipe_reaches_a_slow_xatlas(monkeypatch, tmp_path):
 
 def test_ctrl_c_ends_xatlas_too(monkeypatch):
     children = []
-    real = unwrap.subprocess.Popen
+    real = child.subprocess.Popen
 
     def spy(*arguments, **options):
         children.append(real(*arguments, **options))
@@ -226,7 +226,7 @@ def test_ctrl_c_ends_xatlas_too(monkeypatch):
         if children:
             raise KeyboardInterrupt
 
-    monkeypatch.setattr(unwrap.subprocess, "Popen", spy)
+    monkeypatch.setattr(child.subprocess, "Popen", spy)
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         unwrapped(ball(5), progress=interrupt)
@@ -240,7 +240,7 @@ def test_a_crash_of_xatlas_is_one_clear_line(monkeypatch, tmp_path, last):
     script = tmp_path / "python"
     script.write_text(f"#!/bin/sh\ncat > /dev/null\n{last}\n")
     script.chmod(0o755)
-    monkeypatch.setattr(unwrap.sys, "executable", str(script))
+    monkeypatch.setattr(child.sys, "executable", str(script))
     write_ply(ball(1), tmp_path / "ball.ply")
     with pytest.raises(ProxyError, match="xatlas ended with") as caught:
         prepare_proxy(tmp_path / "ball.ply", [looking(-1)])

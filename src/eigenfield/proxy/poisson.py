@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
-import subprocess
-import sys
-import tempfile
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.errors import ProxyError
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
+from eigenfield.proxy.child import run_child
 from eigenfield.proxy.fusion import Points
 
 log = logging.getLogger("eigenfield.proxy")
@@ -24,7 +20,6 @@ SHALLOWEST, DEEPEST = 5, 11
 FEWEST_POINTS = 50
 CELL = 2.0  # cells are about so many times as wide as points are apart: less follows the noise of depth
 MARGIN = 1.1  # the octree's cube over the points' box
-TICK = 0.2  # seconds between two calls of `progress`
 
 
 def poisson_surface(points: Points, *, depth: int | None = None, progress: Progress | None = None) -> Mesh:
@@ -43,11 +38,16 @@ def poisson_surface(points: Points, *, depth: int | None = None, progress: Progr
     centre, scale = _frame(points.positions)
     chosen = octree_depth(points) if depth is None else depth
     table = np.hstack([(points.positions - centre) / scale, points.normals]).astype(np.float32)
-    message = io.BytesIO()
-    np.save(message, table)
-    np.save(message, np.array([chosen]))
-    answer = io.BytesIO(_run(message.getvalue(), progress))
-    vertices, faces = (np.load(answer, allow_pickle=False) for _ in range(2))
+    report = progress or (lambda stage, done, total: None)
+    report("surface", 0, 1)
+    answer = run_child(
+        "poisson_process.py", [table, np.array([chosen])], lambda: report("surface", 0, 1), "surface-poisson",
+        "the Poisson reconstruction",
+        "ask for smaller photographs if memory ran out; else report it with these photographs",
+    )  # fmt: skip
+    report("surface", 1, 1)
+    written = io.BytesIO(answer)
+    vertices, faces = (np.load(written, allow_pickle=False) for _ in range(2))
     log.info("Poisson: depth %d, %d triangles from %d points", chosen, len(faces), len(points))
     mesh = Mesh((vertices.astype(np.float64) * scale + centre).astype(np.float32), faces)
     return _facing(mesh, points)
@@ -76,40 +76,3 @@ def _facing(mesh: Mesh, points: Points) -> Mesh:
     if (some.face_normals() * points.normals[nearest]).sum() < 0:
         return Mesh(mesh.vertices, np.ascontiguousarray(mesh.faces[:, ::-1]))
     return mesh
-
-
-def _run(message: bytes, progress: Progress | None) -> bytes:
-    """What `poisson_process.py` answers; it is ended when the waiting is."""
-    command = [sys.executable, "-P", str(Path(__file__).with_name("poisson_process.py"))]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    if progress is not None:
-        progress("surface", 0, 1)
-    # a file, not a pipe: `communicate` does not go on writing after a timeout
-    with tempfile.TemporaryFile() as source:
-        source.write(message)
-        source.seek(0)
-        process = subprocess.Popen(
-            command, stdin=source, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-        )
-    try:
-        while True:
-            try:
-                answer, complaint = process.communicate(timeout=TICK)
-                break
-            except subprocess.TimeoutExpired:
-                if progress is not None:
-                    progress("surface", 0, 1)
-    except BaseException:
-        process.kill()
-        process.communicate()
-        raise
-    if process.returncode != 0:
-        last = complaint.decode(errors="replace").strip().splitlines()[-1:]
-        raise ProxyError(
-            "surface-poisson",
-            f"the Poisson reconstruction ended with {process.returncode}{': ' + last[0] if last else ''}",
-            remedy="ask for smaller photographs if memory ran out; else report it with these photographs",
-        )
-    if progress is not None:
-        progress("surface", 1, 1)
-    return answer

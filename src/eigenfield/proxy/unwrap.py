@@ -8,12 +8,7 @@ from __future__ import annotations
 
 import io
 import logging
-import os
-import subprocess
-import sys
-import tempfile
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +18,7 @@ from eigenfield.errors import OptionError, ProxyError
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
 from eigenfield.proxy.atlas import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.child import run_child
 from eigenfield.proxy.lscm import surface_areas
 from eigenfield.proxy.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.read import is_sliver
@@ -31,7 +27,6 @@ log = logging.getLogger("eigenfield.proxy")
 
 DEFAULT_TRIANGLES = 30_000
 FEWEST_TRIANGLES = 4
-TICK = 0.2  # seconds between two calls of `progress` while xatlas works
 LOST_TOLERANCE = 0.01  # of the surface may be in no chart
 
 
@@ -174,36 +169,9 @@ def _run_xatlas(
 ) -> bytes:
     """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting
     is (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
-    command = [sys.executable, "-P", str(Path(__file__).with_name("xatlas_process.py"))]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    with tempfile.TemporaryFile() as message:  # a pipe would stay half sent when `communicate` runs into its timeout
-        for array in (
-            points.astype(np.float32),
-            faces.astype(np.uint32),
-            np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32),
-        ):
-            np.save(message, array, allow_pickle=False)
-        message.seek(0)
-        process = subprocess.Popen(
-            command, stdin=message, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment
-        )
-    try:
-        while True:
-            try:
-                answer, complaint = process.communicate(timeout=TICK)
-                break
-            except subprocess.TimeoutExpired:
-                if progress is not None:
-                    progress("atlas", done, 3)
-    except BaseException:
-        process.kill()
-        process.communicate()
-        raise
-    if process.returncode != 0:
-        last = complaint.decode(errors="replace").strip().splitlines()[-1:]
-        raise ProxyError(
-            "proxy-unwrap",
-            f"xatlas ended with {process.returncode}{': ' + last[0] if last else ''}",
-            remedy="clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
-        )
-    return answer
+    labels = np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32)
+    return run_child(
+        "xatlas_process.py", [points.astype(np.float32), faces.astype(np.uint32), labels],
+        lambda: None if progress is None else progress("atlas", done, 3), "proxy-unwrap", "xatlas",
+        "clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
+    )  # fmt: skip
