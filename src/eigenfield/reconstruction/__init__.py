@@ -1,0 +1,7 @@
+"""From photographs to cameras and a proxy mesh (the paper's section 3.1)."""
+
+from eigenfield.reconstruction.array import looks_one_way
+from eigenfield.reconstruction.run import DEFAULT_TRIANGLES, SURFACES, Settings
+from eigenfield.reconstruction.whole import Reconstruction, reconstruct
+
+__all__ = ["DEFAULT_TRIANGLES", "SURFACES", "Reconstruction", "Settings", "looks_one_way", "reconstruct"]

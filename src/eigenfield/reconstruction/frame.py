@@ -1,0 +1,78 @@
+"""All photographs of a capture at one size, and their masks and cameras alike."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.capture import LightField, PhotoSet
+from eigenfield.parallel import parallel_map
+
+PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
+
+Capture = LightField | PhotoSet
+
+
+def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
+    """(width, height) that holds every photograph, and the same reduced to keep all within PIXELS."""
+    sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
+    width, height = (max(side) for side in zip(*sizes, strict=True))
+    scale = min(1.0, (PIXELS / (len(sizes) * width * height)) ** 0.5)
+    return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
+
+
+def _fitted(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
+    """A photograph in the common frame (those of one camera may differ by a row or two), reduced."""
+    missing = whole[1] - picture.shape[0], whole[0] - picture.shape[1]
+    if any(missing):
+        sides = ((0, missing[0]), (0, missing[1]), (0, 0))[: picture.ndim]
+        picture = np.pad(picture, sides, mode="edge")
+    if small != whole:
+        picture = cv2.resize(picture, small, interpolation=cv2.INTER_AREA)
+    return np.asarray(picture, np.uint8)
+
+
+def read_pictures(capture: Capture) -> NDArray[np.uint8]:
+    """(n, H, W, 3) all photographs, lenses removed, in their common frame."""
+    whole, small = common_frame(capture)
+    result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
+
+    def put(index: int) -> None:
+        result[index] = _fitted(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
+
+    parallel_map(put, range(len(capture)))
+    return result
+
+
+def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
+    """(n, H, W, 3) the masks of the photographs, 255 where they count; None where there are none.
+
+    What a removed lens leaves out at the border is no mask: the array's other views see behind it.
+    """
+    views = capture.shots if isinstance(capture, PhotoSet) else capture.views
+    whole, small = common_frame(capture)
+    result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
+
+    def put(index: int) -> bool:
+        view = views[index]
+        if view.mask is None and getattr(view, "lens", None) is not None:
+            return False
+        mask = capture.photograph(index).mask
+        if mask is None:
+            return False
+        result[index] = _fitted(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
+        return True
+
+    return result if any(parallel_map(put, range(len(capture)))) else None
+
+
+def resized_cameras(capture: LightField) -> list[Camera]:
+    """The cameras in the common frame of `read_pictures`."""
+    whole, small = common_frame(capture)
+    scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
+    return [replace(camera, K=scale @ camera.K, width=small[0], height=small[1]) for camera in capture.cameras]
