@@ -15,8 +15,8 @@ RESULTS = Path(__file__).parent / "results"
 
 
 def run(arguments: list[str]) -> dict[str, Any]:
-    """Run `python ARGUMENTS...`: wall seconds, peak anonymous memory (RssAnon, sampled 50 times a second; Linux only,
-    else None) and what it printed. File-backed pages, such as memory maps, are not anonymous."""
+    """Run `python ARGUMENTS...`: wall seconds, peak anonymous memory (RssAnon, children included, sampled 50 times a
+    second; Linux only, else None) and what it printed. File-backed pages, such as memory maps, are not anonymous."""
     started = time.perf_counter()
     process = subprocess.Popen([sys.executable, *arguments], stdout=subprocess.PIPE, text=True)
     peak = 0
@@ -33,12 +33,12 @@ def run(arguments: list[str]) -> dict[str, Any]:
 def _anonymous(pid: int) -> int:
     try:
         status = Path(f"/proc/{pid}/status").read_text()
-    except OSError:
+        children = [int(word) for task in Path(f"/proc/{pid}/task").iterdir() for word in
+                    (task / "children").read_text().split()]  # fmt: skip
+    except OSError:  # it ended in between, or this is no Linux
         return 0
-    for line in status.splitlines():
-        if line.startswith("RssAnon:"):
-            return int(line.split()[1]) * 1024
-    return 0
+    own = next((int(line.split()[1]) * 1024 for line in status.splitlines() if line.startswith("RssAnon:")), 0)
+    return own + sum(_anonymous(child) for child in children)
 
 
 def commit() -> str:
@@ -46,7 +46,10 @@ def commit() -> str:
     try:
         name, changes = (
             subprocess.run(["git", *words], capture_output=True, text=True, check=True).stdout
-            for words in (["rev-parse", "--short", "HEAD"], ["status", "--porcelain", "-uno"])
+            for words in (
+                ["rev-parse", "--short", "HEAD"],
+                ["status", "--porcelain", "-uno", "--", ".", ":!benchmarks/results"],
+            )
         )
     except (OSError, subprocess.CalledProcessError):
         return "unknown"

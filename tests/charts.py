@@ -6,10 +6,22 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from eigenfield.calibrate import board as boards
 from eigenfield.calibrate.board import Board
 from eigenfield.calibrate.bundle import Sighting
 from eigenfield.calibrate.corners import Corners
 from eigenfield.calibrate.lens_models import matrix, project
+
+CHECKER = boards.checkerboard(9, 6, 25.0, "mm")
+CHARUCO = boards.charuco(5, 6, 30.0, 22.0, "DICT_4X4_50", "mm")
+TOML = """\
+columns = 4
+rows = 5
+dictionary = "DICT_4X4_1000"
+aruco_scale = 0.75
+square_size_override_cm = 5.4
+inverted = true
+"""
 
 SIZE = (640, 480)
 INTRINSICS = np.array([600.0, 600, 320, 240, 0, 0, 0, 0, 0])

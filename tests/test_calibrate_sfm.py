@@ -14,92 +14,30 @@ import cv2
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from eigenfield.calibrate import (
     KnownLens,
     Motion,
-    align_similarity,
     calibration_error,
-    read_known_lenses,
     structure_from_motion,
 )
-from eigenfield.calibrate.align import angle_between, natural_gauge
+from eigenfield.calibrate.align import angle_between
 from eigenfield.calibrate.features import FeatureOptions, features_of
-from eigenfield.calibrate.lenses import distorted, undistorted
+from eigenfield.calibrate.lenses import undistorted
 from eigenfield.calibrate.matching import choose_pairs
 from eigenfield.camera import Camera
 from eigenfield.capture import Layout, Lens, LightField, PhotoSet, Shot, open_capture
 from eigenfield.cli import group
 from eigenfield.errors import CaptureError, OptionError
-from eigenfield.files import write_bytes
-from eigenfield.mesh import Mesh
 from eigenfield.parallel import set_threads, threads
 from eigenfield.rendering import draw_texture
-from eigenfield.texturing import png_bytes
-
-WIDTH, HEIGHT = 320, 240
-K = np.array([[300.0, 0, 165], [0, 302, 118], [0, 0, 1]])
-
-
-def spotted(seed: int, side: int = 768) -> np.ndarray:
-    """(side, side, 3): discs of many sizes, which SIFT likes."""
-    random = np.random.default_rng(seed)
-    picture = np.full((side, side, 3), 128, np.uint8)
-    for radius in (60, 30, 16, 9, 6):
-        for _ in range(int(40000 / radius**1.6)):
-            x, y = random.integers(0, side, 2)
-            colour = tuple(int(c) for c in random.integers(0, 256, 3))
-            cv2.circle(picture, (int(x), int(y)), int(random.integers(radius // 2, radius)), colour, -1, cv2.LINE_AA)
-    return picture.astype(np.float32) / 255
-
-
-def relief(nodes: int = 24) -> Mesh:
-    """A square of side 4 with hills as high as a quarter of the cameras' distance."""
-    steps = np.linspace(0, 1, nodes)
-    v, u = np.meshgrid(steps, steps, indexing="ij")
-    x, y = 4 * u - 2, 4 * v - 2
-    z = 0.4 * np.sin(2.5 * x) * np.cos(2 * y) + 0.2 * np.sin(5 * y + x)
-    corner = (np.arange(nodes - 1)[:, None] * nodes + np.arange(nodes - 1)).ravel()
-    upper = np.stack([corner, corner + 1, corner + nodes], axis=1)
-    lower = np.stack([corner + 1, corner + nodes + 1, corner + nodes], axis=1)
-    vertices = np.stack([x, y, z], axis=-1).reshape(-1, 3).astype(np.float32)
-    faces = np.concatenate([upper, lower]).astype(np.int32)
-    return Mesh(vertices, faces, np.stack([u, v], axis=-1).reshape(-1, 2).astype(np.float32))
-
-
-def looking(centre: np.ndarray, at: np.ndarray) -> Camera:
-    z = (at - centre) / np.linalg.norm(at - centre)
-    x = np.cross([0.0, 1, 0], z)
-    x /= np.linalg.norm(x)
-    R = np.stack([x, np.cross(z, x), z])
-    return Camera(K, R, -R @ centre, WIDTH, HEIGHT)
-
-
-def cameras(count: int) -> list[Camera]:
-    """On a wavy arc before the relief, all looking at its middle."""
-    angles = np.linspace(-0.45, 0.45, count)
-    return [
-        looking(np.array([3 * np.sin(a), 0.3 * np.cos(7 * a), -3 * np.cos(a)]), np.array([0.1 * a, 0, 0]))
-        for a in angles
-    ]
+from motion import HEIGHT, WIDTH, K, cameras, photographed, picture, relief, spotted
 
 
 @pytest.fixture(scope="module")
 def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[PhotoSet, LightField]:
     """Five photographs and the truth."""
-    folder = tmp_path_factory.mktemp("scene") / "photos"
-    folder.mkdir()
-    mesh, texture = relief(), spotted(1)
-    shots = []
-    views = cameras(5)
-    for index, camera in enumerate(views):
-        path = folder / f"shot_{index}.png"
-        write_bytes(path, png_bytes(draw_texture(mesh, texture, camera, samples=1).image))
-        shots.append(Shot(path.name, path, WIDTH, HEIGHT))
-    photos = PhotoSet(folder, tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(views)
+    return photographed(tmp_path_factory.mktemp("scene") / "photos")
 
 
 @pytest.fixture(scope="module")
@@ -131,11 +69,6 @@ def strong_features() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("eigenfield.calibrate.features.LITTLE_TEXTURE", 0)
         yield
-
-
-def picture(folder: Path, name: str, pixels: np.ndarray) -> Shot:
-    write_bytes(folder / name, png_bytes(pixels.astype(np.float32)))
-    return Shot(name, folder / name, pixels.shape[1], pixels.shape[0])
 
 
 def with_shots(photos: PhotoSet, *shots: Shot) -> PhotoSet:
@@ -367,113 +300,6 @@ def test_a_layout_is_needed_to_match_by_it():
     assert error.value.code == "matching-layout"
     with pytest.raises(OptionError):
         choose_pairs([None] * 4, "vocabulary", None)  # type: ignore[arg-type]
-
-
-# similarities
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3), st.integers(3, 12))
-def test_similarities_are_recovered(seed, scale, count):
-    random = np.random.default_rng(seed)
-    q, _ = np.linalg.qr(random.normal(size=(3, 3)))
-    R = q * np.sign(np.linalg.det(q))
-    t = random.normal(size=3) * 10
-    points = random.normal(size=(count, 3))
-    found, turn, shift = align_similarity(points, scale * points @ R.T + t)
-    assert found == pytest.approx(scale, rel=1e-6)
-    np.testing.assert_allclose(turn, R, atol=1e-5)
-    np.testing.assert_allclose(shift, t, atol=1e-5 * max(1, scale))
-
-
-def test_a_mirrored_set_gives_a_rotation_all_the_same():
-    points = np.random.default_rng(0).normal(size=(8, 3))
-    _, R, _ = align_similarity(points, points * [1, 1, -1])
-    assert np.linalg.det(R) == pytest.approx(1)
-
-
-def test_what_cannot_be_aligned_is_refused():
-    for points in (np.zeros((5, 3)), np.eye(3)[:2]):
-        with pytest.raises(CaptureError) as error:
-            align_similarity(points, points)
-        assert error.value.code == "align"
-
-
-def test_the_error_of_a_moved_copy_is_none_and_of_a_turned_camera_its_angle(scene):
-    _, truth = scene
-    scale, R, t = natural_gauge(truth.cameras)
-    from eigenfield.calibrate.align import moved_camera
-
-    views = [replace(v, camera=moved_camera(v.camera, scale, R, t)) for v in truth.views]
-    error = calibration_error(replace(truth, views=tuple(views)), truth)
-    assert error.rotation.max() < 1e-6 and error.position.max() < 1e-9
-    turn, _ = cv2.Rodrigues(np.radians([0.0, 2.0, 0.0]))
-    camera = views[2].camera
-    views[2] = replace(views[2], camera=replace(camera, R=turn @ camera.R, t=turn @ camera.t))
-    error = calibration_error(replace(truth, views=tuple(views)), truth)
-    assert error.rotation[2] == pytest.approx(2, abs=1e-6) and np.delete(error.rotation, 2).max() < 1e-6
-
-
-@pytest.mark.parametrize(
-    "lens",
-    [
-        None,
-        Lens("brown", (-0.3, 0.1, 0.002, -0.001, 0.01)),
-        Lens("fisheye", (-0.02, 0.003, 0.0, 0.0)),
-        Lens("rational", (0.1, -0.2, 0.001, 0.0, 0.05, 0.2, -0.1, 0.02)),
-        Lens("metashape", (-0.2, 0.05, 0.0, 0.0, 0.001, -0.002, 0.1, 0.0, 0.003)),
-        Lens("metashape-equidistant", (-0.02, 0.003, 0.0, 0.0, 0.001, 0.0, 0.0, 0.0, 0.0)),
-    ],
-)
-def test_undistorting_is_the_inverse(lens):
-    known = KnownLens(K, lens)
-    points = np.random.default_rng(1).uniform([0, 0], [WIDTH, HEIGHT], (200, 2))
-    flat = undistorted(points, known)
-    assert np.isfinite(flat).all()
-    rays = (flat - K[:2, 2]) / [K[0, 0], K[1, 1]]
-    np.testing.assert_allclose(distorted(rays, known), points, atol=1e-6)
-
-
-def test_pixels_beyond_the_lens_are_nowhere():
-    known = KnownLens(K, Lens("brown", (-1.0, 0.0, 0.0, 0.0, 0.0)))  # the picture ends at a radius of 0.385
-    flat = undistorted(np.array([[165.0, 118.0], [165 + 0.3 * 300, 118.0], [165 + 0.5 * 300, 118.0]]), known)
-    assert np.isfinite(flat[:2]).all() and np.isnan(flat[2]).all()
-
-
-# known lenses from files
-
-
-def test_lenses_are_read_from_a_matrix_and_from_a_calibration(scene, tmp_path):
-    photos, _ = scene
-    (tmp_path / "K.txt").write_text("\n".join(" ".join(map(str, row)) for row in K))
-    assert all(np.array_equal(known.K, K) for known in read_known_lenses(tmp_path / "K.txt", photos))
-    frames = [
-        {
-            "file_path": f"elsewhere/{name}", "fl_x": 600.0 + 2 * i, "fl_y": 600.0, "cx": 320.0, "cy": 240.0,
-            "w": 2 * WIDTH, "h": 2 * HEIGHT, "k1": 0.01, "transform_matrix": np.eye(4).tolist(),
-        }
-        for i, name in enumerate(photos.names)
-    ]  # fmt: skip
-    (tmp_path / "transforms.json").write_text(json.dumps({"frames": frames}))
-    known = read_known_lenses(tmp_path / "transforms.json", photos)
-    assert [k.K[0, 0] for k in known] == [300.0 + i for i in range(5)]
-    assert known[0].lens == Lens("brown", (0.01, 0.0, 0.0, 0.0, 0.0))
-    with pytest.raises(CaptureError) as error:
-        read_known_lenses(
-            tmp_path / "transforms.json",
-            replace(photos, shots=(replace(photos.shots[0], name="x.png", path=Path("x")),)),
-        )
-    assert error.value.code == "intrinsics-missing"
-
-
-def test_lenses_of_another_picture_are_refused(scene, tmp_path):
-    frame = {"file_path": "a.png", "fl_x": 600.0, "w": 640, "h": 640, "transform_matrix": np.eye(4).tolist()}
-    (tmp_path / "transforms.json").write_text(json.dumps({"frames": [frame]}))
-    with pytest.raises(CaptureError) as error:
-        read_known_lenses(tmp_path / "transforms.json", scene[0])
-    assert error.value.code == "image-size"
-    with pytest.raises(CaptureError):
-        read_known_lenses(tmp_path / "nothing.yml", scene[0])
 
 
 # the verb

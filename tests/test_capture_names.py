@@ -3,56 +3,13 @@
 from __future__ import annotations
 
 import shutil
-from fractions import Fraction
-from pathlib import Path
 
-import av
 import cv2
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from PIL import Image
 
-from eigenfield.capture import LightField, PhotoSet, open_any, open_capture, open_photographs
-from eigenfield.capture.hci import read_parameters
-from eigenfield.capture.video import frame_of, parse_frame
-from eigenfield.errors import CaptureError, EigenfieldError, OptionError
-
-WIDTH, HEIGHT = 24, 16
-CUBE = np.array([[x, y, z] for x in (-0.2, 0.3) for y in (-0.1, 0.2) for z in (2.0, 2.6)])
-
-
-def picture(seed: int, width: int = WIDTH, height: int = HEIGHT) -> Image.Image:
-    return Image.fromarray(np.random.default_rng(seed).integers(0, 256, (height, width, 3), np.uint8))
-
-
-def write(folder: Path, names: list[str], **size: int) -> Path:
-    folder.mkdir(parents=True, exist_ok=True)
-    for seed, name in enumerate(names):
-        picture(seed, **size).save(folder / name)
-    return folder
-
-
-def nodes(photo_set: PhotoSet) -> dict[str, tuple[int, int]]:
-    layout = photo_set.layout
-    assert layout is not None
-    return {s.name: (int(r), int(c)) for s, r, c in zip(photo_set.shots, layout.rows, layout.columns, strict=True)}
-
-
-def places(photo_set: PhotoSet) -> dict[str, tuple[float, float]]:
-    assert photo_set.layout is not None
-    return {s.name: tuple(p) for s, p in zip(photo_set.shots, photo_set.layout.positions.tolist(), strict=True)}
-
-
-def refused(code: str, path: Path, call=open_any, **options) -> EigenfieldError:
-    with pytest.raises(EigenfieldError) as caught:
-        call(path, **options)
-    error = caught.value
-    assert error.code == code and error.remedy and "\n" not in str(error), str(error)
-    assert isinstance(error, OptionError) or error.path
-    return error
-
+from eigenfield.capture import LightField, PhotoSet, open_any, open_photographs
+from named import CUBE, nodes, places, refused, write
 
 # Stanford
 
@@ -110,125 +67,6 @@ def test_two_photographs_on_one_node(tmp_path):
     names = [f"out_{r:02d}_{c:02d}.png" for r in range(2) for c in range(3)]
     error = refused("node-twice", write(tmp_path, [*names, "out_1_1.jpg"]))
     assert "out_1_1.jpg" in str(error) and "out_01_01.png" in str(error)
-
-
-# HCI
-
-
-CFG = """[intrinsics]
-focal_length_mm = 100.0
-image_resolution_x_px = 24
-image_resolution_y_px = 16
-sensor_size_mm = 35.0
-fstop = 100.0
-[extrinsics]
-num_cams_x = 3
-num_cams_y = 3
-baseline_mm = 6.0
-focus_distance_m = 1.25
-center_cam_x_m = -1.0
-[meta]
-scene = cube
-disp_min = -0.3
-disp_max = 0.2
-[unheard of]
-key
-"""
-
-
-def hci(folder: Path, cfg: str | bytes | None = CFG, count: int = 9, **size: int) -> Path:
-    write(folder, [f"input_Cam{i:03d}.png" for i in range(count)], **size)
-    if cfg is not None:
-        (folder / "parameters.cfg").write_bytes(cfg if isinstance(cfg, bytes) else cfg.encode())
-    return folder
-
-
-def test_hci_cameras_see_a_cube_where_the_benchmark_says(tmp_path):
-    """Right by a column, down by a row; disparity b f (1/Z - 1/F) pixels a step, zero in the plane of focus."""
-    light_field = open_any(hci(tmp_path))
-    assert isinstance(light_field, LightField) and light_field.format == "hci" and len(light_field) == 9
-    f, b, focus = 100 / 35 * 24, 0.006, 1.25
-    middle, depth = light_field.cameras[4].project(CUBE)
-    assert np.allclose(middle, f * CUBE[:, :2] / CUBE[:, 2:] + [12, 8]) and np.allclose(depth, CUBE[:, 2])
-    disparity = b * f * (1 / CUBE[:, 2] - 1 / focus)
-    for index, camera in enumerate(light_field.cameras):
-        row, column = divmod(index, 3)
-        expected = middle - disparity[:, None] * [column - 1, row - 1]
-        assert np.allclose(camera.project(CUBE)[0], expected)
-        assert np.allclose(camera.project([[0, 0, focus]])[0], [12, 8])
-    layout = light_field.layout
-    assert layout.exact and layout.signs and layout.rectified and layout.measured and np.isclose(layout.focal, f)
-    assert np.allclose(layout.positions, [[c.centre[0] + b, -c.centre[1] - b] for c in light_field.cameras])
-    near, far = light_field.views[0].bounds
-    assert np.isclose(b * f * (1 / near - 1 / focus), 0.2) and np.isclose(b * f * (1 / far - 1 / focus), -0.3)
-    assert light_field.subset([8, 0]).layout.rows.tolist() == [2, 0]
-
-
-def test_hci_at_half_size_has_cameras_for_it(tmp_path):
-    light_field = open_capture(hci(tmp_path, width=12, height=8))
-    assert np.isclose(light_field.cameras[0].K[0, 0], 100 / 35 * 12) and np.isclose(light_field.layout.focal, 1200 / 35)
-
-
-def test_hci_photographs_alone(tmp_path):
-    """`open_photographs` leaves the cfg's cameras aside, and keeps what it says of the array."""
-    photo_set = open_photographs(hci(tmp_path, width=12, height=8))
-    assert isinstance(photo_set, PhotoSet) and photo_set.layout.exact
-    assert photo_set.layout.focal == pytest.approx(1200 / 35) and photo_set.shots[3].focal == pytest.approx(1200 / 35)
-
-
-def test_hci_without_a_cfg_is_a_grid(tmp_path):
-    photo_set = open_any(hci(tmp_path, None))
-    assert isinstance(photo_set, PhotoSet) and photo_set.layout.shape == (3, 3)
-    assert photo_set.layout.exact and photo_set.layout.signs and photo_set.layout.focal is None
-    assert nodes(photo_set)["input_Cam005.png"] == (1, 2) and places(photo_set)["input_Cam005.png"] == (2, -1)
-    assert "parameters.cfg" in photo_set.problems[0]
-    assert "eigenfield calibrate" in str(refused("calibration-missing", tmp_path, open_capture))
-
-
-def test_hci_grids_that_are_not_square(tmp_path):
-    folder = hci(tmp_path, None, 8)
-    assert "--grid" in refused("grid-size", folder).remedy
-    assert open_any(folder, grid=(2, 4)).layout.shape == (2, 4)
-    assert nodes(open_any(folder, grid=(4, 2)))["input_Cam005.png"] == (2, 1)
-    refused("grid-size", folder, grid=(2, 3))
-    assert open_any(folder, grid=(3, 3)).problems[-1].endswith("row 2 column 2")
-
-
-DAMAGED = [
-    b"", b"\xff\xfe", b"[intrinsics]", b"focal_length_mm = 1", CFG.replace("= 6.0", "= six").encode(),
-    CFG.replace("= 6.0", "= nan").encode(), CFG.replace("= 6.0", "= -6").encode(), CFG.replace("= 6.0", "= 0").encode(),
-    CFG.replace("num_cams_x = 3", "num_cams_x = 2.5").encode(), CFG.replace("focal_length_mm = 100.0", "").encode(),
-    CFG.replace("sensor_size_mm = 35.0", "sensor_size_mm = 1e-320").encode(), CFG.encode()[:100], b"\0" * 1000,
-    CFG.replace("num_cams_y = 3", "num_cams_y = 2").encode(), CFG.replace("focus_distance_m = 1.25", "").encode(),
-]  # fmt: skip
-
-
-@pytest.mark.parametrize("cfg", DAMAGED)
-def test_a_damaged_cfg_leaves_the_grid(tmp_path, cfg):
-    photo_set = open_any(hci(tmp_path, cfg))
-    assert isinstance(photo_set, PhotoSet) and photo_set.layout.shape == (3, 3) and photo_set.layout.focal is None
-    assert "parameters.cfg cannot be used" in photo_set.problems[0] and "\n" not in photo_set.problems[0]
-    assert "cannot be used" in str(refused("calibration-missing", tmp_path, open_capture))
-
-
-def test_a_cfg_without_disparities_is_whole(tmp_path):
-    light_field = open_capture(hci(tmp_path, CFG.replace("disp_min = -0.3", "")))
-    assert len(light_field) == 9 and light_field.views[0].bounds is None
-
-
-@settings(max_examples=200, deadline=None)
-@given(st.integers(0, len(CFG) - 1), st.binary(max_size=6), st.integers(0, 12))
-def test_any_cfg_is_read_or_refused(tmp_path_factory, at, change, cut):
-    path = tmp_path_factory.getbasetemp() / "any.cfg"
-    data = CFG.encode()
-    path.write_bytes(data[:at] + change + data[at + cut :])
-    try:
-        found = read_parameters(path)
-    except CaptureError as error:
-        assert "\n" not in str(error)
-    else:
-        values = np.array([found.focal, found.baseline, found.focus])
-        assert np.isfinite(values).all() and (values > 0).all() and found.depth(0) > 0
 
 
 # parallel cameras in names
@@ -306,81 +144,6 @@ def test_numbers_that_fill_a_square_are_a_hint_only(tmp_path):
     assert photo_set.layout is None and photo_set.problems == (
         "numbered from 0 to 24: if they are a grid, say --grid 5x5",
     )
-
-
-# videos
-
-
-def write_video(path: Path, frames: int, rate: int = 10, camera: int = 0) -> list[np.ndarray]:
-    """A gradient that grows brighter and changes its colour with every frame."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    width, height = 64, 48
-    x = np.linspace(0, 1 - 0.1 * camera, width)[None, :, None] * np.ones((height, 1, 1))
-    pictures = []
-    with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=Fraction(rate), options={"crf": "4", "g": "5", "bf": "2"})
-        stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
-        for number in range(frames):
-            colour = np.array([0.2 + 0.02 * number, 0.5 - 0.01 * number, 0.4])
-            pictures.append(np.rint(255 * (0.2 + 0.8 * x) * colour).astype(np.uint8))
-            for packet in stream.encode(av.VideoFrame.from_ndarray(pictures[-1], format="rgb24")):
-                container.mux(packet)
-        container.mux(stream.encode(None))
-    return pictures
-
-
-def test_one_frame_of_each_video(tmp_path):
-    truth = [write_video(tmp_path / "rig" / "videos" / f"cam_{i}.mp4", 12, camera=i) for i in range(3)]
-    photo_set = open_any(tmp_path / "rig", frame=7, work=tmp_path / "work")
-    assert photo_set.format == "video" and photo_set.names == ("cam_0.png", "cam_1.png", "cam_2.png")
-    assert photo_set.layout is None and not photo_set.problems
-    for index in range(3):
-        pixels = photo_set.photograph(index).pixels * 255
-        distance = [np.abs(pixels - t).mean() for t in truth[index]]
-        assert np.argmin(distance) == 7 and distance[7] < 1.5
-    before = photo_set.shots[0].path.stat().st_mtime_ns
-    again = open_photographs(tmp_path / "rig", frame="7", work=tmp_path / "work")
-    assert again.shots[0].path == photo_set.shots[0].path and again.shots[0].path.stat().st_mtime_ns == before
-    by_time = open_any(tmp_path / "rig", frame="0.75s")  # shown from 0.7 s to 0.8 s
-    assert np.array_equal(by_time.photograph(0).pixels, photo_set.photograph(0).pixels)
-    assert "frame 0" in open_any(tmp_path / "rig").problems[0]
-
-
-@pytest.mark.parametrize("frame", [0, 4, 11, 0.0, 0.349, 1.19])
-def test_frames_by_index_and_time(tmp_path, frame):
-    truth = write_video(tmp_path / "a.mp4", 12)
-    found = frame_of(tmp_path / "a.mp4", frame).astype(float)
-    wanted = frame if isinstance(frame, int) else int(frame * 10)
-    assert np.argmin([np.abs(found - t).mean() for t in truth]) == wanted
-
-
-def test_videos_that_are_too_short_or_none(tmp_path):
-    write_video(tmp_path / "a.mp4", 12)
-    write_video(tmp_path / "b.mp4", 5)
-    error = refused("video-short", tmp_path, frame=8)
-    assert "b.mp4" in str(error) and "5 frames" in str(error)
-    assert "0.5 s" in str(refused("video-short", tmp_path, frame="0.9s"))
-    (tmp_path / "b.mp4").write_bytes((tmp_path / "a.mp4").read_bytes()[:300])
-    assert "b.mp4" in str(refused("video-unreadable", tmp_path))
-    (tmp_path / "b.mp4").write_bytes(b"")
-    refused("video-unreadable", tmp_path)
-
-
-@pytest.mark.parametrize("word", ["-1", "2.5", "s", "1e3s", "x", "", "1:20"])
-def test_frames_that_are_none(word):
-    with pytest.raises(OptionError, match="--frame"):
-        parse_frame(word)
-
-
-def test_a_video_is_turned_upright(tmp_path):
-    write_video(tmp_path / "a.mp4", 3)
-    flat = frame_of(tmp_path / "a.mp4", 1)
-    data = bytearray((tmp_path / "a.mp4").read_bytes())
-    at = data.index(b"tkhd") + 4 + 40  # the matrix of the track header, version 0
-    turn = [0, 0x10000, 0, -0x10000, 0, 0, 0, 0, 0x40000000]  # a quarter turn clockwise
-    data[at : at + 36] = b"".join(v.to_bytes(4, "big", signed=True) for v in turn)
-    (tmp_path / "a.mp4").write_bytes(data)
-    assert np.array_equal(frame_of(tmp_path / "a.mp4", 1), np.rot90(flat, -1))
 
 
 # real captures

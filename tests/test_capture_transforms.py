@@ -1,79 +1,21 @@
-"""transforms.json: intrinsics, poses, paths, lenses, masks; and every way in which it can be wrong."""
+"""transforms.json: intrinsics, poses, paths, sizes, lenses, masks."""
 
 from __future__ import annotations
 
-import copy
 import json
 import threading
-from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from eigenfield.camera import Camera
 from eigenfield.capture import open_capture
-from eigenfield.capture.lens import Lens, remove_lens, resample, source_positions
+from eigenfield.capture.lens import Lens
 from eigenfield.capture.pairing import is_same_picture
-from eigenfield.capture.transforms import read_transforms
 from eigenfield.errors import CaptureError
-
-WIDTH, HEIGHT = 40, 30
-
-
-def rotation(x: float, y: float, z: float) -> np.ndarray:
-    return cv2.Rodrigues(np.array([x, y, z]))[0]
-
-
-def camera(index: int) -> Camera:
-    R = rotation(0.05 * index, -0.1 * index, 0.02)
-    K = np.array([[50.0 + index, 0, 5.5], [0, 48.0, 27.25], [0, 0, 1]])  # principal point far off the middle
-    return Camera(K, R, -R @ np.array([0.5 * index, 0.1 * index**2, -3.0]), WIDTH, HEIGHT)
-
-
-def pose(of: Camera) -> list[list[float]]:
-    """Camera-to-world, OpenGL axes."""
-    matrix = np.eye(4)
-    matrix[:3, :3] = of.R.T * [1, -1, -1]
-    matrix[:3, 3] = of.centre
-    return matrix.tolist()
-
-
-def document(count: int = 4, extension: str = ".png") -> dict:
-    frames = []
-    for i in range(count):
-        K = camera(i).K
-        frames.append({
-            "file_path": f"images/v{i}{extension}", "fl_x": K[0, 0], "fl_y": K[1, 1], "cx": K[0, 2], "cy": K[1, 2],
-            "w": float(WIDTH), "h": HEIGHT, "transform_matrix": pose(camera(i)), "sharpness": 3.0,
-        })  # fmt: skip
-    return {"camera_model": "PINHOLE", "frames": frames}
-
-
-def picture(index: int = 0, width: int = WIDTH, height: int = HEIGHT) -> Image.Image:
-    y, x = np.mgrid[0:height, 0:width]
-    return Image.fromarray(
-        np.stack([x * 255 // width, y * 255 // height, 0 * x + 20 * index], axis=-1).astype(np.uint8)
-    )
-
-
-def write(folder: Path, top: dict | None = None, count: int = 4, images: str = "images") -> Path:
-    (folder / images).mkdir(parents=True, exist_ok=True)
-    for i in range(count):
-        picture(i).save(folder / images / f"v{i}.png")
-    (folder / "transforms.json").write_text(json.dumps(document(count) if top is None else top), encoding="utf-8")
-    return folder
-
-
-def refused(code: str, *args, **options) -> CaptureError:
-    with pytest.raises(CaptureError) as caught:
-        open_capture(*args, **options)
-    error = caught.value
-    assert error.code == code and error.path and error.remedy and "\n" not in str(error), str(error)
-    return error
+from transforms_files import HEIGHT, WIDTH, camera, document, picture, pose, refused, rotation, write
 
 
 def test_cameras_come_out_as_they_went_in(tmp_path):
@@ -350,74 +292,6 @@ def test_wrong_masks(tmp_path):
     refused("mask-twice", tmp_path, masks=tmp_path / "masks")
 
 
-# lenses
-
-
-BROWN = Lens("brown", (-0.12, 0.03, 0.004, -0.003, 0.01))
-FISHEYE = Lens("fisheye", (0.05, -0.02, 0.004, 0.001))
-K = np.array([[150.0, 0, 83.25], [0, 140.0, 57.75], [0, 0, 1]])
-
-
-@pytest.mark.parametrize("lens", [BROWN, FISHEYE])
-def test_lens_positions_agree_with_projection(lens):
-    """A point seen at a pinhole pixel lies, through the lens, where source_positions says: OpenCV's own projection
-    with K as it stands gives positions from the picture's corner, source_positions counts from pixel centres."""
-    x, y, inside = source_positions(K, lens, 160, 120)
-    for row, column in ((0, 0), (60, 80), (119, 3), (31, 159)):
-        ray = np.linalg.solve(K, [column + 0.5, row + 0.5, 1.0])[None, None]
-        project = cv2.projectPoints if lens.model == "brown" else cv2.fisheye.projectPoints
-        seen = project(ray, np.zeros(3), np.zeros(3), K, np.array(lens.coefficients))[0].ravel()
-        assert np.allclose([x[row, column] + 0.5, y[row, column] + 0.5], seen, atol=1e-3)
-        assert inside[row, column] == (0 <= seen[0] <= 160 and 0 <= seen[1] <= 120)
-
-
-@pytest.mark.parametrize("lens", [BROWN, FISHEYE])
-def test_lens_removal_gives_the_pinhole_picture(lens):
-    """A smooth pattern on the rays, photographed through the lens, comes back as the pinhole shows it."""
-
-    def pattern(nx, ny):
-        return np.stack([0.5 + 0.3 * np.sin(7 * nx + 3 * ny), 0.5 + 0.3 * np.cos(6 * ny), 0.5 + 0.2 * nx], axis=-1)
-
-    v, u = np.mgrid[0:120, 0:160] + 0.5
-    undistort = cv2.undistortPoints if lens.model == "brown" else cv2.fisheye.undistortPoints
-    criteria = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 100, 1e-12)
-    points = np.stack([u, v], axis=-1).reshape(-1, 1, 2)
-    rays = undistort(points, K, np.array(lens.coefficients), criteria=criteria).reshape(120, 160, 2)
-    photograph = pattern(rays[..., 0], rays[..., 1]).astype(np.float32)
-    expected = pattern((u - K[0, 2]) / K[0, 0], (v - K[1, 2]) / K[1, 1])
-    pixels, mask = remove_lens(photograph, None, K, lens)
-    rim = cv2.erode(mask, np.ones((7, 7)))
-    assert rim.mean() > 0.7
-    assert np.abs(pixels - expected)[rim > 0].max() < 1e-3
-    marked = photograph.copy()
-    marked[:, :60] = 1e3  # what does not count may hold anything
-    counts = (np.arange(160) >= 60).astype(np.float32)[None].repeat(120, 0)
-    pixels, mask = remove_lens(marked, counts, K, lens)
-    whole = (mask > 0.99) & (rim > 0)
-    assert whole.mean() > 0.3 and np.abs(pixels - expected)[whole].max() < 2e-2
-
-
-def test_cubic_sampling_keeps_planes_and_values():
-    y, x = np.mgrid[0:20, 0:30].astype(np.float32)
-    plane = np.stack([x, 2 * y + x], axis=-1)
-    px, py = (x + 0.37)[2:-3, 2:-3], (y + 0.81)[2:-3, 2:-3]
-    out = resample(plane, np.ascontiguousarray(px), np.ascontiguousarray(py))
-    assert np.abs(out - np.stack([px, 2 * py + px], axis=-1)).max() < 1e-4
-    random = np.random.default_rng(1).random((20, 30, 3), dtype=np.float32)
-    assert np.array_equal(resample(random, x, y), random)
-
-
-def test_nothing_is_shown_where_the_lens_polynomial_folds_back():
-    wide = np.array([[60.0, 0, 80], [0, 60, 60], [0, 0, 1]])
-    lens = Lens("brown", (-0.3, 0, 0, 0, 0))
-    assert np.isclose(lens.limit(), np.sqrt(1 / 0.9))
-    _, mask = remove_lens(np.ones((120, 160, 3), np.float32), None, wide, lens)
-    v, u = np.mgrid[0:120, 0:160] + 0.5
-    assert mask[np.hypot((u - 80) / 60, (v - 60) / 60) > lens.limit()].max() == 0
-    assert mask[60, 80] == 1
-    assert Lens("brown", (0.1, 0.02, 0, 0, 0)).limit() == np.inf
-
-
 @pytest.mark.parametrize(
     "extra", [{"k1": 0.3, "p2": 0.01}, {"camera_model": "OPENCV_FISHEYE", "k1": 0.1}, {"is_fisheye": True}]
 )
@@ -457,145 +331,6 @@ def test_subset(tmp_path):
     capture = open_capture(write(tmp_path)).subset([2, 0])
     assert capture.names == ("v2.png", "v0.png")
     assert np.array_equal(capture.photograph(0).pixels * np.float32(255), np.asarray(picture(2)))
-
-
-# damage
-
-
-def changed(path: str, value) -> dict:
-    top = document()
-    *steps, last = path.split("/")
-    at = top
-    for step in steps:
-        at = at[int(step) if step.isdigit() else step]
-    at[int(last) if last.isdigit() else last] = value
-    return top
-
-
-@pytest.mark.parametrize(("path", "value", "code"), [
-    ("frames", {}, "calibration-json"),
-    ("frames", [], "calibration-empty"),
-    ("frames/1", 3, "frame-not-object"),
-    ("frames/1/file_path", 3, "frame-file"),
-    ("frames/1/file_path", "a\0b", "frame-file"),
-    ("frames/1/transform_matrix", None, "frame-pose"),
-    ("frames/1/transform_matrix", [[1, 0], [0]], "frame-pose"),
-    ("frames/1/transform_matrix/0/0", "1.0", "frame-pose"),
-    ("frames/1/transform_matrix/0/0", True, "frame-pose"),
-    ("frames/1/transform_matrix/3/0", 0.5, "frame-pose"),
-    ("frames/1/transform_matrix/0/0", float("nan"), "camera-not-finite"),
-    ("frames/1/transform_matrix/0/3", 10**400, "camera-not-finite"),
-    ("frames/1/transform_matrix/0/0", 5.0, "camera-not-rotation"),
-    ("frames/1/fl_x", 0, "camera-focal"),
-    ("frames/1/fl_x", "550", "frame-number"),
-    ("frames/1/cx", [1], "frame-number"),
-    ("frames/1/w", -3, "frame-size"),
-    ("frames/1/w", 1e12, "frame-size"),
-    ("frames/1/w", float("nan"), "frame-size"),
-    ("frames/1/mask_path", 7, "frame-mask"),
-    ("frames/1/mask_path", "none.png", "mask-missing"),
-    ("camera_model", "EQUIRECTANGULAR", "camera-model"),
-    ("k4", 0.1, "camera-model"),
-    ("k1", float("inf"), "lens"),
-    ("applied_transform", "no", "frame-pose"),
-    ("applied_scale", 0, "applied-transform"),
-])  # fmt: skip
-def test_wrong_values_are_refused(tmp_path, path, value, code):
-    error = refused(code, write(tmp_path, changed(path, value)))
-    assert error.path == str(tmp_path / "transforms.json")
-    if path.startswith("frames/1"):
-        assert "frame 1" in str(error)
-
-
-def test_a_reflection_is_no_rotation(tmp_path):
-    top = document()
-    matrix = np.array(top["frames"][2]["transform_matrix"])
-    matrix[:3, 0] *= -1
-    top["frames"][2]["transform_matrix"] = matrix.tolist()
-    assert "images/v2.png" in str(refused("camera-not-rotation", write(tmp_path, top)))
-
-
-def test_frames_without_any_focal_length(tmp_path):
-    top = document()
-    del top["frames"][0]["fl_x"], top["frames"][0]["fl_y"]
-    assert "fl_x" in str(refused("frame-focal", write(tmp_path, top)))
-
-
-@pytest.mark.parametrize(
-    "data", [b"", b"{", b"[]", b"3", b"\xff\xfe", b"[" * 100_000, b'{"frames": ' + b"9" * 5000 + b"}"]
-)
-def test_broken_json(tmp_path, data):
-    write(tmp_path)
-    (tmp_path / "transforms.json").write_bytes(data)
-    refused("calibration-json", tmp_path)
-
-
-def test_a_huge_json_is_not_read(tmp_path, monkeypatch):
-    write(tmp_path)
-    monkeypatch.setattr("eigenfield.capture.transforms.SIZE_LIMIT", 100)
-    refused("calibration-too-large", tmp_path)
-
-
-def test_what_is_no_capture(tmp_path):
-    refused("capture-missing", tmp_path / "nowhere")
-    refused("calibration-missing", tmp_path)
-    picture().save(tmp_path / "a.png")
-    refused("calibration-unknown", tmp_path / "a.png")
-    refused("capture-missing", tmp_path / "nowhere", calibration=tmp_path)
-    refused("capture-missing", write(tmp_path / "good"), calibration=tmp_path / "nowhere.json")
-    (tmp_path / "transforms_train.json").write_text("{}")
-    assert "transforms_train.json" in str(refused("calibration-missing", tmp_path))
-
-
-def test_a_damaged_photograph_is_named_on_opening_or_left_out(tmp_path):
-    write(tmp_path, document(5), 5)
-    (tmp_path / "images" / "v1.png").write_bytes(b"no picture")
-    assert "v1.png" in str(refused("image-kind", tmp_path))
-    lenient = open_capture(tmp_path, strict=False)
-    assert len(lenient) == 4 and any("v1.png" in problem for problem in lenient.problems)
-
-
-def test_names_with_line_breaks_and_lone_surrogates_stay_on_one_line(tmp_path):
-    top = document(5)
-    top["frames"][4]["file_path"] = "images/a\nb\ud800.png"
-    (problem,) = open_capture(write(tmp_path, top, 4)).problems
-    assert "\n" not in problem and problem.encode()
-
-
-JSON = st.recursive(
-    st.none() | st.booleans() | st.integers(-(10**30), 10**30) | st.floats() | st.text(max_size=5),
-    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
-    max_leaves=8,
-)
-
-
-PLACES = [
-    "frames", "camera_model", "applied_transform", "k1", "is_fisheye", "frames/0", "frames/0/file_path",
-    "frames/0/transform_matrix", "frames/0/transform_matrix/1", "frames/0/transform_matrix/1/2", "frames/0/w",
-    "frames/0/mask_path", "frames/0/cx", "frames/0/fl_y", "frames/0/camera_angle_x",
-]  # fmt: skip
-
-
-@settings(max_examples=300, deadline=None)
-@given(st.sampled_from(PLACES), JSON)
-def test_any_value_anywhere_is_read_or_refused(tmp_path_factory, path, value):
-    folder = tmp_path_factory.getbasetemp() / "any"
-    if not folder.exists():
-        write(folder)
-    (folder / "transforms.json").write_text(json.dumps(changed(path, value)))
-    try:
-        capture = open_capture(folder)
-    except CaptureError as error:
-        assert "\n" not in str(error)
-    else:
-        assert all(np.isfinite(view.camera.matrix).all() for view in capture.views)
-
-
-def test_the_reader_leaves_its_input_alone(tmp_path):
-    top = document()
-    before = copy.deepcopy(top)
-    write(tmp_path, top)
-    assert len(read_transforms(tmp_path / "transforms.json").entries) == 4 and top == before
 
 
 # real captures

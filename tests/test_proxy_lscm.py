@@ -183,9 +183,18 @@ def test_scales_are_bounded_and_unseen_charts_get_the_least():
     vertices, faces = box()
     mesh = Mesh(vertices.astype(np.float32), faces)
     scales = chart_scales(mesh, [looking_along(0, 1, 2.0), looking_along(1, 1, 40.0)])
-    assert scales.max() <= 2 and scales.min() >= 0.5
-    assert (scales == 0.5).sum() >= 4
+    assert scales.max() <= 8 and scales.min() >= 1 / 8
+    assert (scales == 1 / 8).sum() >= 4
     np.testing.assert_array_equal(chart_scales(mesh, [looking_along(0, 1, -30.0)]), np.ones(6))  # sees nothing
+
+
+def test_a_wide_background_does_not_take_the_atlas():
+    near, faces = patch(8, 8, lambda u, v: (u - 0.5, v - 0.5, np.full_like(u, 2.0)))
+    far = patch(8, 8, lambda u, v: (30 * (u - 0.5), 30 * (v - 0.5), np.full_like(u, 12.0)))[0]
+    mesh = Mesh(np.concatenate([near, far]).astype(np.float32), np.concatenate([faces, faces + len(near)]))
+    K = np.array([[100.0, 0, 60], [0, 100, 60], [0, 0, 1]])
+    scales = chart_scales(mesh, [Camera(K, np.eye(3), np.array([x, 0.0, 0.0]), 120, 120) for x in (-0.1, 0, 0.1)])
+    assert np.isclose(scales[0] / scales[1], 6, rtol=0.02)  # as far behind: texels are spread as pixels are
 
 
 @settings(max_examples=4, deadline=None)

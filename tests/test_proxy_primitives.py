@@ -19,7 +19,7 @@ from eigenfield.proxy.primitives import Plane, Sphere, insert_primitive, parse_p
 from eigenfield.proxy.sphere_fit import Region, find_view, fit_sphere, outline, parse_region
 from eigenfield.proxy.topology import areas, boundary_loops, edge_faces
 from eigenfield.raster import rasterise_view
-from test_proxy_surface import ball, looking, square
+from surfaces import ball, looking, square
 
 # ---------------------------------------------------------------- words
 

@@ -307,3 +307,72 @@ def test_a_depth_map_without_cuts_needs_no_second_layer():
     matrices = view_matrices(canvas(), [camera(), camera(at=(0.1, 0, 0))])
     _, valid = second_layer(pictures, matrices, ramp(), cut=1.0)
     assert not valid.any()
+
+
+def test_second_layer_reports_its_progress_from_the_first_step_to_the_last():
+    spots = [(0.04 * i, 0.04 * j, 0.0) for j in (-1, 0, 1) for i in (-1, 0, 1)]
+    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    matrices = view_matrices(frame, [camera(64, 48, at) for at in spots])
+    reports = []
+    second_layer(
+        np.stack([world(at)[0] for at in spots]), matrices, world((0, 0), *reversed(frame.shape))[1], cut=3.0,
+        progress=lambda *each: reports.append(each),
+    )  # fmt: skip
+    assert {stage for stage, _, _ in reports} == {"second layer"}
+    done = [step for _, step, _ in reports]
+    assert done[0] == 0 and done == sorted(done) and done[-1] == reports[-1][2]
+
+
+def leaves(frame):
+    """A wall, a leaf before it, a smaller one before that."""
+    d = np.zeros(frame.shape, np.float32)
+    d[14:44, 20:60] = 8.0
+    d[22:36, 30:48] = 18.0
+    return d
+
+
+def turned(camera, degrees):
+    angle = np.radians(degrees)
+    turn = np.array([[np.cos(angle), 0, -np.sin(angle)], [0, 1, 0], [np.sin(angle), 0, np.cos(angle)]])
+    return Camera(camera.K, turn @ camera.R, turn @ camera.t, camera.width, camera.height)
+
+
+def open_pixels(mesh, cameras):
+    return sum(int((rasterise_view(mesh, each).face < 0).sum()) for each in cameras)
+
+
+def test_the_backdrop_closes_every_view_and_stays_behind_the_layers():
+    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    d = leaves(frame)
+    cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
+    cameras += [turned(camera(64, 48, (0.1, 0, 0)), 8), turned(camera(64, 48, (-0.1, 0, 0)), -8)]
+    torn = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1)
+    closed = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1, cameras=cameras)
+    assert open_pixels(torn, cameras) > 500 and open_pixels(closed, cameras) == 0
+    between = [camera(64, 48, (0.05 * i + 0.025, 0.05 * j, 0)) for i in range(-2, 2) for j in range(-2, 3)]
+    assert open_pixels(closed, between) == 0
+    shown, there = depth_of(closed, frame)
+    before, _ = depth_of(torn, frame)
+    assert there.all()
+    np.testing.assert_allclose(shown, before, atol=1e-3)
+    assert atlas_fault(closed) is None
+    assert atlas_statistics(closed).overlap == 0
+
+
+def test_without_anything_open_there_is_no_backdrop():
+    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    d = ramp(*frame.shape)
+    near = [camera(64, 48, (0.01 * i, 0, 0)) for i in (-1, 0, 1)]
+    one = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1)
+    same = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1, cameras=near)
+    np.testing.assert_array_equal(one.faces, same.faces)
+    np.testing.assert_array_equal(one.uv, same.uv)
+
+
+def test_the_backdrop_keeps_to_its_share_of_the_triangles():
+    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    d = leaves(frame)
+    cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
+    for triangles in (400, 2000):
+        mesh = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1, triangles=triangles, cameras=cameras)
+        assert len(mesh.faces) <= triangles and open_pixels(mesh, cameras) == 0

@@ -196,6 +196,7 @@ def test_density_is_texels_per_pixel():
     assert atlas_side(PLANE, camera(size=512), 1.5) == 768
     assert atlas_side(PLANE, camera(size=512), 1.4) == 768  # 716.8, up to the next multiple of 64
     assert atlas_side(PLANE, camera(size=512), 100) == 4096
+    assert atlas_side(PLANE, camera(size=512), 100, pixels=10 * 512 * 512) == 2304  # sqrt(20) * 512 = 2290
     with pytest.raises(ProxyError, match="sees nothing"):
         texels_per_pixel(PLANE, camera(z=1.0))
 

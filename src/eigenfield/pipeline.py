@@ -22,10 +22,11 @@ from eigenfield.basis import (
     mean_map,
     smallest_count,
     spectrum,
+    warn_of_disagreement,
     weights_of,
 )
 from eigenfield.camera import Camera
-from eigenfield.capture import LightField
+from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import CaptureError, OptionError
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
@@ -39,6 +40,7 @@ from eigenfield.texturing import (
     Spreader,
     TextureMaps,
     atlas_side,
+    check_density,
     check_model,
     harmonise_maps,
     make_atlas,
@@ -79,14 +81,29 @@ class Options:
             raise OptionError(
                 "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
             )
+        check_density(self.density)
         if self.harmonise is not None:
             check_model(self.harmonise)
         if self.atlas is not None:
             sides = (self.atlas,) if isinstance(self.atlas, int) else self.atlas
             if not all(1 <= side <= SIDE_LIMIT for side in sides):
                 raise OptionError(
-                    "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"stay within {SIDE_LIMIT}"
+                    "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
                 )
+
+
+def check_options(capture: LightField | PhotoSet, options: Options) -> None:
+    """Raise OptionError for what `encode` will refuse for this capture, before its cameras and proxy are estimated."""
+    if isinstance(capture, LightField):
+        places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
+    elif capture.layout is not None:
+        places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
+    elif options.hold_out == "odd":
+        return  # cameras will tell
+    else:
+        places = np.zeros((len(capture), 2))
+    held = held_out_cameras(options.hold_out, capture.names, places)
+    _reference(options.reference, capture.names, places, np.flatnonzero(~held))
 
 
 def encode(
@@ -111,8 +128,9 @@ def encode(
 
     textures: N, at most one less than there are encoded cameras. uv_ssim: instead, the smallest N whose UV measure
     reaches this. density: atlas texels per photograph pixel along one axis, in the camera nearest the centre; the side
-    is at most 4096. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many; without
-    it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to the
+    is at most 4096, and the texels at most twice the photographs' pixels. atlas: its side, or (width, height),
+    outright. triangles: simplify the proxy to this many; without it only a mesh that needs an atlas and has over
+    30,000. align: "dis" or "tvl1", optical-flow alignment to the
     reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
@@ -132,7 +150,7 @@ def encode(
 
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
-    width, height = _atlas_size(options, mesh, cameras[centre])
+    width, height = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     layout = make_atlas(mesh, width, height)
     shown = capture.subset(encoded.tolist())
 
@@ -144,9 +162,12 @@ def encode(
     place = None if work is None else Path(work)
     with texture_maps(layout, used, photograph, resampling=resampling, work=place, progress=progress) as maps:
         fitted = None if harmonise is None else harmonise_maps(maps, harmonise, progress)
-        scene_basis, mean, spreader = _decompose(maps, options, int(np.searchsorted(encoded, centre)), place, progress)
+        shown_names = [names[i] for i in encoded]
+        scene_basis, mean, spreader = _decompose(
+            maps, shown_names, options, int(np.searchsorted(encoded, centre)), place, progress
+        )
         if keep_maps is not None:
-            write_maps(maps, mean.values, spreader, [names[i] for i in encoded], Path(keep_maps), progress=progress)
+            write_maps(maps, mean.values, spreader, shown_names, Path(keep_maps), progress=progress)
     settings = {
         "textures": scene_basis.count,
         "uvSsim": uv_ssim,
@@ -179,7 +200,12 @@ def encode(
 
 
 def _decompose(
-    maps: TextureMaps, options: Options, reference: int, work: Path | None, progress: Progress | None
+    maps: TextureMaps,
+    names: Sequence[str],
+    options: Options,
+    reference: int,
+    work: Path | None,
+    progress: Progress | None,
 ) -> tuple[Basis, Mean, Spreader]:
     if options.align is not None:
         align_maps(maps, reference, options.align, progress)
@@ -190,7 +216,9 @@ def _decompose(
             "no camera sees any texel of the proxy",
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
-    decomposition = spectrum(gram_matrix(maps, mean, progress))
+    gram = gram_matrix(maps, mean, progress)
+    warn_of_disagreement(maps, mean, gram, names)
+    decomposition = spectrum(gram)
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:
         count = component_count(options.textures, maps.cameras)
@@ -227,9 +255,10 @@ def _reference(
     return index
 
 
-def _atlas_size(options: Options, mesh: Mesh, camera: Camera) -> tuple[int, int]:
+def _atlas_size(options: Options, mesh: Mesh, camera: Camera, encoded: Sequence[Camera]) -> tuple[int, int]:
     if options.atlas is None:
-        side = atlas_side(mesh, camera, options.density)
+        pixels = sum(one.width * one.height for one in encoded)
+        side = atlas_side(mesh, camera, options.density, pixels)
         reached = side * texels_per_pixel(mesh, camera)
         if reached < 0.98 * options.density:
             log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)

@@ -1,5 +1,6 @@
 """Texture maps to a mean and eigen textures with weights (the paper's section 3.3)."""
 
+from eigenfield.basis.agreement import warn_of_disagreement
 from eigenfield.basis.align import METHODS, align_map, align_maps
 from eigenfield.basis.eigen import Spectrum, component_count, eigen_textures, gram_matrix, spectrum, weights_of
 from eigenfield.basis.mean import Mean, filled, mean_map
@@ -19,5 +20,6 @@ __all__ = [
     "measure_map",
     "smallest_count",
     "spectrum",
+    "warn_of_disagreement",
     "weights_of",
 ]

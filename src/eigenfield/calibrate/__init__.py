@@ -8,6 +8,7 @@ from eigenfield.calibrate.known import read_known_lenses
 from eigenfield.calibrate.lenses import KnownLens
 from eigenfield.calibrate.sfm import Motion, ViewReport, structure_from_motion
 from eigenfield.calibrate.start import PlanarStart, start_given, start_planar
+from eigenfield.calibrate.triangulate import triangulated_points
 
 __all__ = [
     "CalibrationError",
@@ -24,4 +25,5 @@ __all__ = [
     "start_given",
     "start_planar",
     "structure_from_motion",
+    "triangulated_points",
 ]

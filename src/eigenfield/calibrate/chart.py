@@ -151,7 +151,8 @@ def _calibrate(folder: Path, board: Board, progress: Progress | None) -> ChartCa
         only = charts.cameras[0]
         raise CaptureError(
             "charts-one-camera",
-            f"all of its {len(only.moments)} pictures are of one camera ({only.name})",
+            f"all of its {len(only.moments)} pictures are of one camera ({only.name})"
+            + (f", others cannot be read ({charts.problems[0]})" if charts.problems else ""),
             path=charts.root,
             remedy="name pictures CAMERA + number (left01.jpg, right01.jpg), or give each camera a folder or a video",
         )

@@ -6,16 +6,39 @@ thread of the interpreter, and only between its own instructions: long calls the
 
 from __future__ import annotations
 
+import contextlib
+import signal
 import threading
-from collections.abc import Callable
-from typing import TypeVar
-
-import pycolmap
+from collections.abc import Callable, Iterator
+from typing import Any, TypeVar
 
 T = TypeVar("T")
 
 FATAL = 3  # glog's severity
 POLL = 0.1  # seconds
+
+
+@contextlib.contextmanager
+def _signals_held_back() -> Iterator[None]:
+    """Ctrl-C and SIGTERM arrive at the end of the block: inside pycolmap's initialisation the first hangs, and glog
+    takes the second for itself, to die by it without cleaning up."""
+    caught: list[int] = []
+    handlers: dict[int, Any] = {}
+    with contextlib.suppress(ValueError):  # not in the main thread, where none arrive
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not None:
+                handlers[number] = signal.signal(number, lambda number, _: caught.append(number))
+    try:
+        yield
+    finally:
+        for taken, handler in handlers.items():
+            signal.signal(taken, handler)
+    for late in caught:
+        signal.raise_signal(late)
+
+
+with _signals_held_back():
+    import pycolmap as pycolmap  # the other modules import it from here
 
 pycolmap.logging.minloglevel = FATAL
 pycolmap.logging.logtostderr = False

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.calibrate import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
+from eigenfield.calibrate.colmap_core import pycolmap
 from eigenfield.capture.lightfield import decode_masked
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.errors import CaptureError

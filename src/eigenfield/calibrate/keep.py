@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pycolmap
 
+from eigenfield.calibrate.colmap_core import pycolmap
 from eigenfield.calibrate.features import FeatureOptions, Features, extract_features, features_of
 from eigenfield.calibrate.lenses import KnownLens
 from eigenfield.calibrate.matching import Match, Matching, choose_pairs, match_pairs

@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.colmap_core import interruptible
+from eigenfield.calibrate.colmap_core import interruptible, pycolmap
 from eigenfield.calibrate.matching import FEWEST_INLIERS, Match
 from eigenfield.progress import Progress
 

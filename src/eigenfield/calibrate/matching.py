@@ -11,13 +11,13 @@ from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from eigenfield.calibrate import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
+from eigenfield.calibrate.colmap_core import pycolmap
 from eigenfield.calibrate.features import Features
-from eigenfield.calibrate.matching_kernels import best_two, best_two_on_lines
+from eigenfield.calibrate.matching_kernels import best_two, keep_on_lines
 from eigenfield.capture.photoset import Layout
 from eigenfield.errors import OptionError
 from eigenfield.parallel import parallel_stream, pieces
@@ -142,7 +142,7 @@ def _similar(features: Sequence[Features], progress: Progress | None) -> list[Pa
     large = [_as_float(f.descriptors[:glanced]) for f in features]
 
     def shared(i: int) -> list[int]:
-        return [len(_mutual(large[i], large[j])) for j in range(i + 1, count)]
+        return [len(mutual_matches(large[i], large[j])) for j in range(i + 1, count)]
 
     score = np.zeros((count, count), np.int64)
     with threadpool_limits(1, "blas"):
@@ -182,10 +182,10 @@ def match_pairs(
 def _match(features: Sequence[Features], cameras: Sequence[Any], i: int, j: int, seed: int) -> Match:
     a, b = features[i], features[j]
     left, right = _as_float(a.descriptors), _as_float(b.descriptors)
-    matches = _mutual(left, right)
+    matches = mutual_matches(left, right)
     geometry = _verify(a, b, cameras[i], cameras[j], matches, seed)
     if geometry is not None and len(geometry.inlier_matches) < ENOUGH and geometry.F is not None:
-        guided = _mutual(left, right, (a.points, b.points, np.asarray(geometry.F)))
+        guided = mutual_matches(left, right, (a.points, b.points, np.asarray(geometry.F)))
         both = np.unique(np.concatenate([guided, np.asarray(geometry.inlier_matches)]), axis=0)
         again = _verify(a, b, cameras[i], cameras[j], _one_to_one(both), seed)
         if again is not None and len(again.inlier_matches) > len(geometry.inlier_matches):
@@ -197,13 +197,14 @@ def _as_float(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:
     return descriptors.astype(np.float32)
 
 
-def _mutual(
+def mutual_matches(
     left: NDArray[np.float32],
     right: NDArray[np.float32],
     lines: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> NDArray[np.int64]:
     """(m, 2) rows that are each other's best and clearly better than the second best.
 
+    left, right: (n, 128) descriptors of length 512 in whole numbers.
     lines: points of both and the fundamental matrix; only features near each other's epipolar lines are compared.
     """
     if len(left) == 0 or len(right) == 0:
@@ -215,10 +216,9 @@ def _mutual(
     transposed = np.ascontiguousarray(right.T)
     for start, stop in pieces(len(left), BLOCK):
         similarity = left[start:stop] @ transposed
-        if lines is None:
-            best_two(similarity, start, row, top, second, column, column_top)
-        else:
-            best_two_on_lines(similarity, start, *lines, ON_LINE, row, top, second, column, column_top)
+        if lines is not None:
+            keep_on_lines(similarity, start, *lines, ON_LINE)
+        best_two(similarity, start, row, top, second, column, column_top)
     angle = np.arccos(np.clip(top / LENGTH**2, 0, 1))
     runner = np.arccos(np.clip(second / LENGTH**2, 0, 1))
     ratio = RATIO if lines is None else GUIDED_RATIO

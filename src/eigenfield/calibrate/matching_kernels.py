@@ -3,8 +3,8 @@
 `best_two`: of a block of the similarity matrix S = A B^T (rows i from `first`), the largest and second largest entry
 of every row, and the running largest of every column with its row; ties go to the lower index.
 
-`best_two_on_lines`: the same among those entries (i, j) alone whose points lie within `tolerance` pixels of each
-other's epipolar lines, l' = F x and l = F^T x' (x, x' homogeneous):
+`keep_on_lines`: sets to -1, so that `best_two` passes them over, those entries (i, j) whose points do not lie within
+`tolerance` pixels of each other's epipolar lines, l' = F x and l = F^T x' (x, x' homogeneous):
 
     |x'^T F x| <= tolerance min(|F x|_2D, |F^T x'|_2D).
 """
@@ -39,19 +39,7 @@ def best_two(similarity: F32, first: int, row: I64, top: F32, second: F32, colum
 
 
 @kernel()
-def best_two_on_lines(
-    similarity: F32,
-    first: int,
-    points1: F64,
-    points2: F64,
-    F: F64,
-    tolerance: float,
-    row: I64,
-    top: F32,
-    second: F32,
-    column: I64,
-    column_top: F32,
-) -> None:
+def keep_on_lines(similarity: F32, first: int, points1: F64, points2: F64, F: F64, tolerance: float) -> None:
     count = similarity.shape[1]
     back = np.empty(count)
     for j in range(count):
@@ -63,18 +51,7 @@ def best_two_on_lines(
         b = F[1, 0] * x + F[1, 1] * y + F[1, 2]
         c = F[2, 0] * x + F[2, 1] * y + F[2, 2]
         length = np.hypot(a, b)
-        best, runner, at = np.float32(-1), np.float32(-1), -1
         for j in range(count):
             residual = abs(a * points2[j, 0] + b * points2[j, 1] + c)
             if residual > tolerance * length or residual > tolerance * back[j]:
-                continue
-            s = similarity[i, j]
-            if s > runner:
-                if s > best:
-                    runner, best, at = best, s, j
-                else:
-                    runner = s
-            if s > column_top[j]:
-                column_top[j] = s
-                column[j] = first + i
-        row[first + i], top[first + i], second[first + i] = at, best, runner
+                similarity[i, j] = -1

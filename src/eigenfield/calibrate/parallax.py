@@ -20,6 +20,8 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate.tracks import Tracks
 
+F64 = NDArray[np.float64]
+
 log = logging.getLogger("eigenfield.calibrate")
 
 FEWEST_POINTS = 20
@@ -39,16 +41,18 @@ class Parallax:
     disparity: (k,) of the points, NaN where unreliable.
     residual: pixels, the median distance of the tracks from the model with regular positions.
     support: number of reliable points.
+    agreeing: (v,) share of those found in each view that move there as the model says, NaN for views with too few.
     """
 
-    steps: NDArray[np.float64]
-    shifts: NDArray[np.float64]
-    disparity: NDArray[np.float64]
+    steps: F64
+    shifts: F64
+    disparity: F64
     residual: float
     support: int
+    agreeing: F64
 
 
-def measure_parallax(tracks: Tracks, nominal: NDArray[np.float64]) -> Parallax | None:
+def measure_parallax(tracks: Tracks, nominal: F64) -> Parallax | None:
     """Fit the model to tracks with nominal positions (v, 2), relative to the central camera, in nominal steps.
 
     A line of cameras is allowed. None where the tracks are too few or do not move.
@@ -82,12 +86,13 @@ def measure_parallax(tracks: Tracks, nominal: NDArray[np.float64]) -> Parallax |
     scale = steps[first, first]
     disparity = np.full(len(enough), np.nan)
     disparity[np.flatnonzero(enough)[good]] = d[good] * scale
-    return Parallax(steps / scale, shifts, disparity, float(np.nanmedian(residual[:, good])), int(good.sum()))
+    found = seen[:, good].sum(axis=1)
+    near = (residual[:, good] < OUTLIER).sum(axis=1)
+    agreeing = np.where(found >= FEWEST_POINTS, near / np.maximum(found, 1), np.nan)
+    return Parallax(steps / scale, shifts, disparity, float(np.nanmedian(residual[:, good])), int(good.sum()), agreeing)
 
 
-def _first_disparity(
-    moved: NDArray[np.float64], weights: NDArray[np.float64], nominal: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _first_disparity(moved: F64, weights: F64, nominal: F64) -> F64:
     """Least squares over the axis on which more was seen, the shift of each view taken as its median motion."""
     axis = 0 if np.abs(nominal[:, 0]).sum() >= np.abs(nominal[:, 1]).sum() else 1
     result = np.zeros(moved.shape[1])
@@ -101,13 +106,7 @@ def _first_disparity(
     return result / total
 
 
-def _fit_positions(
-    moved: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    nominal: NDArray[np.float64],
-    d: NDArray[np.float64],
-    used: NDArray[np.bool_],
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _fit_positions(moved: F64, weights: F64, nominal: F64, d: F64, used: NDArray[np.bool_]) -> tuple[F64, F64]:
     """Weighted least squares for `steps` and `shifts`, given the disparities."""
     n = nominal[:, used]
     a = n.shape[1]
@@ -131,24 +130,12 @@ def _fit_positions(
     return steps, shifts - offset * steps
 
 
-def _fit_disparity(
-    moved: NDArray[np.float64],
-    weights: NDArray[np.float64],
-    nominal: NDArray[np.float64],
-    steps: NDArray[np.float64],
-    shifts: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _fit_disparity(moved: F64, weights: F64, nominal: F64, steps: F64, shifts: F64) -> F64:
     p, s = nominal @ steps.T, nominal @ shifts.T
     over = -np.einsum("vk,vkc,vc->k", weights, moved - s[:, None], p)
     return over / np.maximum(weights.T @ (p * p).sum(axis=1), 1e-9)
 
 
-def _residual(
-    moved: NDArray[np.float64],
-    nominal: NDArray[np.float64],
-    steps: NDArray[np.float64],
-    shifts: NDArray[np.float64],
-    d: NDArray[np.float64],
-) -> NDArray[np.float64]:
+def _residual(moved: F64, nominal: F64, steps: F64, shifts: F64, d: F64) -> F64:
     p, s = nominal @ steps.T, nominal @ shifts.T
     return np.linalg.norm(moved - s[:, None] + d[None, :, None] * p[:, None], axis=-1)

@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pycolmap
 from numpy.typing import NDArray
 
 from eigenfield.calibrate.align import moved_camera, natural_gauge
+from eigenfield.calibrate.colmap_core import pycolmap
 from eigenfield.calibrate.features import Features
 from eigenfield.calibrate.keep import kept_features, kept_matches
 from eigenfield.calibrate.lenses import KnownLens, distorted, undistorted
@@ -274,8 +274,18 @@ def _failed(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
         ),
     }.get(code, (f"{of} match others, but no cameras explain the matches", "give the lens with --intrinsics, or take "
                  "more photographs from places further apart"))  # fmt: skip
+    if not code.startswith(("unreadable", "few")) and _perhaps_a_grid(photos):
+        remedy = f"if the photographs are a rectified grid, say --grid RxC (rows x columns); else {remedy}"
     return CaptureError(
         "calibration-failed", f"no {SMALLEST_MODEL} photographs fit together: {why}", path=photos.root, remedy=remedy
+    )
+
+
+def _perhaps_a_grid(photos: PhotoSet) -> bool:
+    """Whether nothing speaks against a grid: no layout is known, one size, and a number with two factors."""
+    sizes = {(shot.width, shot.height) for shot in photos.shots}
+    return (
+        photos.layout is None and len(sizes) == 1 and any(len(photos) % k == 0 for k in range(2, 1 + len(photos) // 2))
     )
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate.array import GIVEN, PARAMETERS, POSITION, SHIFT, ArrayModel
 from eigenfield.calibrate.parallax import Parallax, measure_parallax
-from eigenfield.calibrate.tracks import find_tracks
+from eigenfield.calibrate.tracks import Tracks, find_tracks
 from eigenfield.camera import Camera
 from eigenfield.capture.photoset import Layout
 from eigenfield.errors import CaptureError
@@ -22,6 +22,7 @@ log = logging.getLogger("eigenfield.calibrate")
 
 NOMINAL_ANGLE = math.radians(50)  # field of view of the longer side where nothing says the focal length
 DISTANCES = (1, 2, 4)  # steps from the central camera at which views are searched for its points
+STILL = 0.05  # pixels between photographs, which noise and compression alone move points by
 AGREEING = 0.4  # share of the tracked points that must move as a grid
 WIDENED = 0.12  # of the range of disparities, on both sides
 SWAPPED = 0.5  # |sine| of the angle between an index's motion and its axis that cannot be a rolled camera
@@ -34,7 +35,8 @@ class PlanarStart:
     model, parameters: the cameras, (n, 10).
     places: (n, 2) their positions in steps from the central one, x right, y down. centre: its index.
     low, high: the range of disparities. known_signs: False where places and disparities may both be reversed.
-    given: the cameras are a calibration's, not a regular grid's.
+    given: the cameras are a calibration's, not a regular grid's. exchanged: the names gave the column first, and rows
+    and columns of the layout are exchanged in all this.
     """
 
     model: ArrayModel
@@ -45,6 +47,7 @@ class PlanarStart:
     high: float
     known_signs: bool
     given: bool = False
+    exchanged: bool = False
 
 
 def start_planar(
@@ -52,9 +55,26 @@ def start_planar(
 ) -> PlanarStart:
     """Estimate spacing, direction and disparities of a planar array from points tracked round its centre.
 
-    pictures: n of (H, W, 3), one size. Raises CaptureError: `grid-texture` (too few points), `grid-motion` (points do
-    not move as the grid says), `grid-swapped` (rows are columns).
+    Names that say which number is the row only by custom may have them in either order: the one that the points follow
+    is taken. pictures: n of (H, W, 3), one size. Raises CaptureError: `grid-texture` (too few points), `grid-still`
+    (points do not move at all), `grid-motion` (they do not move as the grid says), `grid-swapped` (rows are columns).
     """
+    try:
+        return _start_planar(pictures, layout, names)
+    except CaptureError as error:
+        if error.code not in ("grid-motion", "grid-swapped") or layout.measured or layout.signs:
+            raise
+        try:
+            start = _start_planar(pictures, layout.exchanged(), names)
+        except CaptureError:
+            raise error from None
+    log.warning("the photographs move as if the names gave the column first, then the row: taken so")
+    return replace(start, exchanged=True)
+
+
+def _start_planar(
+    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: Layout, names: Sequence[str]
+) -> PlanarStart:
     nominal = nominal_positions(layout)
     centre = int(np.argmin(np.linalg.norm(nominal - (nominal.min(axis=0) + nominal.max(axis=0)) / 2, axis=1)))
     nominal = nominal - nominal[centre]
@@ -67,6 +87,7 @@ def start_planar(
             f"only {int(moved.sum())} points of {names[centre]} are found again in the photographs around it",
             remedy="sharp photographs with texture are needed; check that they show one scene",
         )
+    _refuse_still(tracks, names[centre])
     parallax = measure_parallax(tracks, nominal[chosen])
     if parallax is None or parallax.support < AGREEING * moved.sum():
         agreeing = 0 if parallax is None else parallax.support
@@ -74,7 +95,8 @@ def start_planar(
             "grid-motion",
             f"the photographs do not move as a grid of {len(set(layout.rows))} rows and {len(set(layout.columns))} "
             f"columns does: {agreeing} of {int(moved.sum())} points agree",
-            remedy="check --grid and --format; hand-held photographs need eigenfield calibrate",
+            remedy=f"check --grid and --format, and that {names[centre]} is of the scene; hand-held photographs need "
+            "eigenfield calibrate",
         )
     _refuse_swapped(parallax, names[centre])
     low, high = _disparity_range(parallax)
@@ -88,6 +110,16 @@ def start_planar(
         abs(parallax.steps[1, 1]), low, high, parallax.support, parallax.residual,
     )  # fmt: skip
     return PlanarStart(model, parameters, parameters[:, POSITION].copy(), centre, low, high, layout.signs)
+
+
+def _refuse_still(tracks: Tracks, name: str) -> None:
+    motion = np.linalg.norm(tracks.found - tracks.points, axis=-1)
+    if np.nanpercentile(motion, 90) < STILL:
+        raise CaptureError(
+            "grid-still",
+            f"the points of {name} stay where they are in the photographs around it: the camera did not move",
+            remedy="photographs from different places are needed; look for copies of one",
+        )
 
 
 def nominal_positions(layout: Layout) -> NDArray[np.float64]:
@@ -129,7 +161,7 @@ def _refuse_swapped(parallax: Parallax, name: str) -> None:
         raise CaptureError(
             "grid-swapped",
             f"points of {name} move up or down along a row and sideways along a column",
-            remedy="rows and columns are exchanged: name the right --format, or rename the photographs",
+            remedy="rows and columns are exchanged: name the right --format or --grid, or rename the photographs",
         )
 
 

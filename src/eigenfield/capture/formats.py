@@ -23,6 +23,7 @@ from eigenfield.capture.projections import find_projections, read_projections
 from eigenfield.capture.stanford import find_stanford, read_stanford
 from eigenfield.capture.strecha import find_strecha, read_strecha
 from eigenfield.capture.video import find_videos, read_videos
+from eigenfield.capture.wording import some
 from eigenfield.errors import CaptureError, OptionError
 
 # the order of claims: of those that claim a folder, the lowest rank wins; two of one rank are a question
@@ -105,6 +106,11 @@ FORMATS = (
     _names("video", "one video a camera", find_videos, read_videos, "frame", rank=ANY),
     _names("folder", "plain folder of photographs", find_photographs, read_photographs, rank=ANY),
 )  # fmt: skip
+# what a folder does not hold by chance; where no reader takes one of these up, it is damaged or incomplete
+TELLING = (
+    "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
+    "sparse/0/images.*", "sparse/0/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
+)  # fmt: skip
 BY_NAME = {row.name: row for row in FORMATS}
 
 
@@ -150,7 +156,14 @@ def detect(folder: Path, formats: tuple[Format, ...], wanted: Wanted) -> Claim |
         )
     also = [claim for claim in claims if rank < claim.format.rank < NAMES]
     lines = tuple(f"{_shown(c.found, folder)} is there too, not read; --format {c.format.name} reads it" for c in also)
+    if rank >= NAMES and any(row.read_cameras for row in formats):
+        lines += tuple(_not_taken_up(folder))
     return Claim(best[0].format, best[0].found, lines)
+
+
+def _not_taken_up(folder: Path) -> list[str]:
+    found = [_shown(path, folder) for pattern in TELLING for path in sorted(folder.glob(pattern))]
+    return [f"{some(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
 
 
 def _claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
-from eigenfield.capture.photographs import EXTENSIONS
+from eigenfield.capture.photographs import EXTENSIONS, decode_mask
 from eigenfield.capture.photoset import Shot
 from eigenfield.capture.wording import count, some
 from eigenfield.errors import CaptureError
@@ -185,6 +185,19 @@ def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], l
         else []
     )
     return masked, problems
+
+
+def refuse_black(masks: Sequence[Path | None], folder: Path) -> None:
+    """Raise CaptureError `masks-black` where every photograph has a mask and all hide everything; the first mask that
+    shows something ends the search."""
+    paths = [mask for mask in masks if mask is not None]
+    if paths and len(paths) == len(masks) and not any(decode_mask(path).any() for path in paths):
+        raise CaptureError(
+            "masks-black",
+            f"its {len(paths)} masks hide every pixel",
+            path=folder,
+            remedy="white counts, black is left out: invert the masks?",
+        )
 
 
 def _folders(path: Path, root: Path) -> list[str]:

@@ -137,6 +137,13 @@ def _source(
             raise _no_cameras(Path(calibration))
     else:
         claim = _claim(root, formats, wanted)
+        if claim is None and name is not None:
+            raise CaptureError(
+                "format-missing",
+                f"holds nothing of the format {name} ({formats[0].title})",
+                path=root,
+                remedy="leave out --format, or name the folder or file that holds it",
+            )
         if claim is None:
             return None
         if claim.format.read_cameras is not None:

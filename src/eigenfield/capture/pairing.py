@@ -13,8 +13,9 @@ import numpy as np
 
 from eigenfield.camera import Camera
 from eigenfield.capture.calibration import Calibration, Entry, printable
+from eigenfield.capture.copies import same_files, told_copies
 from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
+from eigenfield.capture.locate import PhotographFinder, photographs_in, refuse_black, with_masks
 from eigenfield.capture.photographs import Header, read_header
 from eigenfield.capture.wording import count, natural, some
 from eigenfield.errors import CaptureError
@@ -41,10 +42,16 @@ def pair(read: Calibration, root: Path, *, apart: bool, masks: Path | None, stri
     errors += bad
     if masks is not None:
         views, missing = with_masks(views, masks, root)
+        if strict:
+            refuse_black([view.mask for view in views], masks)
         problems += missing
     if strict and errors:
         raise errors[0]
-    problems = [*read.problems, *_lost(lost, read.path), *_unused(pairs, views), *problems, *map(str, errors)]
+    copies = same_files([view.path for view in views])
+    problems = [
+        *read.problems, *_lost(lost, read.path), *_unused(pairs, views), *told_copies(copies), *problems,
+        *map(str, errors),
+    ]  # fmt: skip
     if strict and len(views) < FEWEST:
         raise CaptureError(
             "too-few",

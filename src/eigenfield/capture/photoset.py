@@ -63,6 +63,10 @@ class Layout:
         chosen = np.asarray(indices, np.int64)
         return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
 
+    def exchanged(self) -> Layout:
+        """The same grid with rows for columns."""
+        return replace(self, rows=self.columns, columns=self.rows, positions=self.positions[:, ::-1].copy())
+
     @property
     def shape(self) -> tuple[int, int]:
         """How many different rows and columns there are; node numbers may have gaps."""

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import logging
-import os
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,14 +12,14 @@ import numpy as np
 
 from eigenfield.capture.arrangement import Arrangement
 from eigenfield.capture.calibration import printable
+from eigenfield.capture.copies import refuse_copies, same_files, told_copies
 from eigenfield.capture.exif import focal_of
-from eigenfield.capture.locate import with_masks
+from eigenfield.capture.locate import refuse_black, with_masks
 from eigenfield.capture.photographs import read_header
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.wording import count, natural, some
 from eigenfield.errors import CaptureError
 from eigenfield.parallel import parallel_map
-from eigenfield.stages import file_digest
 
 FEWEST = 3  # photographs that a scene can be made from
 ONE_LENS = 0.01  # relative spread of focal lengths below which they are one
@@ -44,16 +43,21 @@ def gather(arrangement: Arrangement, root: Path, *, masks: Path | None, strict: 
     if strict and errors:
         raise errors[0]
     shots = _focal_lengths([shot for _, shot in found], arrangement)
-    problems = [*_left_out(arrangement.others), *arrangement.problems, *_copies(shots), *map(str, errors)]
+    copies = same_files([shot.path for shot in shots])
+    if strict:
+        refuse_copies(copies, len(shots), FEWEST, root)
+    problems = [*_left_out(arrangement.others), *arrangement.problems, *told_copies(copies), *map(str, errors)]
     if masks is not None:
         shots, missing = with_masks(shots, masks, root)
+        if strict:
+            refuse_black([shot.mask for shot in shots], masks)
         problems += missing
     if strict and len(shots) < FEWEST:
         raise CaptureError(
             "too-few",
-            f"{len(shots)} photographs; {FEWEST} are needed",
+            f"holds {count(shots, 'photograph', 'photographs')}; {FEWEST} are needed",
             path=root,
-            remedy="name the folder that holds the photographs",
+            remedy="add photographs of the scene from other places, or name the folder that holds them all",
         )
     for problem in problems:
         log.info("%s", problem)
@@ -118,19 +122,3 @@ def common_focal(focals: Sequence[float | None]) -> float | None:
         return None
     middle = float(np.median(known))
     return middle if max(known) - min(known) <= ONE_LENS * middle else None
-
-
-def _copies(shots: Sequence[Shot]) -> list[str]:
-    """A line for each group of photographs with the same bytes; only files of the same length are read."""
-    by_length: dict[int, list[Path]] = defaultdict(list)
-    for shot in shots:
-        by_length[os.path.getsize(shot.path)].append(shot.path)  # noqa: PTH202
-    suspects = [path for paths in by_length.values() if len(paths) > 1 for path in paths]
-    by_bytes: dict[str, list[str]] = defaultdict(list)
-    for path, digest in zip(suspects, parallel_map(file_digest, suspects), strict=True):
-        by_bytes[digest].append(path.name)
-    return [
-        f"{len(names)} photographs are the same file, byte for byte: {some(names)}"
-        for names in by_bytes.values()
-        if len(names) > 1
-    ]

@@ -101,14 +101,24 @@ def file_kinds(capture: LightField | PhotoSet) -> list[tuple[str, int, bool, int
 
 
 def decode_all(capture: LightField | PhotoSet, progress: Progress | None = None) -> list[CaptureError]:
-    """Decode every photograph and mask once; what cannot be decoded, in the order of the capture."""
+    """Decode every photograph and mask once; what cannot be decoded or is hidden altogether, in the capture's order."""
+
+    items = capture.views if isinstance(capture, LightField) else capture.shots
 
     def attempt(index: int) -> CaptureError | None:
         try:
-            capture.photograph(index)
+            photograph = capture.photograph(index)
         except CaptureError as error:
             return error
-        return None
+        if photograph.mask is None or photograph.mask.any():
+            return None
+        item = items[index]
+        return CaptureError(
+            "mask-black",
+            "the mask hides the whole photograph",
+            path=item.mask or item.path,
+            remedy="white counts, black is left out: invert it, or take the photograph out",
+        )
 
     total = len(capture)
     outcomes = track(parallel_stream(attempt, range(total)), "decoding photographs", total, progress)

@@ -20,7 +20,7 @@ VERBS = {
     "calibrate": "Find the cameras of photographs, from the scene or from pictures of a chart.",
     "inspect": "Say what a capture holds, and what is wrong with it.",
     "proxy": "Make a proxy mesh from photographs, and their cameras.",
-    "encode": "Turn a calibrated capture and a proxy mesh into one .glb.",
+    "encode": "Turn photographs into one .glb; cameras and proxy are estimated where they are not given.",
     "render": "Draw a viewpoint, a captured camera, or a fly-through.",
     "evaluate": "Measure a scene against its photographs.",
     "info": "Show what a scene file holds: bytes by part, settings, scores.",

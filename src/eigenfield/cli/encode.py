@@ -17,6 +17,7 @@ from eigenfield.cli.common import (
     tell,
     timings,
 )
+from eigenfield.errors import OptionError
 
 
 def _atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -70,7 +71,8 @@ Examples:
     default=1.5,
     show_default=True,
     metavar="D",
-    help="Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096).",
+    help="Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096, texels at "
+    "most twice the photographs' pixels).",
 )
 @click.option("--atlas", callback=_atlas, metavar="N", help="Side of the atlas outright, or WIDTHxHEIGHT.")
 @click.option(
@@ -174,12 +176,16 @@ def command(
     from eigenfield.capture import open_any, open_capture
     from eigenfield.files import mended, refuse_existing
     from eigenfield.format import parts, save
+    from eigenfield.format.pictures import check_codec
     from eigenfield.mesh import Mesh
-    from eigenfield.pipeline import encode
-    from eigenfield.reconstruction import DEFAULT_TRIANGLES, reconstruct
+    from eigenfield.pipeline import Options, check_options, encode
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
+    check_codec(codec, quality)
+    if blind and hold_out is None:
+        raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
+    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise)
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
         if proxy is not None:
@@ -191,13 +197,16 @@ def command(
                 scratch.mkdir(parents=True, exist_ok=True)
             tell(light_field.problems, quiet)
         else:
+            from eigenfield.reconstruction import DEFAULT_TRIANGLES, reconstruct
+
             scratch = work if work is not None else output.with_suffix(".work")
             opened = open_any(capture, work=scratch / "frames", **place)
             tell(opened.problems, quiet)
+            check_options(opened, options)
             held = hold_out if blind else None
             made = reconstruct(
                 opened,
-                triangles=triangles or DEFAULT_TRIANGLES,
+                triangles=DEFAULT_TRIANGLES if triangles is None else triangles,
                 work=scratch,
                 blind=held,
                 progress=progress,
@@ -205,7 +214,7 @@ def command(
             )
             light_field, mesh, triangles = made.light_field, made.mesh, None
             tell(light_field.problems[len(opened.problems) :], quiet)
-            tell(timings(made.seconds), quiet)
+            tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,

@@ -141,13 +141,14 @@ def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, 
 def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report of photographs without cameras: the same keys, `views` 0, `photographs` in place of `cameras`."""
     from eigenfield.capture.survey import file_kinds
+    from eigenfield.capture.wording import count
 
     sizes = Counter((shot.width, shot.height) for shot in photo_set.shots)
     problems = list(photo_set.problems)
     if len(sizes) > 1:
         problems.append(f"the photographs have {len(sizes)} different sizes")
     if len(photo_set) < 3:
-        problems.append(f"{len(photo_set)} photographs are too few, at least 3 are needed")
+        problems.append(f"{count(photo_set.shots, 'photograph is', 'photographs are')} too few, at least 3 are needed")
     return {
         "schema": SCHEMA,
         "root": str(photo_set.root),

@@ -84,7 +84,7 @@ def command(
         save_calibration(made.light_field, place, overwrite=True)
         note(f"cameras: {place}", quiet)
     write_mesh(made.mesh, output, overwrite=overwrite)
-    tell(timings(made.seconds), quiet)
+    tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
     click.echo(
         f"{output}: {len(made.mesh.vertices)} vertices, {len(made.mesh.faces)} triangles for {len(made.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"

@@ -33,13 +33,13 @@ class DepthView:
 
     camera: at the depth map's size.
     inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is none.
-    colour: (H, W, 3) float32, 0..1; None: grey.
+    colour: (H, W, 3) uint8; None: grey.
     mask: (H, W) bool, True where the photograph counts; None: everywhere.
     """
 
     camera: Camera
     inverse_depth: NDArray[np.float32]
-    colour: NDArray[np.float32] | None = None
+    colour: NDArray[np.uint8] | None = None
     mask: NDArray[np.bool_] | None = None
 
 
@@ -200,8 +200,7 @@ def _colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Seque
     for view, span in zip(views, spans, strict=True):
         if view.colour is not None:
             first, last = np.searchsorted(chosen, [span.start, span.stop])
-            values = view.colour.reshape(-1, 3)[chosen[first:last] - span.start]
-            colours[first:last] = np.rint(np.clip(values, 0, 1) * 255).astype(np.uint8)
+            colours[first:last] = view.colour.reshape(-1, 3)[chosen[first:last] - span.start]
     return colours
 
 

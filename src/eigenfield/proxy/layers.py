@@ -16,6 +16,7 @@ from scipy.ndimage import binary_dilation, minimum_filter, uniform_filter
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
+from eigenfield.progress import Progress
 from eigenfield.proxy.layers_kernels import mark_revealed
 from eigenfield.stereo.semiglobal import semi_global
 from eigenfield.stereo.sweep import sweep
@@ -24,7 +25,7 @@ from eigenfield.stereo.visibility import depth_buffers
 
 log = logging.getLogger("eigenfield.proxy")
 
-SHARE = 0.6  # of `cut`: smaller jumps are bridged by the sheet, but sheets tear a little beside them
+STAGE = "second layer"  # steps: what is uncovered; sweep and optimisation, which count twice; plate
 MOST_VIEWS = 100  # for the sweep; more say little new
 STEP = 0.8  # pixels that a label moves a point in the view with most parallax
 MOST_LABELS = 128
@@ -55,6 +56,7 @@ def second_layer(
     valid: NDArray[np.bool_] | None = None,
     *,
     cut: float,
+    progress: Progress | None = None,
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """(d2 (h, w) float32, valid2 (h, w) bool): the layer behind d (h, w), and where there is one.
 
@@ -63,15 +65,21 @@ def second_layer(
     """
     d = np.ascontiguousarray(d, np.float32)
     valid = np.ones(d.shape, np.bool_) if valid is None else valid
+    report = progress or (lambda stage, done, total: None)
+    report(STAGE, 0, 4)
     moves = motion(matrices, d.shape, float(np.median(d[valid])) if valid.any() else 0.0)
     want, ceiling = _revealed(d, valid, cut, moves)
     if not want.any():
+        report(STAGE, 4, 4)
         return d.copy(), want
+    report(STAGE, 1, 4)
     far = _far_side(d, valid, want, ceiling, cut)
     floor = _floor(d, far, want, moves) - np.float32(SLACK * cut)
     guess, trust = _swept(pictures, matrices, d, valid, want, floor, ceiling, cut, moves)
+    report(STAGE, 3, 4)
     inside = want | far
     plate = _plate(np.where(want, guess, d), np.where(want, trust, ANCHOR), inside)
+    report(STAGE, 4, 4)
     below = np.where(want, d - np.float32(BENEATH * cut), d - np.float32(0.1 * BENEATH * cut))
     result = np.where(want, np.minimum(np.maximum(plate, floor), np.minimum(ceiling, below)), below)
     return result.astype(np.float32), want | (far & binary_dilation(want, iterations=UNDER))
@@ -83,7 +91,7 @@ def _revealed(
     """Pixels of the near sides that some view uncovers, and the largest d that the surface behind may have there."""
     want, ceiling = np.zeros(d.shape, np.bool_), np.full(d.shape, np.inf, np.float32)
     reach = np.maximum(np.r_[moves.max(axis=0), -moves.min(axis=0)], 0.0)
-    mark_revealed(d, valid, np.float32(SHARE * cut), reach, np.float32(SLACK * cut), want, ceiling)
+    mark_revealed(d, valid, np.float32(cut), reach, np.float32(SLACK * cut), want, ceiling)
     return want, ceiling
 
 

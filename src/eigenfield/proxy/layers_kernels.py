@@ -18,8 +18,9 @@ def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
     that are uncovered.
 
     reach (4,): pixels to the right, down, left and up that a point moves at most for one unit of d. The near pixel of
-    a jump J covers from its cut reach J pixels, towards where it moves. want, ceiling (h, w): out, the pixels, and
-    the least over their cuts of the far side's d + slack.
+    a jump J covers from its cut reach J pixels, towards where it moves; J counts the next pixels on both sides too,
+    over which the step may be smeared. want, ceiling (h, w): out, the pixels, and the least over their cuts of the
+    far side's d + slack.
     """
     h, w = d.shape
     for y in range(h):
@@ -30,6 +31,9 @@ def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
                     continue
                 forward = d[j, i] > d[y, x]  # the near side lies to the right, or below
                 near, far = (d[j, i], d[y, x]) if forward else (d[y, x], d[j, i])
+                for q, p in ((2 * y - j, 2 * x - i), (2 * j - y, 2 * i - x)):
+                    if 0 <= q < h and 0 <= p < w and valid[q, p]:
+                        near, far = max(near, d[q, p]), min(far, d[q, p])
                 jump = near - far
                 right, down = int(np.ceil(reach[0] * jump)) + PAD, int(np.ceil(reach[1] * jump)) + PAD
                 left, up = int(np.ceil(reach[2] * jump)) + PAD, int(np.ceil(reach[3] * jump)) + PAD

@@ -27,7 +27,7 @@ OVERLAP_SIDE = 256  # raster on which a chart is tested for overlaps, at least; 
 OVERLAP_MARGIN = 0.05  # texels of that raster
 MOST_VIEWS = 64  # that density is measured in
 FEWEST_PIXELS = 16  # of a chart that a view must see
-UNEVEN = 2.0  # a chart is at most this many times denser or coarser, along one axis, than the median of the surface
+UNEVEN = 8.0  # times denser or coarser than the median, along one axis: no chart is more
 
 
 def conformal_charts(mesh: Mesh) -> Mesh:
@@ -185,20 +185,20 @@ def chart_scales(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
     """(charts,) how much to enlarge each chart, along one axis, so that its area is in proportion to the density at
     which photographs see it: the median over the views that see it of pixels per surface area.
 
-    Relative to the median over the seen surface, and within a factor of UNEVEN of it; charts that no view sees get
-    the least.
+    Relative to the median over the pixels of all views, and within a factor of UNEVEN of it; charts that no view sees
+    get the least.
     """
     label = chart_labels(mesh)
     charts = int(label.max()) + 1
     surface = surface_areas(mesh.vertices.astype(np.float64), mesh.faces)
     chosen = cameras[:: -(-len(cameras) // MOST_VIEWS)]
-    densities = np.stack([_density(mesh, camera, label, surface, charts) for camera in chosen])
+    counts, densities = np.stack([_density(mesh, camera, label, surface, charts) for camera in chosen], axis=1)
     seen = np.isfinite(densities).any(axis=0)
     if not seen.any():
         return np.ones(charts)
     density = np.full(charts, np.nan)
     density[seen] = np.nanmedian(densities[:, seen], axis=0)
-    weight = np.bincount(label, surface, charts)[seen]
+    weight = counts.sum(axis=0)[seen]  # by surface, a wide background would set the measure for what is before it
     order = np.argsort(density[seen], kind="stable")
     mass = np.cumsum(weight[order])
     middle = density[seen][order][np.searchsorted(mass, mass[-1] / 2)]
@@ -208,8 +208,8 @@ def chart_scales(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
 
 def _density(
     mesh: Mesh, camera: Camera, label: NDArray[np.int32], surface: NDArray[np.float64], charts: int
-) -> NDArray[np.float64]:
-    """(charts,) pixels per surface area over the pixels of each chart, NaN where the view sees too little of it."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """(charts,) pixels of each chart, and pixels per surface area over them, NaN where the view sees too little."""
     face = rasterise_view(mesh, camera).face
     pixels = np.bincount(face[face >= 0], minlength=len(mesh.faces))
     flat, depth = camera.project(mesh.vertices)
@@ -219,6 +219,7 @@ def _density(
     projected[whole] = np.abs(_signed(flat, corners[whole]))
     usable = projected > 0
     spread = np.divide(surface, projected, out=np.zeros_like(surface), where=usable)  # surface per pixel
-    count = np.bincount(label, pixels * usable, charts)
+    count = np.bincount(label, (pixels * usable).astype(np.float64), charts)
     area = np.bincount(label, pixels * spread, charts)
-    return np.divide(count, area, out=np.full(charts, np.nan), where=(count >= FEWEST_PIXELS) & (area > 0))
+    density = np.divide(count, area, out=np.full(charts, np.nan), where=(count >= FEWEST_PIXELS) & (area > 0))
+    return np.asarray(count, np.float64), np.asarray(density, np.float64)

@@ -22,7 +22,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
 from eigenfield.proxy.background import coverage, fill_background
-from eigenfield.proxy.fusion import DepthView, Points, fuse
+from eigenfield.proxy.fusion import DepthView, fuse
 from eigenfield.proxy.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.poisson import poisson_surface
 from eigenfield.proxy.primitives import Primitive, insert_primitive
@@ -34,7 +34,7 @@ from eigenfield.stereo.estimate import estimate_depth
 log = logging.getLogger("eigenfield.proxy")
 
 MOST_VIEWS = 60  # views that get a depth map
-MOST_PIXELS = 800_000  # of one depth map
+MOST_PIXELS = 600_000  # of one depth map
 ALL_PIXELS = 9_000_000  # of all depth maps together
 COARSE_PIXELS = 40_000  # of a depth map of the first pass
 COARSE_VIEWS = 24
@@ -48,6 +48,9 @@ FEWEST_POINTS = 30  # in view, for a range of one's own
 ROUNDS = 2  # of refinement of a depth map
 END = 0.25  # pixels: depths this near the ends of the range are none
 FRAYED = 0.01  # of the pixels: what a mask may hide beyond the lens's border and still be that border
+POINTS_A_TRIANGLE = 16  # of the result: more are merged, so that noise is averaged, not reconstructed
+FEWEST_FUSED = 100_000
+FAR_SHARE = 0.05  # of the triangles, kept for the far surface
 TOLERANCE = (0.004, 0.02)  # least and largest relative tolerance of fusion
 
 
@@ -89,9 +92,9 @@ def surface_from_views(
     """The surface that the photographs show, by multi-view stereo and Poisson reconstruction.
 
     points: (n, 3) world points on the scene, as structure from motion leaves them, for the range of depths and the
-    choice of neighbours; without them a coarse pass finds its own. triangles: about so many at most, without the
-    background's. background: close it behind with a far surface (`fill_background`); None: unless there are masks.
-    primitives: put in in place of what stereo made there.
+    choice of neighbours; without them a coarse pass finds its own. triangles: about so many at most. background: close
+    it behind with a far surface (`fill_background`); None: unless there are masks. primitives: put in in place of what
+    stereo made there.
 
     Raises ProxyError: `surface-masked`, `surface-no-points`, `surface-empty`, `surface-overlap` if no view shares
     enough with two others; CaptureError for a photograph that cannot be read.
@@ -100,20 +103,24 @@ def surface_from_views(
     if points is None or len(points) < FEWEST_POINTS:
         chosen = spread_views(cameras, COARSE_VIEWS)
         pictures = _pictures(light_field, chosen, COARSE_PIXELS, progress)
-        points = _fused(pictures, None, progress).positions
+        views, tolerance = _depth_views(pictures, None, progress)
+        points = fuse(views, tolerance=tolerance, agreement=FEWEST, limit=FEWEST_FUSED, progress=progress).positions
         log.info("coarse pass: %d points", len(points))
     chosen = spread_views(cameras, MOST_VIEWS)
     pictures = _pictures(light_field, chosen, min(MOST_PIXELS, ALL_PIXELS // len(chosen)), progress)
-    fused = _fused(pictures, points, progress)
+    views, tolerance = _depth_views(pictures, points, progress)
+    limit = max(POINTS_A_TRIANGLE * triangles, FEWEST_FUSED)
+    fused = fuse(views, tolerance=tolerance, agreement=FEWEST, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central(cameras)]
-    mesh = trimmed(poisson_surface(fused, progress=progress), fused)
+    mesh = trimmed(poisson_surface(fused, progress=progress), fused, views=views, tolerance=tolerance)
     if masked:
         mesh = within_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
-    mesh, error = simplified_with_error(mesh, fused, triangles, middle)
+    closed = (not masked) if background is None else background
+    mesh, error = simplified_with_error(mesh, fused, round((1 - FAR_SHARE * closed) * triangles), middle)
     for primitive in primitives:
         mesh = insert_primitive(mesh, primitive, cameras)
-    if (not masked) if background is None else background:
+    if closed:
         mesh = fill_background(mesh, cameras)
     covered = coverage(mesh, cameras)
     log.info("surface: %d triangles, coverage %.4f (least %.4f)", len(mesh.faces), covered.mean(), covered.min())
@@ -164,7 +171,10 @@ def _resampled(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> ND
     return np.asarray(result, np.float32)
 
 
-def _fused(pictures: Sequence[_Picture], points: NDArray[np.float64] | None, progress: Progress | None) -> Points:
+def _depth_views(
+    pictures: Sequence[_Picture], points: NDArray[np.float64] | None, progress: Progress | None
+) -> tuple[list[DepthView], float]:
+    """The views that share enough with others, and the relative difference of depth up to which two of them agree."""
     cameras = [picture.camera for picture in pictures]
     if all(picture.mask is not None and not picture.mask.any() for picture in pictures):
         raise ProxyError(
@@ -182,19 +192,14 @@ def _fused(pictures: Sequence[_Picture], points: NDArray[np.float64] | None, pro
         inverse_depth, tolerance = _depth_map(index, others, pictures, span)
         tolerances.append(tolerance)
         picture = pictures[index]
-        views.append(
-            DepthView(
-                picture.camera, inverse_depth, (picture.pixels / np.float32(255)).astype(np.float32), picture.mask
-            )
-        )
+        views.append(DepthView(picture.camera, inverse_depth, picture.pixels, picture.mask))
     if len(views) < FEWEST + 1:
         raise ProxyError(
             "surface-overlap",
             f"only {len(views)} of {len(pictures)} photographs share enough with two others",
             remedy="photographs must overlap and be taken from different places; check the calibration",
         )
-    tolerance = float(np.clip(np.median(tolerances), *TOLERANCE))
-    return fuse(views, tolerance=tolerance, agreement=FEWEST, progress=progress)
+    return views, float(np.clip(np.median(tolerances), *TOLERANCE))
 
 
 def _range(camera: Camera, cameras: Sequence[Camera], points: NDArray[np.float64] | None) -> tuple[float, float]:

@@ -7,20 +7,27 @@ everywhere.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.camera import Camera
 from eigenfield.errors import ProxyError
 from eigenfield.mesh import Mesh
+from eigenfield.progress import Progress
+from eigenfield.proxy.relief_backdrop import backdrop
 from eigenfield.proxy.relief_packing import packed_layers
-from eigenfield.proxy.relief_sheet import make_sheet, used_part
+from eigenfield.proxy.relief_sheet import joined, make_sheet, sheet_mesh, used_part
 from eigenfield.proxy.unwrap import DEFAULT_TRIANGLES
 from eigenfield.stereo import Canvas
 
 SECOND_SHARE = 0.3  # of the triangles that the second layer may take
+BACKDROP_SHARE = 0.05  # likewise, the backdrop
+GAP = 0.25  # of a cut: how far behind the layers it stays
 SECOND_TOLERANCE = 2.5  # times coarser than the first: it is seen by few views
 GUTTER = 4.0  # canvas pixels between charts: six texels at density 1.5
-FARTHEST = 1e-4  # of the nearest inverse depth: nothing is put farther away
 
 
 def relief_mesh(
@@ -33,6 +40,8 @@ def relief_mesh(
     tolerance: float,
     triangles: int | None = None,
     gutter: float = GUTTER,
+    cameras: Sequence[Camera] = (),
+    progress: Progress | None = None,
 ) -> Mesh:
     """The mesh of a depth map, and of a second one behind it, with an atlas.
 
@@ -40,12 +49,15 @@ def relief_mesh(
     behind. cut: the surface is slit where neighbouring pixels of the first layer differ by more than this; the second
     has no cuts. tolerance: in d, how far the mesh may be from the depth map, except within a pixel of a cut; a second
     layer is allowed SECOND_TOLERANCE times as much. triangles: at most this many (None: DEFAULT_TRIANGLES), at the
-    cost of the tolerance. gutter: free canvas pixels between charts.
+    cost of the tolerance. gutter: free canvas pixels between charts. cameras: what they see past both layers is closed
+    by a backdrop (`relief_backdrop`).
 
     Faces are counter-clockwise seen from the reference camera. Raises ProxyError `relief-empty`.
     """
     limit = DEFAULT_TRIANGLES if triangles is None else triangles
-    behind = None
+    spare = int(BACKDROP_SHARE * limit) if cameras else 0
+    limit -= spare
+    others = []
     if second is not None and second[1].any():
         behind = make_sheet(
             second[0],
@@ -54,21 +66,18 @@ def relief_mesh(
             tolerance=SECOND_TOLERANCE * tolerance,
             limit=int(SECOND_SHARE * limit),
         )
-        limit -= len(behind.faces)
-    front = make_sheet(d, valid, cut=cut, tolerance=tolerance, limit=limit)
+        others = [behind] if len(behind.faces) else []
+    front = make_sheet(d, valid, cut=cut, tolerance=tolerance, limit=limit - sum(len(s.faces) for s in others))
     if len(front.faces) == 0:
         raise ProxyError(
             "relief-empty", "the depth map has no surface", remedy="widen the depth range, or look at the masks"
         )
-    parts, places, side = packed_layers(used_part(front), behind, gutter)
-    uv = np.concatenate([(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)])
-    starts = np.cumsum([0, *(len(p.x) for p in parts[:-1])])
-    faces = np.concatenate([p.faces + start for p, start in zip(parts, starts, strict=True)])
-    x, y, z = (np.concatenate([getattr(p, name) for p in parts]) for name in "xyd")
-    nearest = canvas.offset + canvas.scale * z.max()
-    z = np.maximum(z, (FARTHEST * nearest - canvas.offset) / canvas.scale)
-    return Mesh(
-        canvas.points(x, y, z).astype(np.float32),
-        np.ascontiguousarray(faces[:, ::-1]).astype(np.int32),  # y is down: positive area is clockwise to the camera
-        np.clip(uv, 0, 1).astype(np.float32),
+    far = (
+        backdrop(canvas, [front, *others], cameras, gap=GAP * cut, limit=spare, progress=progress) if cameras else None
     )
+    if far is not None:
+        others.append(far)
+    parts, places, side = packed_layers(used_part(front), others, gutter)
+    uv = np.concatenate([(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)])
+    mesh = sheet_mesh(canvas, joined(parts))
+    return replace(mesh, uv=np.clip(uv, 0, 1).astype(np.float32))

@@ -22,20 +22,21 @@ GROWTH = 1.01  # from one side that is too small to the next
 
 
 def packed_layers(
-    first: Sheet, second: Sheet | None, gutter: float
+    first: Sheet, others: Sequence[Sheet], gutter: float
 ) -> tuple[list[Sheet], list[NDArray[np.float64]], float]:
-    """The first layer whole and the second in pieces, by how much each moves, and the side of the square that holds
+    """The first layer whole and the others in pieces, by how much each moves, and the side of the square that holds
     all.
 
     Pieces too wide for the strips that a square leaves beside the first layer would waste most of it: several widths
     are tried, and the smallest square is taken.
     """
-    if second is None or len(second.faces) == 0:
+    if not others:
         return [first], *pack([first], gutter)
     longer = max(np.ptp(first.x), np.ptp(first.y))
     trials = []
     for room in ROOMS:
-        parts = [first, *pieces_of(second, max(SMALLEST, room * longer))]
+        pieces = [piece for sheet in others for piece in pieces_of(sheet, max(SMALLEST, room * longer))]
+        parts = [first, *sorted(pieces, key=lambda piece: -sheet_area(piece))]
         trials.append((parts, *pack(parts, gutter)))
     return min(trials, key=lambda trial: trial[2])
 
@@ -59,6 +60,11 @@ def pieces_of(sheet: Sheet, room: float) -> list[Sheet]:
     area = [_area(corners[faces]) for faces in pieces]
     order = sorted(range(len(pieces)), key=lambda i: (-area[i], int(pieces[i][0])))
     return [used_part(sheet, np.sort(pieces[i])) for i in order]
+
+
+def sheet_area(sheet: Sheet) -> float:
+    """In squared pixels."""
+    return _area(np.stack([sheet.x, sheet.y], axis=1)[sheet.faces])
 
 
 def _area(corners: NDArray[np.float64]) -> float:

@@ -8,6 +8,7 @@ of the depth map. Last, the depths of all vertices are fitted to all pixels toge
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +18,11 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg
 
+from eigenfield.mesh import Mesh
 from eigenfield.proxy.relief_contours import contour_chains, cut_sides, straightened
 from eigenfield.proxy.relief_kernels import label_pixels, refine, wedge_moments
 from eigenfield.proxy.relief_triangulation import LATTICE, constrain, restore, triangulate
+from eigenfield.stereo import Canvas
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -31,6 +34,7 @@ FRAME = 4  # pixels from the depth map to the rectangle round it
 WEDGE = 4  # pixels round a vertex of a contour whose depths it may take
 SLOPE_RIDGE = 0.03  # squared pixels
 STIFF = 0.05  # weight of a vertex' present depth in the last fit, in pixels
+FARTHEST = 1e-4  # of the nearest inverse depth: nothing is put farther away
 OUTLIER = 3.0  # tolerances beyond which a pixel does not take part in the last fit
 
 
@@ -249,7 +253,7 @@ def _fitted(
     A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(height))).tocsr()
     normal = A.T @ A + STIFF * diags_array(np.ones(len(height)))
     change, _ = cg(normal, A.T @ off, rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
-    return height + np.clip(change, -OUTLIER * tolerance, OUTLIER * tolerance)
+    return np.asarray(height + np.clip(change, -OUTLIER * tolerance, OUTLIER * tolerance))
 
 
 def pixel_weights(
@@ -260,6 +264,23 @@ def pixel_weights(
     one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
     area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
     return np.asarray(area / area.sum(axis=1, keepdims=True))
+
+
+def joined(sheets: Sequence[Sheet]) -> Sheet:
+    """Several sheets as one."""
+    starts = np.cumsum([0, *(len(sheet.x) for sheet in sheets[:-1])])
+    x, y, d = (np.concatenate([getattr(sheet, name) for sheet in sheets]) for name in "xyd")
+    faces = [sheet.faces + np.int32(start) for sheet, start in zip(sheets, starts, strict=True)]
+    return Sheet(x, y, d, np.concatenate(faces))
+
+
+def sheet_mesh(canvas: Canvas, sheet: Sheet) -> Mesh:
+    """A sheet in the world, without UVs, counter-clockwise to the canvas's camera; nothing is put farther away than
+    1 / FARTHEST times the nearest vertex."""
+    nearest = canvas.offset + canvas.scale * sheet.d.max()
+    d = np.maximum(sheet.d, (FARTHEST * nearest - canvas.offset) / canvas.scale)
+    faces = np.ascontiguousarray(sheet.faces[:, ::-1])  # y is down: positive area is clockwise to the camera
+    return Mesh(canvas.points(sheet.x, sheet.y, d).astype(np.float32), faces)
 
 
 def sheet_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int64]:

@@ -150,11 +150,11 @@ def fit_sphere(
     frame = _Frame(camera, baseline)
     start = np.array([*middle, (region.width + region.height) / 4])
     size = np.array([region.width, region.height])
-    bounds = (start, size)
+    box = _Box(start, size)
     few = looks.first(COARSE_VIEWS)
-    starts = _starts(start, _depths(frame, depth), frame, few, bounds)
-    coarse = sorted((_minimise(p, frame, few, 0, bounds) for p in starts), key=lambda fit: fit[1])
-    fine = [_minimise(p, frame, looks, len(SCALES) - 1, bounds) for p, _ in coarse[:FINALISTS]]
+    starts = _starts(_depths(frame, depth), frame, few, box)
+    coarse = sorted((_minimise(p, frame, few, 0, box) for p in starts), key=lambda fit: fit[1])
+    fine = [_minimise(p, frame, looks, len(SCALES) - 1, box) for p, _ in coarse[:FINALISTS]]
     best = min(fine, key=lambda fit: fit[1])[0]
     sphere = frame.sphere(best)
     contrast = _contrast(sphere, looks, len(SCALES) - 1)
@@ -196,6 +196,14 @@ def _outlines(
         rays = np.cos(rho)[..., None, None] * u[:, None, None] + np.sin(rho)[..., None, None] * ring[:, None]
         pixels = rays @ K.transpose(0, 2, 1)[:, None]
         return np.asarray(np.where(rays[..., 2:] > 0, pixels[..., :2] / pixels[..., 2:], np.nan))
+
+
+@dataclass(frozen=True, eq=False)
+class _Box:
+    """Where the outline is looked for: the circle (x, y, radius) inside the box, and the box's width and height."""
+
+    circle: NDArray[np.float64]
+    size: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,16 +277,9 @@ def _steps(looks: _Looks, level: int, sphere: Sphere, grow: float = 0.0, cap: fl
     return np.minimum(steps, cap)
 
 
-def _cost(
-    p: NDArray[np.float64],
-    frame: _Frame,
-    looks: _Looks,
-    level: int,
-    bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
-) -> float:
+def _cost(p: NDArray[np.float64], frame: _Frame, looks: _Looks, level: int, box: _Box) -> float:
     """Minus the mean step, and the price of leaving the box."""
-    start, size = bounds
-    off = np.append((p[:2] - start[:2]) / size, np.log(max(p[2], 1e-3) / start[2]))
+    off = np.append((p[:2] - box.circle[:2]) / box.size, np.log(max(p[2], 1e-3) / box.circle[2]))
     return PRIOR * float(off @ off) - _contrast(frame.sphere(p), looks, level)
 
 
@@ -293,13 +294,9 @@ def _contrast(sphere: Sphere, looks: _Looks, level: int) -> float:
 
 
 def _minimise(
-    p: NDArray[np.float64],
-    frame: _Frame,
-    looks: _Looks,
-    level: int,
-    bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
+    p: NDArray[np.float64], frame: _Frame, looks: _Looks, level: int, box: _Box
 ) -> tuple[NDArray[np.float64], float]:
-    return _simplex(lambda q: _cost(q, frame, looks, level, bounds), p, SCALES[level], 250, 1e-5)
+    return _simplex(lambda q: _cost(q, frame, looks, level, box), p, SCALES[level], 250, 1e-5)
 
 
 def _simplex(
@@ -320,35 +317,23 @@ def _depths(frame: _Frame, depth: float | None) -> NDArray[np.float64]:
     return nearest * (np.arange(DEPTHS) + 0.5) / DEPTHS
 
 
-def _starts(
-    start: NDArray[np.float64],
-    depths: NDArray[np.float64],
-    frame: _Frame,
-    looks: _Looks,
-    bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
-) -> list[NDArray[np.float64]]:
+def _starts(depths: NDArray[np.float64], frame: _Frame, looks: _Looks, box: _Box) -> list[NDArray[np.float64]]:
     """The best circles of the reference view near the box, each at its best depths; the best of all these."""
-    x, y, r = start
+    x, y, r = box.circle
     typical = float(np.median(depths))
+    alone = looks.first(1)
+
+    def outline(p: NDArray[np.float64]) -> float:
+        return _cost(np.append(p, typical), frame, alone, 0, box)
+
     grid = [np.array([x + dx * r, y + dy * r, g * r]) for dx in SHIFTS for dy in SHIFTS for g in GROWTHS]
-    alone = [_circle(p, typical, frame, looks.first(1), bounds) for p in grid]
+    fits = [_simplex(outline, p, SCALES[0], 60, 1e-4) for p in grid]
     near = np.full(3, 0.03 * r)
-    circles = _distinct(np.array([fit[1] for fit in alone]), np.array([fit[0] for fit in alone]), near, CIRCLES)
+    circles = _distinct(np.array([cost for _, cost in fits]), np.array([fit for fit, _ in fits]), near, CIRCLES)
     solid = np.array([[*circle, w] for circle in circles for w in depths])
-    costs = np.array([_cost(p, frame, looks, 0, bounds) for p in solid])
+    costs = np.array([_cost(p, frame, looks, 0, box) for p in solid])
     step = 1.5 * float(np.diff(depths).max())
     return _distinct(costs, solid, np.append(near, step), STARTS)
-
-
-def _circle(
-    p: NDArray[np.float64],
-    depth: float,
-    frame: _Frame,
-    look: _Looks,
-    bounds: tuple[NDArray[np.float64], NDArray[np.float64]],
-) -> tuple[NDArray[np.float64], float]:
-    """The outline in the reference view alone."""
-    return _simplex(lambda q: _cost(np.append(q, depth), frame, look, 0, bounds), p, SCALES[0], 60, 1e-4)
 
 
 def _distinct(

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation
+from scipy.ndimage import binary_dilation, maximum_filter
 from scipy.spatial import KDTree
 
 from eigenfield.camera import Camera
 from eigenfield.errors import ProxyError
 from eigenfield.mesh import Mesh
-from eigenfield.proxy.fusion import Points
+from eigenfield.parallel import parallel_map
+from eigenfield.proxy.fusion import DepthView, Points
 from eigenfield.proxy.topology import areas, filled, manifold, patches, without_islands
 from eigenfield.proxy.unwrap import simplified
 
@@ -22,6 +23,8 @@ log = logging.getLogger("eigenfield.proxy")
 
 REACH = 4.0  # times their spacing: as far as points support a surface
 GAP = 30.0  # times their spacing: holes up to this size are closed
+WALL = 120.0  # times their spacing: patches without points up to this size stay where nothing is seen through them
+THROUGH = 2  # depth maps that must see something behind a point for it to be in the air
 ISLAND = 0.005  # of the area: a smaller patch is dropped
 SAMPLES = 200_000  # on a surface, to find the triangles near a point
 PROBES = 20_000  # points that the error of a simplification is measured at
@@ -46,16 +49,32 @@ class SurfaceError:
         return f"{100 * self.relative:.3f} % of the scene, {self.pixels:.2f} px (95 % under {self.pixels_p95:.2f} px)"
 
 
-def trimmed(mesh: Mesh, points: Points, *, reach: float = REACH, gap: float = GAP, island: float = ISLAND) -> Mesh:
+def trimmed(
+    mesh: Mesh,
+    points: Points,
+    *,
+    views: Sequence[DepthView] = (),
+    tolerance: float = 0.01,
+    reach: float = REACH,
+    gap: float = GAP,
+    wall: float = WALL,
+    island: float = ISLAND,
+) -> Mesh:
     """Without what no points support, but with small holes closed; no small islands, nothing non-manifold.
 
     reach: in units of the points' spacing, how far from a point the surface counts as supported. gap: in the same
     units (median), the size up to which unsupported patches stay and holes are closed. island: share of the area below
-    which a patch is dropped. Raises ProxyError `surface-empty`.
+    which a patch is dropped. views: with them, patches up to `wall` (in the same units) stay too where no two depth
+    maps look through them, to something farther by more than twice the relative `tolerance`: bare walls give no points.
+    Raises ProxyError `surface-empty`.
     """
-    gap_size = gap * float(np.median(points.spacing))
+    spacing = float(np.median(points.spacing))
+    gap_size = gap * spacing
     supported = np.asarray(_supported(mesh, points, reach)[mesh.faces].all(axis=1), np.bool_)
     kept = supported | _small_patches(mesh, ~supported, gap_size)
+    if views:
+        solid = ~supported & ~_looked_through(mesh, views, tolerance)[mesh.faces].any(axis=1)
+        kept |= _small_patches(mesh, solid, wall * spacing)
     result = manifold(without_islands(Mesh(mesh.vertices, mesh.faces[kept]), island))
     result = without_islands(filled(result, gap_size), island)
     if len(result.faces) == 0:
@@ -163,6 +182,24 @@ def _supported(mesh: Mesh, points: Points, reach: float) -> NDArray[np.bool_]:
     edge = float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
     distance, nearest = KDTree(points.positions).query(mesh.vertices)
     return distance <= reach * np.maximum(points.spacing[nearest], edge / 2)
+
+
+def _looked_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> NDArray[np.bool_]:
+    """(n,) which vertices at least THROUGH depth maps have something clearly behind of, all around them."""
+    positions = mesh.vertices.astype(np.float64)
+
+    def behind(view: DepthView) -> NDArray[np.bool_]:
+        nearest = maximum_filter(np.where(view.inverse_depth > 0, view.inverse_depth, np.inf), 3)
+        pixels, depth = view.camera.project(positions)
+        with np.errstate(invalid="ignore"):
+            inside = (depth > 0) & (pixels >= 0).all(axis=1)
+            inside &= (pixels[:, 0] < view.camera.width) & (pixels[:, 1] < view.camera.height)
+        column, row = pixels[inside].astype(np.int64).T
+        result = np.zeros(len(positions), np.bool_)
+        result[inside] = nearest[row, column] * depth[inside] < 1 - 2 * tolerance
+        return result
+
+    return np.asarray(np.sum(parallel_map(behind, views), axis=0) >= THROUGH)
 
 
 def _small_patches(mesh: Mesh, which: NDArray[np.bool_], size: float) -> NDArray[np.bool_]:

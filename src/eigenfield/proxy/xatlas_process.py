@@ -16,7 +16,8 @@ import xatlas
 RESOLUTION = 1024  # the packing's goal; packed charts end up on one about 1.7 times as large
 PADDING = (4, 7)  # texels between charts on that: at least, and with few charts ..
 PADDING_SHARE = 0.1  # .. of the side of a chart of mean size
-MOST_TRIED = 200  # charts: up to here every place in the atlas is tried (in steps of 4), above random ones
+MOST_TRIED = 400  # charts: up to here every place in the atlas is tried (in steps of 4), above random ones
+LARGEST = 0.2  # of the surface: one chart that winds about the whole background would leave half of the atlas empty
 MAX_COST = 8.0  # of growing a chart; xatlas' 2 cuts a noisy mesh into more pieces at no gain in stretch
 
 
@@ -31,6 +32,9 @@ def main() -> None:
     if points.shape[1] == 3:  # a surface: cut it into charts
         charts = xatlas.ChartOptions()
         charts.max_cost = MAX_COST
+        p = points[faces].astype(np.float64)
+        areas = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
+        charts.max_chart_area = LARGEST * float(areas.sum())
         atlas.add_mesh(points, faces)
         atlas.generate(charts, options)
     else:  # charts that are laid out: only pack them, at the sizes they have

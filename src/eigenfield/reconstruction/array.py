@@ -26,6 +26,7 @@ from eigenfield.capture.save import save_calibration
 from eigenfield.errors import CaptureError, ProxyError
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
+from eigenfield.progress import Progress
 from eigenfield.proxy import (
     read_mesh,
     relief_mesh,
@@ -46,13 +47,14 @@ from eigenfield.reconstruction.kept import (
 from eigenfield.reconstruction.run import Run, Settings
 from eigenfield.stereo import depth_buffers, depth_range, mean_texture
 from eigenfield.stereo.extend import without_specks
+from eigenfield.stereo.steps import step_sides
 from eigenfield.viewplane import fit_view_plane
 
 log = logging.getLogger("eigenfield.reconstruction")
 
 SPECK = 2e-4  # of the canvas: smaller pieces that stand apart in depth are taken for errors
 CUT_ROUNDS = 4  # of making fewer cuts
-CUT = 4.0  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
+CUT = 2.5  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
 TOLERANCE = 0.08  # pixels there that the mesh may leave the depth map
 RANGE_VIEWS = 25  # round the central one, in which a range of depths is searched
 FEWEST_POINTS = 30  # of structure from motion that say a range of depths
@@ -91,11 +93,13 @@ def relief_of_array(
         pictures = read_pictures(capture)
         part = capture.subset(known)
         shown = pictures if len(known) == len(pictures) else pictures[known]
-        planar = refine_planar(shown, _start(part, shown, points), exact=not refine, progress=run.progress)
+        start = _start(part, shown, points)
+        planar = refine_planar(shown, start, exact=not refine, progress=run.progress)
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
             bases = None if isinstance(capture, PhotoSet) else resized_cameras(capture)
-            planar = register_views(planar, known, pictures[new], new, _positions(capture), bases)
+            positions = _positions(capture)[:, ::-1] if start.exchanged else _positions(capture)
+            planar = register_views(planar, known, pictures[new], new, positions, bases)
         light_field = _light_field(capture, planar)
         save_calibration(light_field, folder / "calibration")
         write_cameras(folder / CAMERAS, capture, light_field, np.zeros((0, 3)))
@@ -110,10 +114,16 @@ def relief_of_array(
         depth = read_planar(folder / DEPTH)
         keep = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
         shown = None if masks is None else masks[keep]
-        layers = _layers(depth, pictures[keep], shown, depth.matrices[keep], run.settings.triangles)
+        background = run.settings.background
+        closed: list[Camera] = []
+        if masks is None if background is None else background:
+            closed = resized_cameras(light_field.subset([light_field.names.index(capture.names[i]) for i in keep]))
+        layers = _layers(
+            depth, pictures[keep], shown, depth.matrices[keep], run.settings.triangles, closed, run.progress
+        )
         write_ply(layers, place / MESH)
 
-    relief = run.stage("relief", [inputs, run.settings.triangles], mesh)
+    relief = run.stage("relief", [inputs, run.settings.triangles, run.settings.background], mesh)
     return light_field, read_mesh(relief / MESH), folder / "calibration"
 
 
@@ -123,18 +133,23 @@ def _layers(
     masks: NDArray[np.uint8] | None,
     matrices: NDArray[np.float64],
     triangles: int,
+    cameras: Sequence[Camera] = (),
+    progress: Progress | None = None,
 ) -> Mesh:
-    """The layered relief of a depth map. Where its cuts alone take more than `triangles`, the depth is a noisy one:
-    fewer are made."""
+    """The layered relief of a depth map, closed for `cameras`. Where its cuts alone take more than `triangles`, the
+    depth is a noisy one: fewer are made."""
     valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
     if masks is not None:
         valid &= _counts(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
     cut, speck = CUT / reach, SPECK
     for _ in range(CUT_ROUNDS):
-        d = without_specks(depth.d, cut, round(speck * depth.d.size))
-        second = second_layer(pictures, matrices, d, valid, cut=cut)
-        mesh = relief_mesh(depth.canvas, d, valid, second, cut=cut, tolerance=TOLERANCE / reach, triangles=triangles)
+        d = without_specks(depth.d, step_sides(depth.d, 1 / reach, cut), round(speck * depth.d.size))
+        second = second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
+        mesh = relief_mesh(
+            depth.canvas, d, valid, second, cut=cut, tolerance=TOLERANCE / reach, triangles=triangles, cameras=cameras,
+            progress=progress,
+        )  # fmt: skip
         if len(mesh.faces) <= 1.1 * triangles:
             break
         cut, speck = 1.6 * cut, 2 * speck
@@ -164,7 +179,10 @@ def _refines(capture: Capture, settings: Settings) -> bool:
 def _start(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
     if isinstance(capture, PhotoSet):
         assert capture.layout is not None
-        return start_planar(pictures, capture.layout, capture.names)
+        try:
+            return start_planar(pictures, capture.layout, capture.names)
+        except CaptureError as error:  # it knows of no files
+            raise CaptureError(error.code, error.message, path=capture.root, remedy=error.remedy) from None
     cameras = resized_cameras(capture)
     low, high = _inverse_depths(capture, cameras, pictures, points)
     return start_given(cameras, low, high)
@@ -186,12 +204,10 @@ def _light_field(capture: Capture, planar: Planar) -> LightField:
     typical = float(np.nanmedian(error))
     strange = ~(error <= max(STRANGE * typical, typical + STRANGE_LEAST))
     problems = [
-        f"{capture.names[i]} shows something else, or its camera was moved: it differs by {error[i]:.0f} grey levels "
-        f"from the others (they by {typical:.0f}); left out"
+        f"{capture.names[i]} is blurred, shows something else, or its camera was moved: it differs by {error[i]:.0f} "
+        f"grey levels from the others (they by {typical:.0f}); left out"
         for i in np.flatnonzero(strange)
     ]
-    for problem in problems:
-        log.warning("%s", problem)
     keep = [int(i) for i in np.flatnonzero(~strange)]
     chosen = capture.subset(keep)
     sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]

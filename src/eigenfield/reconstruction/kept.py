@@ -17,7 +17,7 @@ from eigenfield.capture import Lens, LightField, PhotoSet
 from eigenfield.reconstruction.frame import Capture
 from eigenfield.stereo import Canvas
 
-MESH, CAMERAS, DEPTH = "mesh.ply", "cameras.npz", "depth.npz"
+MESH, ERROR, CAMERAS, DEPTH = "mesh.ply", "error.json", "cameras.npz", "depth.npz"
 
 
 def write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:

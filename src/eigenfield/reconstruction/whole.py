@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import (
-    structure_from_motion,
-)
+from eigenfield.calibrate import structure_from_motion, triangulated_points
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.capture.save import save_calibration
 from eigenfield.errors import OptionError
@@ -23,7 +22,6 @@ from eigenfield.parallel import parallel_map
 from eigenfield.progress import Progress
 from eigenfield.proxy import (
     Primitive,
-    atlas_statistics,
     find_view,
     fit_sphere,
     insert_primitive,
@@ -34,9 +32,11 @@ from eigenfield.proxy import (
     unwrapped,
     write_ply,
 )
+from eigenfield.proxy.trim import SurfaceError
 from eigenfield.reconstruction.array import looks_one_way, relief_of_array
 from eigenfield.reconstruction.frame import Capture
-from eigenfield.reconstruction.kept import CAMERAS, MESH, read_cameras, write_cameras
+from eigenfield.reconstruction.kept import CAMERAS, ERROR, MESH, read_cameras, write_cameras
+from eigenfield.reconstruction.report import ProxyReport, report_of
 from eigenfield.reconstruction.run import DEFAULT_TRIANGLES, Run, Settings
 from eigenfield.stages import Stages, file_digest
 
@@ -51,12 +51,14 @@ class Reconstruction:
     mesh: with an atlas, in the cameras' world.
     calibration: the folder with a transforms.json and a COLMAP model, where cameras were estimated or refined.
     seconds: of each stage, in order; 0 where it was taken up from an earlier run.
+    report: what the mesh is like.
     """
 
     light_field: LightField
     mesh: Mesh
     calibration: Path | None
     seconds: dict[str, float]
+    report: ProxyReport
 
 
 def reconstruct(
@@ -85,12 +87,15 @@ def reconstruct(
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
     settings = Settings(surface, refine, triangles, background, tuple(primitives), tuple(fit_spheres), blind)
+    for text in fit_spheres:  # before the long stages
+        find_view(parse_region(text), capture.names)
     with Stages(work) as stages:
         run = Run(stages, settings, progress, {})
         identity = _identity(capture)
         light_field, points, calibration = (
             (capture, None, None) if _has_cameras(capture) else _by_motion(run, capture, identity)
         )
+        error = None
         if _wants_relief(light_field, settings):
             light_field, mesh, folder = relief_of_array(run, light_field, points, identity)
             calibration = folder or calibration
@@ -101,10 +106,11 @@ def reconstruct(
                     "blind", "only arrays that look one way can be reconstructed blind",
                     remedy="leave out --blind: held-out views then help to find cameras and proxy",
                 )  # fmt: skip
-            mesh = _poisson(run, light_field, points, identity)
+            mesh, error = _poisson(run, light_field, points, identity)
         assert isinstance(light_field, LightField)
         mesh = _finished(run, light_field, mesh, identity)
-        return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds)
+        report = report_of(mesh, light_field.cameras, error)
+        return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds, report)
 
 
 def _has_cameras(capture: Capture) -> bool:
@@ -164,20 +170,25 @@ def _wants_relief(capture: Capture, settings: Settings) -> bool:
     return looks_one_way(capture.cameras)
 
 
-def _poisson(run: Run, light_field: LightField, points: NDArray[np.float64] | None, identity: list[Any]) -> Mesh:
+def _poisson(
+    run: Run, light_field: LightField, points: NDArray[np.float64] | None, identity: list[Any]
+) -> tuple[Mesh, SurfaceError]:
     settings = run.settings
     by_hand = [settings.primitives, settings.fit_spheres, settings.background]
     inputs = [identity, None if points is None else len(points), settings.triangles, by_hand]
 
     def build(folder: Path) -> None:
+        known = triangulated_points(light_field, progress=run.progress) if points is None else points
         surface = surface_from_views(
-            light_field, points, triangles=settings.triangles, background=settings.background,
+            light_field, known, triangles=settings.triangles, background=settings.background,
             primitives=_by_hand(run, light_field), progress=run.progress,
         )  # fmt: skip
         log.info("surface: %d points from %d depth maps, error %s", surface.points, surface.views, surface.error)
         write_ply(surface.mesh, folder / MESH)
+        (folder / ERROR).write_text(json.dumps(asdict(surface.error)), encoding="utf-8")
 
-    return read_mesh(run.stage("surface", inputs, build) / MESH)
+    folder = run.stage("surface", inputs, build)
+    return read_mesh(folder / MESH), SurfaceError(**json.loads((folder / ERROR).read_text(encoding="utf-8")))
 
 
 def _finished(run: Run, light_field: LightField, mesh: Mesh, identity: list[Any]) -> Mesh:
@@ -194,7 +205,6 @@ def _finished(run: Run, light_field: LightField, mesh: Mesh, identity: list[Any]
         for primitive in _by_hand(run, light_field) if relief else ():
             result = insert_primitive(result, primitive, light_field.cameras)
         result = unwrapped(result, triangles=len(result.faces), cameras=light_field.cameras, progress=run.progress)
-        log.info("atlas: %s", atlas_statistics(result))
         write_ply(result, folder / MESH)
 
     return read_mesh(run.stage("proxy", inputs, build) / MESH)

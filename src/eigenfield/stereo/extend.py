@@ -6,10 +6,11 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 REACH = 16.0  # pixels, one sigma, over which the slope at the border is taken
 STEEPEST = 2.0  # times the range of d over the canvas's longer side: steeper slopes are noise
-SPECK_LEVELS = 8  # whole numbers to a cut, for the search of specks
 RIM = 4  # pixels next to the unknown that are not trusted either: windows there reach beyond
 
 
@@ -47,17 +48,19 @@ def extended(d: NDArray[np.float32], known: NDArray[np.bool_], low: float, high:
     return np.where(known, d, np.clip(blurred, low, high)).astype(np.float32)
 
 
-def without_specks(d: NDArray[np.float32], cut: float, smallest: int) -> NDArray[np.float32]:
-    """d (h, w) without pieces of fewer than `smallest` pixels that jumps of more than `cut` set apart from all around.
+def without_specks(
+    d: NDArray[np.float32], steps: tuple[NDArray[np.bool_], NDArray[np.bool_]], smallest: int
+) -> NDArray[np.float32]:
+    """d (h, w) without pieces of fewer than `smallest` pixels that steps (`step_sides`) set apart from all around.
 
-    They take the depth of the nearest pixel that stays.
+    They take the depth of the nearest pixel that stays. The pixels of a smeared step are such pieces: it gets sharp.
     """
-    steps = np.rint((d - d.min()) * (SPECK_LEVELS / cut))
-    if steps.max() > np.iinfo(np.int16).max:  # a range of hundreds of cuts: coarser steps will do
-        steps *= np.iinfo(np.int16).max / steps.max()
-    marked = steps.astype(np.int16)
-    cv2.filterSpeckles(marked, -1, smallest, SPECK_LEVELS)
-    specks = marked < 0
+    index = np.arange(d.size).reshape(d.shape)
+    one = np.concatenate([index[:, :-1][~steps[0]], index[:-1][~steps[1]]])
+    other = np.concatenate([index[:, 1:][~steps[0]], index[1:][~steps[1]]])
+    links = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(d.size, d.size))
+    piece = connected_components(links, directed=False)[1]
+    specks = (np.bincount(piece) < smallest)[piece].reshape(d.shape)
     if not specks.any() or specks.all():
         return d
     row, column = ndimage.distance_transform_edt(specks, return_distances=False, return_indices=True)

@@ -37,7 +37,7 @@ def smooth_depth(
     d = np.ascontiguousarray(d, np.float32)
     positive = np.maximum(np.ascontiguousarray(confidence, np.float32), np.float32(0))
     sure = np.maximum(positive / (positive + np.float32(half)), np.float32(LEAST))
-    colours = np.ascontiguousarray(guide, np.float32)
+    colours = np.ascontiguousarray(np.moveaxis(np.asarray(guide, np.float32), 2, 0))
     for spacing in spacings:
         out = np.empty_like(d)
         scales = [np.float32(scale) for scale in (colour, depth, loose_colour, loose_depth)]

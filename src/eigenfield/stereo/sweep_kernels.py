@@ -33,11 +33,10 @@ def _add_colours(count, real, whole, centre, reach, total):
 
 @kernel(fastmath=EXACT)
 def _add_moments(count, real, whole, centre, most, moments):
-    """moments (5, RUN): counts, sums of e, sum of |e|^2 over visible points, e = colour - centre.
+    """moments (5 slots): counts, sums of e, sum of |e|^2 over visible points, e = colour - centre.
 
     Where |e|^2 > 3 most^2 the point adds that much to the squares and nothing to the sums of e."""
     cut = np.float32(3) * most * most
-    n, sr, sg, sb, q = moments[0], moments[1], moments[2], moments[3], moments[4]
     for i in range(count):
         w00, w01, w10, w11 = weights(real, i)
         r = channel(whole, i, 0, w00, w01, w10, w11) - centre[i]
@@ -46,11 +45,11 @@ def _add_moments(count, real, whole, centre, most, moments):
         m = visible(real, i)
         e = r * r + g * g + b * b
         k = m if e < cut else _ZERO
-        n[i] += m
-        sr[i] += k * r
-        sg[i] += k * g
-        sb[i] += k * b
-        q[i] += m * min(e, cut)
+        moments[i] += m
+        moments[i + RUN] += k * r
+        moments[i + 2 * RUN] += k * g
+        moments[i + 3 * RUN] += k * b
+        moments[i + 4 * RUN] += m * min(e, cut)
 
 
 @kernel(fastmath=EXACT)
@@ -70,41 +69,70 @@ def _own_centre(
                 guess[i + c * RUN] = total[i + c * RUN] * inverse
 
 
+@kernel()
+def _parts(sector, groups, best):
+    """(n, 2) int64: the runs (first, how many) of groups whose spread is looked at: the half-planes, those with the
+    same views once, or all groups as one where `best` is not under 1."""
+    views = np.zeros(groups, np.int64)
+    for v in range(sector.size):
+        if sector[v] >= 0:
+            views[sector[v]] += 1
+    parts = np.zeros((groups, 2), np.int64)
+    if best >= _ONE:
+        parts[0, 1] = groups
+        return parts[:1]
+    masks = np.zeros(groups, np.int64)
+    count = 0
+    for first in range(groups):
+        mask = 0
+        for k in range(groups // 2):
+            if views[(first + k) % groups] > 0:
+                mask |= 1 << ((first + k) % groups)
+        fresh = mask != 0
+        for other in range(count):
+            fresh &= masks[other] != mask
+        if fresh:
+            masks[count] = mask
+            parts[count, 0], parts[count, 1] = first, groups // 2
+            count += 1
+    return parts[:count]
+
+
 @kernel(fastmath=EXACT)
-def _half_spread(count, moments, half, first, need, free, lowest):
-    """lowest = min(lowest, spread of the half-plane of sectors first .. first + half - 1), where it holds `need`.
+def _add_up(moments, first, size, sums):
+    """sums (5 slots): the moments of the groups first .. first + size - 1."""
+    groups = moments.shape[0]
+    sums[:] = 0
+    for k in range(size):
+        part = moments[(first + k) % groups]
+        for i in range(5 * RUN):
+            sums[i] += part[i]
+
+
+@kernel(fastmath=EXACT)
+def _half_spread(count, sums, need, free, lowest):
+    """lowest = min(lowest, spread of the summed moments), where they hold `need` views.
 
     The reference counts as one more view, at e = 0: without it a single view would agree with itself."""
-    groups = moments.shape[0]
     for i in range(count):
-        n, sr, sg, sb, q = _ZERO, _ZERO, _ZERO, _ZERO, _ZERO
-        for k in range(half):
-            part = moments[(first + k) % groups]
-            n += part[0, i]
-            sr += part[1, i]
-            sg += part[2, i]
-            sb += part[3, i]
-            q += part[4, i]
+        n, sr, sg, sb = sums[i], sums[i + RUN], sums[i + 2 * RUN], sums[i + 3 * RUN]
+        q = sums[i + 4 * RUN]
         v = (q - free * (sr * sr + sg * sg + sb * sb) / (n + _ONE)) / (np.float32(3) * max(n, _ONE))
         lowest[i] = min(lowest[i], v) if n >= need[i] else lowest[i]
 
 
 @kernel(fastmath=EXACT)
-def _best_half(count, moments, fewest, part, unseen, free, need, cost):
+def _best_half(count, moments, parts, fewest, part, unseen, free, sums, need, cost):
     """cost: the least spread over the half-planes of directions that hold enough of the visible views."""
-    groups = moments.shape[0]
+    _add_up(moments, 0, moments.shape[0], sums)
     for i in range(count):
-        total = _ZERO
-        for g in range(groups):
-            total += moments[g, 0, i]
-        need[i] = max(part * total, _ONE)
-        need[i + RUN] = total
+        need[i] = max(part * sums[i], _ONE)
+        need[i + RUN] = sums[i]
         cost[i] = np.float32(1e9)
-    if part < _ONE:
-        for first in range(groups):
-            _half_spread(count, moments, groups // 2, first, need, free, cost)
-    else:
-        _half_spread(count, moments, groups, 0, need, free, cost)
+    for k in range(parts.shape[0]):
+        if parts[k, 1] < moments.shape[0]:
+            _add_up(moments, parts[k, 0], parts[k, 1], sums)
+        _half_spread(count, sums, need, free, cost)
     for i in range(count):
         cost[i] = np.sqrt(max(cost[i], _ZERO)) if need[i + RUN] >= fewest else unseen
 
@@ -127,7 +155,8 @@ def sweep_rows(
     label, limit = np.zeros(RUN, np.float32), np.zeros(RUN, np.float32)
     centre, guess = np.zeros(3 * RUN, np.float32), np.zeros(3 * RUN, np.float32)
     total = np.zeros(4 * RUN, np.float32)
-    moments = np.zeros((groups, 5, RUN), np.float32)
+    moments, sums = np.zeros((groups, 5 * RUN), np.float32), np.zeros(5 * RUN, np.float32)
+    parts = _parts(sector, groups, part)
     need = np.zeros(2 * RUN, np.float32)
     cost = np.zeros(RUN, np.float32)
     for y in range(first, last):
@@ -164,7 +193,7 @@ def sweep_rows(
                     place(matrices[v], y, x, count, label, limit, height, width, real, whole)
                     fetch(pictures[v], buffers[v], width, count, real, whole)
                     _add_moments(count, real, whole, centre, most, moments[g])
-                _best_half(count, moments, fewest, part, unseen, free, need, cost)
+                _best_half(count, moments, parts, fewest, part, unseen, free, sums, need, cost)
                 for i in range(count):
                     at = low[y, x + i] + k
                     if at < high[y, x + i]:

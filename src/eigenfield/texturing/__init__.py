@@ -1,6 +1,15 @@
 """Photographs to texture maps: texel positions, visibility, resampling, gutters (the paper's section 3.2)."""
 
-from eigenfield.texturing.atlas import SIDE_CAP, SIDE_LIMIT, SIDE_STEP, Atlas, atlas_side, make_atlas, texels_per_pixel
+from eigenfield.texturing.atlas import (
+    SIDE_CAP,
+    SIDE_LIMIT,
+    SIDE_STEP,
+    Atlas,
+    atlas_side,
+    check_density,
+    make_atlas,
+    texels_per_pixel,
+)
 from eigenfield.texturing.harmonise import MODELS as COLOUR_MODELS
 from eigenfield.texturing.harmonise import check_model, fit_colours, harmonise_maps, harmonised
 from eigenfield.texturing.pictures import png_bytes, write_maps
@@ -17,6 +26,7 @@ __all__ = [
     "Spreader",
     "TextureMaps",
     "atlas_side",
+    "check_density",
     "check_model",
     "fit_colours",
     "harmonise_maps",
