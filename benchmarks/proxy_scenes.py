@@ -33,7 +33,7 @@ class Case:
 
 CASES = {
     "tarot": Case("tarot_17x17_512", ("--hold-out", "odd", "--density", "1"), "ball.json", uncoded=True),
-    "tarot-blind": Case("tarot_17x17_512", ("--hold-out", "odd", "--density", "1", "--blind"), "ball.json", True),
+    "tarot-blind": Case("tarot_17x17_512", ("--hold-out", "odd", "--density", "1", "--blind"), "ball.json"),
     "tarot-all": Case("tarot_17x17_512", (), "ball.json"),
     "tarot-5x4": Case("tarot_5x4_1024", ("--hold-out", "every:5", "--textures", "7"), peers=True),
     "amethyst": Case("amethyst_17x17_512", ("--hold-out", "odd")),

@@ -54,7 +54,8 @@ log = logging.getLogger("eigenfield.reconstruction")
 
 SPECK = 2e-4  # of the canvas: smaller pieces that stand apart in depth are taken for errors
 CUT_ROUNDS = 4  # of making fewer cuts
-CUT = 2.5  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them
+CUT = 2.5  # pixels in the outermost view that two neighbours may slip apart before the relief is slit between them ..
+CUT_SHARE = 0.06  # .. or this part of the range of depths: a small step in a deep scene is more often an error
 TOLERANCE = 0.08  # pixels there that the mesh may leave the depth map
 RANGE_VIEWS = 25  # round the central one, in which a range of depths is searched
 FEWEST_POINTS = 30  # of structure from motion that say a range of depths
@@ -142,7 +143,8 @@ def _layers(
     if masks is not None:
         valid &= _counts(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
-    cut, speck = CUT / reach, SPECK
+    low, high = np.percentile(depth.d[depth.count > 0], [1, 99])
+    cut, speck = max(CUT / reach, CUT_SHARE * float(high - low)), SPECK
     for _ in range(CUT_ROUNDS):
         d = without_specks(depth.d, step_sides(depth.d, 1 / reach, cut), round(speck * depth.d.size))
         second = second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
