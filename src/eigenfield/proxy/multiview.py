@@ -113,7 +113,9 @@ def surface_from_views(
     fused = fuse(views, tolerance=tolerance, agreement=FEWEST, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central(cameras)]
-    mesh = trimmed(poisson_surface(fused, progress=progress), fused, views=views, tolerance=tolerance)
+    # masked pixels have no depth that could look through a patch: nothing without points stays there
+    walls = () if masked else views
+    mesh = trimmed(poisson_surface(fused, progress=progress), fused, views=walls, tolerance=tolerance)
     if masked:
         mesh = within_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background
