@@ -1,11 +1,12 @@
 # make demo   a capture is drawn, encoded, flown through and measured; look into demo/
 # make test   the fast tests
-# Both make .venv first. PYTHON names the interpreter (3.11 or newer).
+# make web    build the web viewer again after a change in web/ (Node.js; users need none, the build is kept here)
+# The first two make .venv first. PYTHON names the interpreter (3.11 or newer).
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test lint clean help
+.PHONY: demo test web lint clean help
 
 help:
 	@sed -n 's/^# //p' Makefile
@@ -26,6 +27,9 @@ demo: $(VENV)/.installed
 
 test: $(VENV)/.installed-test
 	$(BIN)/python -m pytest -m 'not slow' $(PYTEST_ARGS)
+
+web:
+	cd web && npm ci --no-audit --no-fund && npm run build
 
 lint: $(VENV)/.installed-test
 	$(BIN)/ruff check .

@@ -51,3 +51,51 @@ def nearest3_weights(point, positions, rows):
 def texture(mean, eigen, row):
     """Equation 8: mean plus weighted sum of eigen textures."""
     return mean + np.tensordot(row, eigen, axes=1)
+
+
+def free_view(scene, camera):
+    """(H, W, 3): equation 8 pixel by pixel for a camera anywhere, textures read bilinearly, black where nothing is.
+
+    Equation 7 for each point of the surface: the ray from it to the camera meets the view plane at X, Y, and the
+    Delaunay weights there are that point's own.
+    """
+    from eigenfield.raster import rasterise_view
+    from eigenfield.rendering import view_weights
+
+    face = rasterise_view(scene.mesh, camera).face
+    rows, columns = np.nonzero(face >= 0)
+    corners = scene.mesh.vertices.astype(float)[scene.mesh.faces[face[rows, columns]]]
+    pixels = np.stack([columns + 0.5, rows + 0.5, np.ones(len(rows))])
+    directions = (camera.R.T @ np.linalg.solve(camera.K, pixels)).T
+    eye = camera.centre
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    reach = ((corners[:, 0] - eye) * normals).sum(1) / (directions * normals).sum(1)
+    points = eye + reach[:, None] * directions
+    # barycentric coordinates: the corners' sum makes the point, and they add up to 1
+    corners, homogeneous = np.insert(corners, 3, 1.0, axis=2), np.insert(points, 3, 1.0, axis=1)
+    part = np.stack([np.linalg.lstsq(c.T, p, rcond=None)[0] for c, p in zip(corners, homogeneous, strict=True)])
+    uv = (part[..., None] * scene.mesh.uv[scene.mesh.faces[face[rows, columns]]]).sum(1)
+
+    plane = scene.view_plane
+    normal = np.cross(plane.right, plane.up)
+    along = ((plane.origin - points) @ normal) / ((eye - points) @ normal)
+    places = plane.coordinates(np.where(along[:, None] > 0, points + along[:, None] * (eye - points), eye))
+    mean, basis = scene.planes[0].mean, scene.planes[0].bases[0]
+    weights = np.stack([view_weights(scene, place) for place in places]) @ basis.weights
+    colours = bilinear(mean, uv)
+    for j, eigen in enumerate(basis.values()):
+        colours += weights[:, j, None] * bilinear(eigen, uv)
+    picture = np.zeros((camera.height, camera.width, 3))
+    picture[rows, columns] = np.clip(colours, 0, 1)
+    return picture
+
+
+def bilinear(texture, uv):
+    """(n, C) of a texture (H, W, C) at (n, 2) u, v; the centre of the first texel is at half a texel."""
+    height, width = texture.shape[:2]
+    x, y = np.clip(uv[:, 0] * width - 0.5, 0, width - 1), np.clip(uv[:, 1] * height - 0.5, 0, height - 1)
+    left, top = np.minimum(x.astype(int), width - 2), np.minimum(y.astype(int), height - 2)
+    fx, fy = (x - left)[:, None], (y - top)[:, None]
+    upper = (1 - fx) * texture[top, left] + fx * texture[top, left + 1]
+    lower = (1 - fx) * texture[top + 1, left] + fx * texture[top + 1, left + 1]
+    return (1 - fy) * upper + fy * lower

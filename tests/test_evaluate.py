@@ -240,7 +240,7 @@ def test_a_map_that_is_the_reconstruction_is_perfect_and_one_in_the_wrong_place_
 
 def test_uv_figures_are_those_of_the_maps(scene, tmp_path):
     capture = write_capture(scene, tmp_path / "c", lighter(1))
-    figures = evaluate(scene, capture, curve=True)
+    figures = evaluate(scene, capture, curve="all")
     atlas = make_atlas(scene.mesh, 48, 48)
     found = []
     for row, index in enumerate(scene.encoded):
@@ -256,6 +256,20 @@ def test_uv_figures_are_those_of_the_maps(scene, tmp_path):
         cut = evaluate(scene, capture, textures=point["textures"])
         assert cut["uv"]["psnr"] == pytest.approx(point["uv_psnr"], abs=1e-4)
         assert cut["textures"] == point["textures"]
+
+
+def test_a_curve_of_some_cameras(scene, tmp_path, monkeypatch):
+    monkeypatch.setattr("eigenfield.evaluation.session.SAMPLE", 2)
+    capture = write_capture(scene, tmp_path / "c", lighter(1))
+    whole, some = (evaluate(scene, capture, curve=which) for which in ("all", "sample"))
+    assert some["uv"] == whole["uv"] and some["image"] == whole["image"]
+    assert [point["cameras"] for point in some["curve"]] == [2] * 4
+    assert whole["curve"][0]["cameras"] == len(scene.encoded)
+    ends = [scene.names[scene.encoded[0]], scene.names[scene.encoded[-1]]]
+    alone = [camera["uv_psnr"] for camera in whole["cameras"] if camera["name"] in ends]
+    assert some["curve"][-1]["uv_psnr"] == pytest.approx(np.mean(alone), abs=1e-4)
+    with pytest.raises(OptionError, match="use all, sample, none"):
+        evaluate(scene, capture, curve="few")
 
 
 def test_maps_of_an_aligned_scene_are_aligned_too(scene, tmp_path):
@@ -279,7 +293,7 @@ def test_the_number_of_threads_changes_nothing(scene, tmp_path):
     try:
         for count in (1, 3):
             set_threads(count)
-            figures = evaluate(scene, capture, curve=True)
+            figures = evaluate(scene, capture, curve="all")
             assert figures.pop("seconds") >= 0
             results.append(figures)
     finally:
@@ -428,7 +442,7 @@ def test_plots_of_scenes_with_little_to_show(tmp_path):
     capture = write_capture(line, tmp_path / "c", only=(0, 1))
     views = tuple(dataclasses.replace(v, name=n) for v, n in zip(capture.views, names, strict=False))
     capture = dataclasses.replace(capture, views=views)
-    figures = evaluate(scene, capture, curve=True)
+    figures = evaluate(scene, capture, curve="all")
     assert [p.name for p in write_plots(figures, scene, capture, tmp_path / "p")] == [
         "uv-curve.png",
         "cameras.png",

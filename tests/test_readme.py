@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 import sys
+import urllib.request
 from pathlib import Path
 
 import pytest
@@ -32,12 +33,16 @@ def place(tmp_path_factory):
 def test_the_commands_run_in_order(place):
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
     assert [shlex.split(line)[1] for line in lines] == [
-        "inspect", "encode", "proxy", "inspect", "encode", "render", "render", "evaluate", "info", "validate",
+        "inspect", "encode", "proxy", "inspect", "encode", "view", "render", "render", "export", "export",
+        "evaluate", "info", "validate",
     ]  # fmt: skip
     for line in lines:
         words = shlex.split(line, comments=True)
         if "--path" in words:
             words += ["--frames", "4"]
+        if words[1] == "view":
+            look(words, place)
+            continue
         done = subprocess.run([sys.executable, "-m", *words], cwd=place, capture_output=True, text=True)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
     assert {
@@ -48,8 +53,25 @@ def test_the_commands_run_in_order(place):
         "scene.glb",
         "view.png",
         "flight.mp4",
+        "scene.html",
+        "redrawn",
         "plots",
     } <= {path.name for path in place.iterdir()}
+
+
+def look(words, place):
+    """`eigenfield view` serves until it is stopped."""
+    command = [sys.executable, "-m", *words, "--no-browser"]
+    process = subprocess.Popen(command, cwd=place, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        address = process.stdout.readline().strip()
+        assert address, process.stderr.read()
+        with urllib.request.urlopen(address + "scene.glb", timeout=20) as answer:
+            assert answer.read(4) == b"glTF"
+    finally:
+        process.terminate()
+        _, err = process.communicate(timeout=20)
+    assert process.returncode == 0, err
 
 
 def test_the_python_runs(tmp_path):

@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 import errno
 import os
+import re
+import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import IO, Any
 
@@ -15,6 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from eigenfield.errors import OutputError
 
+_NUMBER = re.compile(r"%0?\d{0,2}d")
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
@@ -54,6 +57,20 @@ def refuse_existing(path: Path, overwrite: bool) -> None:
         raise OutputError("not-writable", "its folder cannot be written to", path=path, remedy="name another place")
 
 
+def is_numbered(path: Path) -> bool:
+    """Whether a .png's name stands for many: it has a place for a number, `%04d` or `%d`."""
+    return path.suffix.lower() == ".png" and _NUMBER.search(path.name) is not None
+
+
+def numbered_files(path: Path, count: int) -> list[Path]:
+    """The files 0 to `count` - 1 of a numbered name."""
+
+    def numbered(index: int) -> str:
+        return _NUMBER.sub(lambda place: place[0] % index, path.name)
+
+    return [path.with_name(numbered(index)) for index in range(count)]
+
+
 @contextlib.contextmanager
 def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]:
     """A binary file that appears as `path` by rename, after fsync, when the block ends well; else nothing stays."""
@@ -77,6 +94,61 @@ def write_bytes(path: Path, data: bytes, *, overwrite: bool = False) -> None:
     """`data` as the file `path`, atomically."""
     with atomic_writer(path, overwrite=overwrite) as file:
         file.write(data)
+
+
+@contextlib.contextmanager
+def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[list[Path]]:
+    """Files of one folder that appear together by rename, in order, when the block ends well; else nothing stays.
+
+    Yields the places at which the block is to write them.
+    """
+    for target in targets:
+        refuse_existing(target, overwrite)
+    with mended(targets[0]):
+        part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=targets[0].absolute().parent))
+        old = part / "old"
+        places = [part / "new" / target.name for target in targets]
+        done: list[Path] = []
+        try:
+            (part / "new").mkdir()
+            old.mkdir()
+            yield places
+            flush_folder(part)
+            for place, target in zip(places, targets, strict=True):
+                if target.exists():
+                    _keep(target, old / target.name)
+                done.append(target)
+                place.replace(target)
+        except BaseException:
+            for target in done:
+                before = old / target.name
+                with contextlib.suppress(OSError):
+                    if before.exists():
+                        before.replace(target)
+                    else:
+                        target.unlink()
+            raise
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _keep(path: Path, copy: Path) -> None:
+    """A second name for a file; a copy where the file system knows no links."""
+    try:
+        os.link(path, copy)
+    except OSError:
+        shutil.copy2(path, copy)
+
+
+def flush_folder(folder: Path) -> None:
+    """Every file below `folder` onto the disk."""
+    for inside, _, files in os.walk(folder):
+        for name in files:
+            handle = os.open(Path(inside) / name, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
 
 
 def _umask() -> int:

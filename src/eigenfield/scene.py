@@ -98,6 +98,12 @@ class Scene:
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write a `.glb`; the options are those of `eigenfield.format.save` (codec, quality, overwrite)."""
-        from eigenfield.format import save  # a convenience for people: the one import that points upwards
+        from eigenfield.format import save  # a convenience for people: an import that points upwards
 
         save(self, Path(path), **options)
+
+    def _repr_html_(self) -> str:
+        """The viewer in a frame: how a notebook shows a scene."""
+        from eigenfield.viewer import scene_html  # as above
+
+        return scene_html(self)

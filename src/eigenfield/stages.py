@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.errors import OutputError
-from eigenfield.files import mended
+from eigenfield.files import flush_folder, mended
 
 log = logging.getLogger("eigenfield.stages")
 
@@ -32,7 +32,7 @@ def code_version() -> str:
     root = Path(__file__).parent
     digest = hashlib.sha256()
     for source in sorted(root.rglob("*.py")):
-        if source.relative_to(root).parts[0] not in ("cli", "demo", "evaluation", "rendering", "format"):
+        if source.relative_to(root).parts[0] not in ("cli", "demo", "evaluation", "rendering", "format", "viewer"):
             digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())
     return digest.hexdigest()
 
@@ -82,7 +82,7 @@ class Stages:
             try:
                 build(part)
                 part.chmod(0o755)
-                _flush(part)
+                flush_folder(part)
                 try:
                     part.replace(place)
                 except OSError:
@@ -126,13 +126,3 @@ def _lives(process: int) -> bool:
     except OSError:
         return True
     return True
-
-
-def _flush(folder: Path) -> None:
-    for inside, _, files in os.walk(folder):
-        for name in files:
-            handle = os.open(Path(inside) / name, os.O_RDONLY)
-            try:
-                os.fsync(handle)
-            finally:
-                os.close(handle)

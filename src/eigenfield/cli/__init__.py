@@ -22,6 +22,8 @@ VERBS = {
     "proxy": "Make a proxy mesh from photographs, and their cameras.",
     "encode": "Turn photographs into one .glb; cameras and proxy are estimated where they are not given.",
     "render": "Draw a viewpoint, a captured camera, or a fly-through.",
+    "view": "Look around in a scene, in a browser.",
+    "export": "Write a scene for other programs: a page, a film, OBJ, texture maps, a quilt, COLMAP.",
     "evaluate": "Measure a scene against its photographs.",
     "info": "Show what a scene file holds: bytes by part, settings, scores.",
     "validate": "Check a scene file and list every finding.",
@@ -52,6 +54,7 @@ Examples:
   eigenfield demo
   eigenfield encode photos/ --proxy mesh.ply -o scene.glb
   eigenfield render scene.glb --at 0.3,-0.2 -o view.png
+  eigenfield view scene.glb
   eigenfield evaluate scene.glb photos/""",
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 110},
 )

@@ -90,7 +90,7 @@ def _measure(path: Path, capture: LightField, output: Path, progress: Progress |
 
     note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
     scene = load(path)
-    figures = evaluate(scene, capture, path=path, png_maps="sample", progress=progress)
+    figures = evaluate(scene, capture, path=path, curve="sample", png_maps="sample", progress=progress)
     write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
     write_plots(figures, scene, capture, output / "plots", overwrite=True)
     store_scores(path, stored_scores(figures))
@@ -104,5 +104,6 @@ def _summary(path: Path, scene: Scene, figures: dict[str, Any], seconds: float) 
         f"{figures['ratio']['photographs']:.0f} times smaller than the photographs\n"
         f"re-drawn photographs {encoded['psnr']:.1f} dB, SSIM {encoded['ssim']:.3f}; "
         f"held out, between the cameras {held_out['psnr']:.1f} dB, SSIM {held_out['ssim']:.3f}\n"
-        f"look at {path.parent / 'plots' / 'contact-sheet.png'} and {path.parent / 'flight.mp4'}; {seconds:.0f} s"
+        f"look at {path.parent / 'plots' / 'contact-sheet.png'} and {path.parent / 'flight.mp4'}; {seconds:.0f} s\n"
+        f"look around in it: eigenfield view {path} {path.parent / 'capture'}"
     )

@@ -33,7 +33,14 @@ Examples:
 @click.argument("capture", type=click.Path(path_type=Path))
 @capture_options
 @click.option("--json", "as_json", is_flag=True, help="The figures as JSON on standard output, every camera's too.")
-@click.option("--curve", is_flag=True, help="The UV measure for every number of eigen textures up to the file's.")
+@click.option(
+    "--curve",
+    type=click.Choice(["all", "sample", "none"]),
+    is_flag=False,
+    flag_value="all",
+    default="none",
+    help="The UV measure for every number of eigen textures up to the file's: of all cameras, or of 16.",
+)
 @click.option(
     "--plots",
     type=click.Path(path_type=Path),
@@ -81,7 +88,7 @@ def command(
     grid: tuple[int, int] | None,
     frame: str | None,
     as_json: bool,
-    curve: bool,
+    curve: str,
     plots: Path | None,
     overwrite: bool,
     store: bool,

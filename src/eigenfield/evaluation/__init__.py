@@ -2,7 +2,7 @@
 
 from eigenfield.evaluation.exclusion import Circle, read_circles
 from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
-from eigenfield.evaluation.session import with_scene_cameras
+from eigenfield.evaluation.session import match_photographs, with_scene_cameras
 from eigenfield.evaluation.uv import reconstructions
 from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, ssim
 
@@ -11,6 +11,7 @@ __all__ = [
     "SCHEMA",
     "Circle",
     "evaluate",
+    "match_photographs",
     "psnr",
     "psnr_luma",
     "read_circles",

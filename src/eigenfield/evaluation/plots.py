@@ -108,7 +108,7 @@ def curve_figure(figures: Mapping[str, Any]) -> Figure:
         axes.plot(count, values, color=colour, marker="o" if len(count) <= 40 else None, markersize=4, linewidth=1.8)
         axes.set_xlabel("eigen textures")
         axes.set_title(f"{label.format(values[-1])} with all {count[-1]}", fontsize=11, loc="left")
-        axes.set_ylabel(f"{label.split()[0]} of the texture maps, mean over cameras")
+        axes.set_ylabel(f"{label.split()[0]} of the texture maps, mean over {points[-1]['cameras']} cameras")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
         _quiet(axes)
     return figure

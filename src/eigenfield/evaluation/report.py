@@ -25,7 +25,7 @@ def evaluate(
     capture: LightField,
     *,
     path: str | os.PathLike[str] | None = None,
-    curve: bool = False,
+    curve: str = "none",
     textures: int | None = None,
     filter: str = "bicubic",
     weights: str = "delaunay",
@@ -35,10 +35,11 @@ def evaluate(
 ) -> dict[str, Any]:
     """Measure a scene against its photographs; docs/measures.md defines every figure. The result is ready for JSON.
 
-    path: the scene's file, for `bytes` and `ratio`; both are None without it. curve: the UV measure for every number of
-    textures. textures: use only the first so many. filter: "bicubic" or "bilinear", for drawing. weights: view weights
-    of held-out cameras, "delaunay", "nearest3" or "bilinear". circles: by camera, left out of the figures under
-    `outside` (see `read_circles`). png_maps: "all", "sample" (16 maps, scaled up) or "none": the texture maps as PNG.
+    path: the scene's file, for `bytes` and `ratio`; both are None without it. curve: "all" cameras or a "sample" of 16:
+    the UV measure for every number of textures; "none": not. textures: use only the first so many. filter: "bicubic" or
+    "bilinear", for drawing. weights: view weights of held-out cameras, "delaunay", "nearest3" or "bilinear". circles:
+    by camera, left out of the figures under `outside` (see `read_circles`). png_maps: "all", "sample" (16 maps, scaled
+    up) or "none": the texture maps as PNG.
 
     Raises CaptureError `no-photographs` when no photograph has the name of a camera, `photograph-size`, and what
     reading photographs raises; OptionError `png-maps`, `textures`, `not-photographs`, `settings-unknown`.
@@ -69,15 +70,16 @@ def evaluate(
         "missing": [name for index, name in enumerate(scene.names) if index not in session.photographs],
         "cameras": [_camera(session, index, result) for index, result in results.items()],
     }
-    if curve:
+    if curve != "none":
         figures["curve"] = [
             {
                 "textures": count,
                 "uv_ssim": point["ssim"] if point else None,
                 "uv_psnr": point["psnr"] if point else None,
+                "cameras": len(session.curved),
             }
             for at, count in enumerate(session.counts)
-            for point in [_uv(session, results, at)]
+            for point in [_uv(session, {index: results[index] for index in session.curved}, at)]
         ]
     figures["seconds"] = time.monotonic() - started
     return _rounded(figures)

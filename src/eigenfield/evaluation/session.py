@@ -23,9 +23,9 @@ from eigenfield.texturing import FILTERS, Atlas, harmonised, make_atlas, texture
 log = logging.getLogger("eigenfield.evaluation")
 
 LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
-PNG_MAPS = ("all", "sample", "none")
+PNG_MAPS = CURVES = ("all", "sample", "none")
 WHOLE = 0.999  # of a pixel's samples
-SAMPLE = 16  # maps that `sample` packs
+SAMPLE = 16  # cameras that `sample` takes
 SAME_CAMERA = 0.5  # pixels by which two calibrations may differ without a warning
 
 
@@ -44,6 +44,7 @@ class Session:
 
     photographs: index of a scene's camera to the index of its view in the capture.
     counts: numbers of eigen textures for the UV measure, rising; the last is the one that pictures are drawn with.
+    curved: indices of the cameras that are measured with all of `counts`, the others with the last alone.
     reference: the texture map and visibility that maps are aligned to, None without alignment.
     packed: indices of cameras whose filled maps are written as PNG.
     """
@@ -53,6 +54,7 @@ class Session:
     photographs: Mapping[int, int]
     renderer: Renderer
     counts: Sequence[int]
+    curved: frozenset[int]
     filter: str
     weights: str
     resampling: str
@@ -113,9 +115,8 @@ class Session:
         if self.atlas is not None and not self.scene.held_out[index]:
             values, seen = self.texture(index, photograph)
             row = int(np.searchsorted(self.scene.encoded, index))
-            texture = measure_map(
-                self.scene.planes[0], row, self.atlas, values, seen, self.counts, index in self.packed
-            )
+            counts = self.counts if index in self.curved else self.counts[-1:]
+            texture = measure_map(self.scene.planes[0], row, self.atlas, values, seen, counts, index in self.packed)
         return Measured(figures, outside, texture)
 
 
@@ -123,7 +124,7 @@ def start_session(
     scene: Scene,
     capture: LightField,
     *,
-    curve: bool = False,
+    curve: str = "none",
     textures: int | None = None,
     filter: str = "bicubic",
     weights: str = "delaunay",
@@ -133,27 +134,30 @@ def start_session(
     """Check that scene and photographs belong together, and prepare what all cameras share. See `evaluate`."""
     if png_maps not in PNG_MAPS:
         raise OptionError("png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAPS)}")
+    if curve not in CURVES:
+        raise OptionError("curve", f"no cameras of a curve are called {curve}", remedy=f"use {', '.join(CURVES)}")
     if len(scene.planes) != 1 or scene.planes[0].mean.shape[2] != 3:
         raise OptionError(
             "not-photographs",
             "the scene is not of photographs (one plane of R, G, B)",
             remedy="evaluate those that are",
         )
-    photographs = _match(scene, capture)
+    photographs = match_photographs(scene, capture)
     resampling, align = _recorded(scene)
     encoded = [int(index) for index in scene.encoded if int(index) in photographs]
     if align is not None and scene.reference not in photographs:
         log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])
         encoded = []
     height, width = scene.planes[0].mean.shape[:2]
-    packed = {"all": encoded, "sample": _spread(encoded, SAMPLE), "none": []}[png_maps]
+    some = {"all": encoded, "sample": _spread(encoded, SAMPLE), "none": []}
     count = _count(scene, textures)
     session = Session(
         scene=scene,
         capture=capture,
         photographs=photographs,
         renderer=Renderer(scene),
-        counts=tuple(range(count + 1)) if curve else (count,),
+        counts=(count,) if curve == "none" else tuple(range(count + 1)),
+        curved=frozenset(some[curve]),
         filter=filter,
         weights=weights,
         resampling=resampling,
@@ -161,7 +165,7 @@ def start_session(
         atlas=make_atlas(scene.mesh, width, height) if encoded else None,
         reference=None,
         circles=circles,
-        packed=frozenset(packed),
+        packed=frozenset(some[png_maps]),
     )
     if align is None or not encoded:
         return session
@@ -214,8 +218,8 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
     )
 
 
-def _match(scene: Scene, capture: LightField) -> dict[int, int]:
-    """Scene camera to view of the capture, by name."""
+def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
+    """Scene camera to view of the capture, by name; CaptureError `no-photographs` where no name fits."""
     views = {view.name: index for index, view in enumerate(capture.views)}
     photographs = {index: views[name] for index, name in enumerate(scene.names) if name in views}
     if not photographs:

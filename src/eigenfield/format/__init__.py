@@ -4,7 +4,18 @@ from __future__ import annotations
 
 from eigenfield.format.contents import describe, parts, store_scores
 from eigenfield.format.findings import Finding
-from eigenfield.format.read import load, validate
+from eigenfield.format.read import file_bytes, load, outline, validate
 from eigenfield.format.write import encode_scene, save
 
-__all__ = ["Finding", "describe", "encode_scene", "load", "parts", "save", "store_scores", "validate"]
+__all__ = [
+    "Finding",
+    "describe",
+    "encode_scene",
+    "file_bytes",
+    "load",
+    "outline",
+    "parts",
+    "save",
+    "store_scores",
+    "validate",
+]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import weakref
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +20,8 @@ from eigenfield.format.layout import BasisLayout, Layout, Picture, PlaneLayout, 
 from eigenfield.format.quantise import mean_values
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane, Scene
+
+_bytes: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # of scenes that came from a file
 
 
 @contextlib.contextmanager
@@ -37,7 +40,11 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 def open_layout(path: Path) -> tuple[Document, Layout]:
     """Container and checked layout, pictures not decoded. Raises FormatError."""
-    document = Document(parse_glb(read_file(path)))
+    return _layout_of(read_file(path))
+
+
+def _layout_of(data: bytes) -> tuple[Document, Layout]:
+    document = Document(parse_glb(data))
     layout = read_layout(document, Findings(strict=True))
     assert layout is not None
     return document, layout
@@ -49,25 +56,46 @@ def load(path: str | os.PathLike[str]) -> Scene:
     Raises FormatError (a stable `code`, and `where`) for anything that is not as docs/format.md says; limits are
     checked before memory is taken. Never another exception for what is in the file.
     """
+    return _read(path, pictures=True)
+
+
+def outline(path: str | os.PathLike[str]) -> Scene:
+    """A scene without its planes: checked as `load` does, but no picture is decoded. Raises FormatError."""
+    return _read(path, pictures=False)
+
+
+def file_bytes(scene: Scene) -> bytes | None:
+    """The bytes of the file that `scene` was read from, as they were then; None if it came from no file."""
+    return _bytes.get(scene)
+
+
+def _read(path: str | os.PathLike[str], pictures: bool) -> Scene:
     with naming(path):
-        _, layout = open_layout(Path(path))
-        planes = tuple(_decode_plane(plane) for plane in layout.planes or ())
-        assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
-        assert layout.triangles is not None and layout.reference is not None
-        return Scene(
-            mesh=layout.mesh,
-            planes=planes,
-            names=layout.cameras.names,
-            cameras=layout.cameras.cameras,
-            held_out=layout.cameras.held_out,
-            reference=layout.reference,
-            view_plane=layout.view_plane,
-            triangles=layout.triangles,
-            settings=layout.settings,
-            scores=layout.scores,
-            generator=layout.generator,
-            colours=layout.cameras.colours,
-        )
+        data = read_file(Path(path))
+        _, layout = _layout_of(data)
+        planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
+        scene = _scene(layout, planes)
+    _bytes[scene] = data
+    return scene
+
+
+def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
+    assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
+    assert layout.triangles is not None and layout.reference is not None
+    return Scene(
+        mesh=layout.mesh,
+        planes=planes,
+        names=layout.cameras.names,
+        cameras=layout.cameras.cameras,
+        held_out=layout.cameras.held_out,
+        reference=layout.reference,
+        view_plane=layout.view_plane,
+        triangles=layout.triangles,
+        settings=layout.settings,
+        scores=layout.scores,
+        generator=layout.generator,
+        colours=layout.cameras.colours,
+    )
 
 
 def _decode_plane(plane: PlaneLayout) -> Plane:

@@ -1,10 +1,11 @@
-"""Viewpoints into pictures: view weights, novel cameras, and the software renderer."""
+"""Viewpoints into pictures: view weights, novel cameras, the software renderer and the OpenGL one."""
 
 from __future__ import annotations
 
 from eigenfield.rendering.colours import camera_colour
 from eigenfield.rendering.drawing import FILTERS
 from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.opengl import OpenGLRenderer
 from eigenfield.rendering.paths import PATHS, path_points
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.renderer import (
@@ -17,15 +18,19 @@ from eigenfield.rendering.renderer import (
     viewpoint,
     viewpoint_colour,
 )
+from eigenfield.rendering.shots import Shots
 from eigenfield.rendering.video import write_video
+from eigenfield.rendering.weight_map import weight_map
 from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights
 
 __all__ = [
     "FILTERS",
     "MODES",
     "PATHS",
+    "OpenGLRenderer",
     "Picture",
     "Renderer",
+    "Shots",
     "at_resolution",
     "camera_colour",
     "camera_index",
@@ -39,5 +44,6 @@ __all__ = [
     "view_weights",
     "viewpoint",
     "viewpoint_colour",
+    "weight_map",
     "write_video",
 ]

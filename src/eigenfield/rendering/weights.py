@@ -110,28 +110,38 @@ def _delaunay(
     if inside[best].min() >= 0:
         weights[triangles[best]] = inside[best]
         return weights
-    return _on_segments(point, places, _hull(triangles))
+    return _on_segments(point, places, hull(triangles))
 
 
-def _hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+def hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
     """(E, 2) edges that belong to one triangle only."""
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     unique, count = np.unique(edges, axis=0, return_counts=True)
     return unique[count == 1]
 
 
+def nearest_on_segments(
+    points: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Of (n, 2) points the nearest of (E, 2) segments between places, (n,), the first where two are as near, and how
+    far along it the nearest point is, (n,) in 0..1."""
+    start, along = places[segments[:, 0]], places[segments[:, 1]] - places[segments[:, 0]]
+    length = (along**2).sum(axis=1)
+    away = points[:, None] - start
+    part = np.divide((away * along).sum(axis=2), length, out=np.zeros(away.shape[:2]), where=length > 0)
+    part = np.clip(part, 0.0, 1.0)
+    nearest = np.argmin(((part[..., None] * along - away) ** 2).sum(axis=2), axis=1)
+    return nearest, part[np.arange(len(points)), nearest]
+
+
 def _on_segments(
     point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]
 ) -> NDArray[np.float64]:
-    """Linear weights on the nearest point of (E, 2) segments; ties go to the first."""
-    start, along = places[segments[:, 0]], places[segments[:, 1]] - places[segments[:, 0]]
-    length = (along**2).sum(axis=1)
-    part = np.divide(((point - start) * along).sum(axis=1), length, out=np.zeros(len(length)), where=length > 0)
-    part = np.clip(part, 0.0, 1.0)
-    nearest = int(np.argmin(((start + part[:, None] * along - point) ** 2).sum(axis=1)))
+    """Linear weights on the nearest point of (E, 2) segments."""
+    nearest, part = nearest_on_segments(point[None], places, segments)
     weights = np.zeros(len(places))
-    weights[segments[nearest, 0]] = 1.0 - part[nearest]
-    weights[segments[nearest, 1]] += part[nearest]
+    weights[segments[nearest[0], 0]] = 1.0 - part[0]
+    weights[segments[nearest[0], 1]] += part[0]
     return weights
 
 

@@ -1,0 +1,77 @@
+"""Options of the verbs that draw: how a picture is drawn, and how a film runs."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any, TypeVar
+
+import click
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+DEFAULT_FRAMES, DEFAULT_FPS = 120, "30"
+
+
+def picture_options(function: F) -> F:
+    """Add --resolution, --background, --weights, --filter, --textures, --samples, --renderer, as `Shots` takes them."""
+    options = [
+        click.option("--resolution", callback=_size, metavar="WxH", help="Size in pixels.  [default: the camera's]"),
+        click.option("--background", callback=_colour, default="#000000", show_default=True, metavar="COLOUR",
+                     help="'#rrggbb', or transparent, where the proxy does not reach."),
+        click.option("--weights", default="delaunay", show_default=True, metavar="delaunay|nearest3|bilinear",
+                     help="How cameras near the viewpoint are mixed."),
+        click.option("--filter", default="bicubic", show_default=True, metavar="bicubic|bilinear",
+                     help="Texel filter; with OpenGL also mixed."),
+        click.option("--textures", "-n", type=int, metavar="N", help="Eigen textures to sum.  [default: all]"),
+        click.option("--samples", type=int, metavar="K",
+                     help="K x K samples a pixel.  [default: as the density asks for]"),
+        click.option("--renderer", default="software", show_default=True, metavar="software|opengl",
+                     help="opengl: on the GPU, without a window; needs `pip install 'eigenfield[gpu]'`."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def flight_options(function: F) -> F:
+    """Add --path, --frames and --fps."""
+    options = [
+        click.option("--path", "path", metavar="circle|spiral|grid", help="A fly-through."),
+        click.option("--frames", type=int, metavar="N", help=f"Pictures of a path.  [default: {DEFAULT_FRAMES}]"),
+        click.option("--fps", callback=_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
+                     help="Pictures a second."),
+    ]  # fmt: skip
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def _size(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+    if value is None:
+        return None
+    try:
+        width, height = (int(part) for part in value.lower().split("x"))
+    except ValueError:
+        raise click.BadParameter("WIDTHxHEIGHT in pixels: 1024x768") from None
+    return width, height
+
+
+def _colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
+    if value == "transparent":
+        return None
+    if not re.fullmatch(r"#?[0-9a-fA-F]{6}", value):
+        raise click.BadParameter("a colour as '#rrggbb', or transparent")
+    digits = value.removeprefix("#")
+    return tuple(int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
+
+
+def _rate(context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
+    try:
+        rate = Fraction(value).limit_denominator(1001)
+    except (ValueError, ZeroDivisionError):
+        raise click.BadParameter("pictures a second: 30, 24000/1001") from None
+    if not 0 < rate <= 1000:
+        raise click.BadParameter("more than 0 and at most 1000 pictures a second")
+    return rate

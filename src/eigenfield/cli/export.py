@@ -1,0 +1,225 @@
+"""`eigenfield export`."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+from click.core import ParameterSource
+
+from eigenfield.cli.common import common_options, note, progress_bars
+from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options
+from eigenfield.errors import OptionError
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from eigenfield.progress import Progress
+    from eigenfield.rendering import Shots
+    from eigenfield.scene import Scene
+
+PICTURE = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
+OPTIONS = {  # what each kind takes, beside the options of all
+    "html": {"title", "metres_per_unit"},
+    "mp4": PICTURE | {"path", "frames", "fps"},
+    "png": PICTURE | {"path", "frames"},
+    "obj": {"textures"},
+    "maps": {"textures"},
+    "quilt": PICTURE | {"quilt", "spread"},
+    "colmap": PICTURE | {"path", "frames"},
+}
+ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "quilt": (".png",)}
+NO_FOLDER = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
+QUILT = re.compile(r"_qs\d+x\d+a[\d.]+$")
+PATH = "circle"  # where none is asked for
+
+
+def _grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+    if value is None:
+        return None
+    match = re.fullmatch(r"(\d{1,4})[xX×](\d{1,4})", value)
+    if match is None:
+        raise click.BadParameter("COLUMNSxROWS: 8x6")
+    return int(match[1]), int(match[2])
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eigenfield export scene.glb -o scene.html
+  eigenfield export scene.glb -o flight.mp4 --path spiral --frames 240
+  eigenfield export scene.glb -o 'frames/%04d.png' --background transparent
+  eigenfield export scene.glb -o mesh.obj
+  eigenfield export scene.glb -o textures --as obj
+  eigenfield export scene.glb -o maps --as maps
+  eigenfield export scene.glb -o quilt.png --as quilt --resolution 420x560
+  eigenfield export scene.glb -o capture --as colmap"""
+)
+@click.argument("scene", type=click.Path(path_type=Path))
+@click.option(
+    "--output",
+    "-o",
+    required=True,
+    type=click.Path(path_type=Path),
+    metavar="PATH",
+    help="A file or a folder; a file's ending says what is made, if --as does not.",
+)
+@click.option("--as", "kind", type=click.Choice(list(OPTIONS)), help="What is made.")
+@click.option("--title", metavar="TEXT", help="Of the page (html).  [default: the output's name]")
+@click.option(
+    "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture, for headsets (html)."
+)
+@click.option("--quilt", callback=_grid, metavar="CxR", help="Columns and rows of views (quilt).  [default: 8x6]")
+@click.option(
+    "--spread",
+    type=float,
+    default=1.0,
+    show_default=True,
+    metavar="0..1",
+    help="Part of the array's width that the views span (quilt).",
+)
+@flight_options
+@picture_options
+@click.option("--overwrite", is_flag=True, help="Replace existing files, and folders that an export wrote.")
+@common_options
+def command(
+    scene: Path, output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any
+) -> None:  # fmt: skip
+    """Write SCENE for other programs.
+
+    \b
+    html    one page with viewer and scene, which opens by double click
+    mp4     a fly-through (--path, else a circle)
+    png     its single pictures, where the output's name has %04d
+    obj     NAME.obj with the mean as its texture; into a folder: with the eigen textures
+    maps    a texture map for each encoded camera, in a folder
+    quilt   the views side by side for a Looking Glass display, a .png
+    colmap  re-drawn photographs with a COLMAP model, in a folder
+    """
+    from eigenfield.files import is_numbered
+
+    chosen = _kind(output, kind, is_numbered(output))
+    source = click.get_current_context().get_parameter_source
+    given = {name for name in options if source(name) is ParameterSource.COMMANDLINE}
+    _check(chosen, output, given, options)
+    from eigenfield.format import load
+    from eigenfield.rendering import Shots, path_points
+
+    points = None
+    if chosen in ("mp4", "png") or "path" in given:
+        frames = DEFAULT_FRAMES if options["frames"] is None else options["frames"]
+        points = path_points(options["path"] or PATH, frames)
+    _refuse(chosen, output, points, overwrite)
+    shots = Shots(load(scene), *(options[name] for name in
+                  ("resolution", "background", "weights", "filter", "textures", "samples", "renderer")))  # fmt: skip
+    with progress_bars(quiet) as progress:
+        made = _write(chosen, shots, points, output, options, overwrite, progress)
+    note(f"wrote {made}", quiet)
+
+
+def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
+    """What may not be written, before any work; a quilt's name is known only with its scene."""
+    from eigenfield.files import refuse_existing
+    from eigenfield.rendering.flight import refuse_flight
+    from eigenfield.viewer import exports
+
+    if kind in ("mp4", "png"):
+        assert points is not None
+        refuse_flight(output, len(points), overwrite)
+    elif kind == "html":
+        refuse_existing(output, overwrite)
+    elif _is_obj(output):
+        exports.refuse_obj(output, overwrite)
+    elif kind != "quilt":
+        exports.refuse_folder(output, overwrite)
+
+
+def _write(
+    kind: str, shots: Shots, points: NDArray[np.float64] | None, output: Path, options: dict[str, Any],
+    overwrite: bool, progress: Progress | None,
+) -> str:  # fmt: skip
+    """Make it; what was written, in words."""
+    from eigenfield.rendering.flight import write_flight
+    from eigenfield.viewer import exports
+
+    scene: Scene = shots.scene
+    how: dict[str, Any] = {"overwrite": overwrite}
+    if kind == "html":
+        exports.write_page(scene, output, title=options["title"], metres_per_unit=options["metres_per_unit"], **how)
+        return f"{output}: {output.stat().st_size / 1e6:.1f} MB"
+    if kind in ("mp4", "png"):
+        assert points is not None
+        write_flight(shots, points, output, options["fps"], progress=progress, **how)
+        return f"{output}: {len(points)} pictures"
+    if _is_obj(output):
+        exports.write_obj(scene, output, **how)
+        return f"{output}, its material and the mean; a folder with --as obj holds the eigen textures too"
+    if kind == "obj":
+        exports.write_obj_folder(scene, output, textures=options["textures"], progress=progress, **how)
+        return f"{output}: mesh, mean and eigen textures"
+    if kind == "maps":
+        exports.write_maps(scene, output, textures=options["textures"], progress=progress, **how)
+        return f"{output}: {len(scene.encoded)} texture maps"
+    if kind == "quilt":
+        quilt = exports.quilt_of(scene, options["quilt"], options["resolution"], options["spread"])
+        path = exports.write_quilt(shots, quilt, output, progress=progress, **how)
+        return f"{path}: {quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
+    exports.write_colmap(shots, output, points=points, progress=progress, **how)
+    return f"{output}: {len(scene.names) if points is None else len(points)} pictures and a COLMAP model"
+
+
+def _is_obj(output: Path) -> bool:
+    return output.suffix.lower() == ".obj"
+
+
+def _kind(output: Path, kind: str | None, numbered: bool) -> str:
+    """What is to be made: as asked for, else as the output's name says."""
+    ending = output.suffix.lower()
+    if kind is None:
+        if ending == ".png" and not numbered and not QUILT.search(output.stem):
+            raise OptionError(
+                "output-kind",
+                f"{output}: one .png may be many things",
+                remedy="put %04d into its name for the pictures of a path, or say --as quilt; "
+                "`eigenfield render` draws one view",
+            )
+        by_ending = {".html": "html", ".htm": "html", ".mp4": "mp4", ".obj": "obj",
+                     ".png": "png" if numbered else "quilt"}  # fmt: skip
+        if ending not in by_ending:
+            raise OptionError(
+                "output-kind",
+                f"{output}: the name does not tell what to write",
+                remedy=f"say --as {', '.join(list(OPTIONS)[:-1])} or {list(OPTIONS)[-1]}",
+            )
+        return by_ending[ending]
+    if kind in ENDINGS and ending not in ENDINGS[kind]:
+        raise OptionError("output-kind", f"{output}: {kind} is a file", remedy=f"name it {ENDINGS[kind][0]}")
+    if kind == "png" and not numbered:
+        raise OptionError("output-kind", f"{output}: a path makes many pictures", remedy="put %04d into its name")
+    if kind == "quilt" and numbered:
+        raise OptionError("output-kind", f"{output}: a quilt is one picture", remedy="leave the number out of its name")
+    if kind not in ENDINGS and (ending in NO_FOLDER or (ending == ".obj" and kind != "obj")):
+        raise OptionError("output-kind", f"{output}: {kind} is a folder", remedy="name one")
+    return kind
+
+
+def _check(kind: str, output: Path, given: set[str], options: dict[str, Any]) -> None:
+    """Refuse options that the kind does not take, before anything is read."""
+    for name in options:
+        if name in given - OPTIONS[kind]:
+            raise OptionError("unused-option", f"--{name.replace('_', '-')} is not for {kind}", remedy="leave it out")
+    if _is_obj(output) and "textures" in given:
+        raise OptionError(
+            "unused-option", f"{output} has the mean alone", remedy="leave out --textures, or name a folder"
+        )
+    if kind == "colmap" and "frames" in given and "path" not in given:
+        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
+    if kind == "mp4" and options["background"] is None:
+        raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
+    scale = options["metres_per_unit"]
+    if scale is not None and not (math.isfinite(scale) and scale > 0):
+        raise OptionError("metres-per-unit", f"{scale:g} metres in a unit", remedy="give a number above 0")

@@ -1,0 +1,123 @@
+"""`eigenfield view`: look around in a scene, in a browser."""
+
+from __future__ import annotations
+
+import math
+import threading
+import webbrowser
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from eigenfield.cli.common import capture_options, common_options, note
+from eigenfield.errors import FormatError, OptionError
+
+if TYPE_CHECKING:
+    from eigenfield.scene import Scene
+    from eigenfield.viewer import Photographs, Server
+
+
+@click.command(
+    epilog="""\b
+Examples:
+  eigenfield view scene.glb
+  eigenfield view scene.glb capture/
+  eigenfield view scene.glb --no-browser --port 8000"""
+)
+@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("capture", type=click.Path(path_type=Path), required=False)
+@capture_options
+@click.option(
+    "--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Port.  [default: one that is free]"
+)
+@click.option(
+    "--host",
+    default="127.0.0.1",
+    show_default=True,
+    metavar="ADDRESS",
+    help="Address to listen on. Any other lets the network see the scene; headsets want it by `adb reverse` instead, "
+    "as browsers allow VR on localhost and https only.",
+)
+@click.option("--no-browser", is_flag=True, help="Print the address only.")
+@click.option("--metres-per-unit", type=float, metavar="F", help="Metres in one unit of the capture, for VR.")
+@common_options
+def command(
+    scene: Path,
+    capture: Path | None,
+    calibration: Path | None,
+    masks: Path | None,
+    format: str | None,
+    grid: tuple[int, int] | None,
+    frame: str | None,
+    port: int,
+    host: str,
+    no_browser: bool,
+    metres_per_unit: float | None,
+    quiet: bool,
+) -> None:
+    """Look around in SCENE, in a browser, beside the photographs of CAPTURE if it is given.
+
+    The address goes to standard output. Nobody but this machine can open it, and nothing is fetched from elsewhere.
+    Ctrl-C ends it, with exit code 0.
+    """
+    if metres_per_unit is not None and not (math.isfinite(metres_per_unit) and metres_per_unit > 0):
+        raise OptionError("metres", f"--metres-per-unit {metres_per_unit:g} is no length", remedy="say one above 0")
+    from eigenfield.format import file_bytes, outline
+    from eigenfield.viewer import Server, make_manifest
+
+    options = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
+    try:
+        loaded = outline(scene)
+    except FormatError as error:
+        if error.code != "not-a-scene" or capture is not None:
+            raise
+        note(f"{scene} has no eigen textures: it is shown as the plain glTF file that it is", quiet)
+        glb, photographs = scene.read_bytes(), None
+    else:
+        glb, photographs = file_bytes(loaded) or b"", _photographs(loaded, capture, options, quiet)
+    manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
+    with Server(manifest, host, port) as server:
+        try:
+            _announce(server, quiet)
+            if not no_browser and not webbrowser.open(server.address):
+                note("no browser was found: open the address in one", quiet)
+            _wait()
+        except KeyboardInterrupt:
+            note("stopped", quiet)
+
+
+def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any], quiet: bool) -> Photographs | None:
+    if capture is None:
+        given = [name for name, value in options.items() if value is not None]
+        if given:
+            raise OptionError(
+                "no-capture", f"--{given[0]} is for a capture, and none is named", remedy="name it behind the scene"
+            )
+        return None
+    from eigenfield.capture import PhotoSet, open_any
+    from eigenfield.evaluation import match_photographs, with_scene_cameras
+    from eigenfield.viewer import Photographs
+
+    opened = open_any(capture, **options)
+    light_field = with_scene_cameras(scene, opened) if isinstance(opened, PhotoSet) else opened
+    photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
+    missing = len(scene.names) - len(photographs.names)
+    if missing:
+        note(f"{missing} of {len(scene.names)} cameras have no photograph in {capture}", quiet)
+    return photographs
+
+
+def _announce(server: Server, quiet: bool) -> None:
+    click.echo(server.address)
+    if server.is_public:
+        note(f"listening on {server.host}: anyone on the network can see the scene", quiet)
+    note("Ctrl-C ends it", quiet)
+
+
+def _wait() -> None:
+    """Until Ctrl-C, or SIGTERM, which main turns into the same."""
+    forever = threading.Event()
+    while not forever.wait(1.0):  # in steps: on Windows a wait without end cannot be interrupted
+        pass

@@ -1,0 +1,29 @@
+"""A scene for other programs: a page, a film, a mesh with textures, texture maps, a quilt, photographs with a model.
+
+Each kind is a file. What is written is whole or absent; existing files stay unless `overwrite` says otherwise.
+"""
+
+from __future__ import annotations
+
+from eigenfield.viewer.exports.colmap import write_colmap
+from eigenfield.viewer.exports.folder import refuse_folder
+from eigenfield.viewer.exports.maps import write_maps
+from eigenfield.viewer.exports.names import file_names
+from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
+from eigenfield.viewer.exports.page import write_page
+from eigenfield.viewer.exports.quilt import Quilt, quilt_file, quilt_of, write_quilt
+
+__all__ = [
+    "Quilt",
+    "file_names",
+    "quilt_file",
+    "quilt_of",
+    "refuse_folder",
+    "refuse_obj",
+    "write_colmap",
+    "write_maps",
+    "write_obj",
+    "write_obj_folder",
+    "write_page",
+    "write_quilt",
+]

@@ -1,0 +1,164 @@
+"""A quilt for Looking Glass displays: the views from left to right as the tiles of one picture.
+
+The first view, the leftmost, is the tile at the bottom left; tiles go to the right, then up. The file's name tells a
+player how to cut it: `_qs8x6a0.75` is 8 columns of 6 rows whose views are shown 0.75 as wide as high.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.errors import OptionError
+from eigenfield.files import write_bytes
+from eigenfield.progress import Progress, track
+from eigenfield.raster import rasterise_view
+from eigenfield.rendering import Shots, at_resolution, novel_camera, view_weights
+from eigenfield.rendering.shots import png
+from eigenfield.scene import Scene
+
+COLUMNS, ROWS = 8, 6
+SIDE = 4096  # pixels of a quilt that every player takes; views are made smaller than the cameras' to keep to it
+LARGEST = 16384
+MOST = 64  # columns, and rows
+SIDEWAYS = 0.7  # cosine between the array's X and the cameras' own x axis
+SUFFIX = re.compile(r"_qs([1-9]\d?)x([1-9]\d?)a(\d+(?:\.\d+)?)$")
+
+
+@dataclass(frozen=True)
+class Quilt:
+    """columns, rows: tiles. width, height: of a view, in pixels. spread: the part of the array's width, 0..1."""
+
+    columns: int
+    rows: int
+    width: int
+    height: int
+    spread: float = 1.0
+
+    @property
+    def suffix(self) -> str:
+        return f"_qs{self.columns}x{self.rows}a{self.width / self.height:.4g}"
+
+
+def quilt_of(
+    scene: Scene,
+    grid: tuple[int, int] | None = None,
+    resolution: tuple[int, int] | None = None,
+    spread: float = 1.0,
+) -> Quilt:
+    """A quilt of `grid` (columns, rows), 8 x 6 if None, and views of `resolution` (width, height): the reference
+    camera's shape if None, no larger than it is and so that the quilt has at most 4096 pixels a side.
+
+    Raises OptionError (`quilt`, `spread`).
+    """
+    columns, rows = grid or (COLUMNS, ROWS)
+    if not (1 <= columns <= MOST and 1 <= rows <= MOST):
+        raise OptionError("quilt", f"a quilt of {columns}x{rows}", remedy=f"ask for 1x1 to {MOST}x{MOST}")
+    if not 0 <= spread <= 1:
+        raise OptionError("spread", f"a spread of {spread:g}", remedy="give 0 (one place) to 1 (the array's width)")
+    camera = scene.cameras[scene.reference]
+    scale = min(1.0, SIDE / (columns * camera.width), SIDE / (rows * camera.height))
+    width, height = resolution or (max(1, int(camera.width * scale)), max(1, int(camera.height * scale)))
+    if width < 1 or height < 1 or columns * width > LARGEST or rows * height > LARGEST:
+        raise OptionError(
+            "quilt",
+            f"{columns}x{rows} views of {width}x{height}",
+            remedy=f"keep the quilt within {LARGEST}x{LARGEST} pixels",
+        )
+    return Quilt(columns, rows, width, height, spread)
+
+
+def quilt_file(output: Path, quilt: Quilt) -> Path:
+    """`output` with the quilt's suffix; one that it has already must be right. Raises OptionError `quilt-name`."""
+    said = SUFFIX.search(output.stem)
+    if said is None:
+        return output.with_name(f"{output.stem}{quilt.suffix}{output.suffix}")
+    aspect = quilt.width / quilt.height
+    if (int(said[1]), int(said[2])) != (quilt.columns, quilt.rows) or abs(float(said[3]) - aspect) > 0.01 * aspect:
+        raise OptionError(
+            "quilt-name",
+            f"{output.name} is not what is made: {quilt.suffix}",
+            remedy="leave the suffix out, or give the --quilt and --resolution that it says",
+        )
+    return output
+
+
+def write_quilt(
+    shots: Shots, quilt: Quilt, output: Path, *, overwrite: bool = False, progress: Progress | None = None
+) -> Path:
+    """Draw and write the quilt as .png; returns the file's path, which has the suffix.
+
+    Raises OutputError, OptionError (`quilt-array`, `quilt-name`, and as `Renderer.draw`).
+    """
+    path = quilt_file(output, quilt)
+    views = quilt_views(shots, quilt)
+    plain = replace(shots, resolution=None)
+    drawn = plain.each(lambda view: plain.pixels(*view), views)
+    whole: NDArray[np.uint8] | None = None
+    for number, tile in enumerate(track(drawn, "views", len(views), progress)):
+        if whole is None:
+            whole = np.zeros((quilt.rows * quilt.height, quilt.columns * quilt.width, tile.shape[2]), np.uint8)
+        row, column = divmod(number, quilt.columns)
+        top, left = (quilt.rows - 1 - row) * quilt.height, column * quilt.width
+        whole[top : top + quilt.height, left : left + quilt.width] = tile
+    assert whole is not None
+    write_bytes(path, png(whole), overwrite=overwrite)
+    return path
+
+
+def quilt_views(shots: Shots, quilt: Quilt) -> list[tuple[Camera, NDArray[np.float64]]]:
+    """The quilt's cameras and their view weights, from left to right along the middle of the array.
+
+    All look the same way, with their x axis along the array's X; principal points are shifted so that what lies in the
+    middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
+    plane of the display. Raises OptionError `quilt-array` where the cameras do not stand side by side.
+    """
+    scene, plane = shots.scene, shots.scene.view_plane
+    base = at_resolution(novel_camera(scene, (0.0, 0.0)), (quilt.width, quilt.height))
+    right = plane.right
+    if base.R[0] @ right < SIDEWAYS:
+        raise OptionError(
+            "quilt-array",
+            "the cameras do not stand side by side before the scene",
+            remedy="a quilt needs an array that looks one way",
+        )
+    forward = base.R[2] - (base.R[2] @ right) * right
+    forward = forward / np.linalg.norm(forward)
+    R = np.stack([right, np.cross(forward, right), forward])
+    middle = base.R.T @ np.linalg.inv(base.K) @ (quilt.width / 2, quilt.height / 2, 1.0)
+    towards = R @ middle
+    depth = _median_depth(scene, _looking(base, R, base.centre, middle))
+    focus = base.centre + middle * (depth / towards[2])
+    places = np.linspace(-quilt.spread, quilt.spread, quilt.columns * quilt.rows)
+    return [
+        (
+            _looking(base, R, plane.point(x, 0.0), focus - plane.point(x, 0.0)),
+            view_weights(scene, (float(x), 0.0), shots.weights),
+        )
+        for x in places.tolist()
+    ]
+
+
+def _looking(
+    base: Camera, R: NDArray[np.float64], centre: NDArray[np.float64], direction: NDArray[np.float64]
+) -> Camera:
+    """A camera at `centre` with axes R and the focal lengths of `base`, which sees `direction` in its middle."""
+    x, y, z = R @ direction
+    fx, fy = base.K[0, 0], base.K[1, 1]
+    K = np.array([[fx, 0, base.width / 2 - fx * x / z], [0, fy, base.height / 2 - fy * y / z], [0, 0, 1]])
+    return Camera(K, R, -R @ centre, base.width, base.height)
+
+
+def _median_depth(scene: Scene, camera: Camera) -> float:
+    """Of what the camera sees, along its z. Raises OptionError `quilt-array` where it sees nothing."""
+    near = rasterise_view(scene.mesh, camera).inverse_depth
+    if not near.any():
+        raise OptionError(
+            "quilt-array", "the array's middle sees nothing of the scene", remedy="a quilt needs a surface before it"
+        )
+    return float(1 / np.median(near[near > 0]))

@@ -1,0 +1,61 @@
+"""What the viewer's server answers: a fixed table of paths. No path is ever joined to a folder."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from eigenfield import __version__
+from eigenfield.viewer.page import page_html, static_file
+from eigenfield.viewer.photographs import Photographs
+
+JAVASCRIPT = "text/javascript; charset=utf-8"
+STATIC = {"viewer.js": JAVASCRIPT, "eigenfield-three.js": JAVASCRIPT, "viewer.css": "text/css; charset=utf-8"}
+
+
+@dataclass(frozen=True, eq=False)
+class Content:
+    """Bytes, their media type, and the strong ETag that names them."""
+
+    type: str
+    data: bytes
+    tag: str
+
+    @staticmethod
+    def of(type: str, data: bytes) -> Content:
+        return Content(type, data, f'"{hashlib.sha256(data).hexdigest()[:32]}"')
+
+
+Manifest = Mapping[str, Callable[[], Content]]
+
+
+def make_manifest(
+    glb: bytes, title: str, photographs: Photographs | None = None, metres_per_unit: float | None = None
+) -> Manifest:
+    """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
+
+    All but photographs is held in memory, so that files replaced on disk never mix with those that were checked.
+    Raises OutputError `viewer-build` where the page was not built.
+    """
+    config: dict[str, object] = {"title": title, "scene": "scene.glb", "bytes": len(glb), "version": __version__}
+    if metres_per_unit is not None:
+        config["metresPerUnit"] = metres_per_unit
+    if photographs is not None:
+        config["photographs"] = {name: f"photographs/{index}" for index, name in photographs.names.items()}
+    fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC.items()}
+    fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
+    fixed["/scene.glb"] = Content.of("model/gltf-binary", glb)
+    manifest: dict[str, Callable[[], Content]] = {path: _constant(content) for path, content in fixed.items()}
+    if photographs is not None:
+        for index in photographs.names:
+            manifest[f"/photographs/{index}"] = _photograph(photographs, index)
+    return manifest
+
+
+def _constant(content: Content) -> Callable[[], Content]:
+    return lambda: content
+
+
+def _photograph(photographs: Photographs, index: int) -> Callable[[], Content]:
+    return lambda: Content.of("image/png", photographs.png(index))

@@ -1,0 +1,50 @@
+"""A scene in a notebook: the viewer in a frame that holds everything it needs, and may reach nothing."""
+
+from __future__ import annotations
+
+import html
+import weakref
+
+from eigenfield.errors import EigenfieldError
+from eigenfield.format import encode_scene, file_bytes
+from eigenfield.scene import Scene
+from eigenfield.viewer.page import single_file
+
+TITLE = "Eigen-texture scene"
+HEIGHT = 480  # pixels
+MOST = 64 * 2**20  # bytes of a scene's file; notebooks keep what they show, and are slow with more
+ALLOWED = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
+
+_coded: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # scenes that came from no file
+
+
+def scene_html(scene: Scene) -> str:
+    """The scene as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
+
+    The bytes are those of the file that it was loaded from; a scene from elsewhere is coded once. The frame is an
+    origin of its own (`sandbox` without `allow-same-origin`): it can neither read the notebook nor act in it.
+    """
+    try:
+        glb = _glb(scene)
+        if len(glb) > MOST:
+            return _line(
+                f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"
+            )
+        page = single_file(glb, title=TITLE).decode("utf-8")
+    except EigenfieldError as error:
+        return _line(str(error))
+    return (
+        f'<iframe srcdoc="{html.escape(page)}" title="{TITLE}" width="100%" height="{HEIGHT}" style="border: 0" '
+        f'allow="{ALLOWED}" allowfullscreen sandbox="allow-scripts allow-downloads"></iframe>'
+    )
+
+
+def _glb(scene: Scene) -> bytes:
+    found = file_bytes(scene) or _coded.get(scene)
+    if found is None:
+        found = _coded[scene] = encode_scene(scene)
+    return found
+
+
+def _line(message: str) -> str:
+    return f"<pre>{html.escape(message)}</pre>"

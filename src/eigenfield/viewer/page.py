@@ -1,0 +1,135 @@
+"""The viewer's page: as the server gives it, and as one file with everything in it."""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import json
+import re
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from eigenfield import __version__
+from eigenfield.errors import OutputError
+
+STATIC = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
+TITLE = "<title>eigenfield</title>"
+CONFIG = '<script type="application/json" id="eigenfield-config">{}</script>'
+SCRIPT = re.compile(r'<script type="module"[^>]*\bsrc="(?:\./)?viewer\.js"[^>]*></script>')
+STYLE = re.compile(r'<link rel="stylesheet"[^>]*\bhref="(?:\./)?viewer\.css"[^>]*/?>')
+HEAD = re.compile(r"<head>\s*(?:<meta charset=[^>]*>)?", re.IGNORECASE)
+
+
+def static_file(name: str) -> bytes:
+    """A file of the built page. Raises OutputError `viewer-build` where it is missing."""
+    try:
+        return (STATIC / name).read_bytes()
+    except FileNotFoundError as error:
+        raise _not_built(name, "is missing") from error
+
+
+def page_html(config: Mapping[str, Any]) -> bytes:
+    """The page with its configuration, as a server gives it beside viewer.js and viewer.css.
+
+    config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
+    metresPerUnit, version. Raises OutputError `viewer-build`.
+    """
+    return _encoded(_configured(_text("index.html"), config))
+
+
+def single_file(
+    glb: bytes,
+    *,
+    title: str,
+    photographs: Mapping[str, tuple[bytes, str]] | None = None,
+    metres_per_unit: float | None = None,
+) -> bytes:
+    """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
+
+    photographs: camera name to an encoded picture and its media type, of the camera's size. The page's own policy
+    allows its one script and style, named by their hashes, and no connection to anywhere. Raises OutputError
+    `viewer-build`.
+    """
+    config: dict[str, Any] = {"title": title, "embedded": True, "bytes": len(glb), "version": __version__}
+    if metres_per_unit is not None:
+        config["metresPerUnit"] = metres_per_unit
+    if photographs is not None:
+        config["photographs"] = {name: _data_url(*picture) for name, picture in photographs.items()}
+    script, style = _inline_script(_text("viewer.js")), _inline_style(_text("viewer.css"))
+    policy = (
+        f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src blob: data:; "
+        "connect-src blob: data:; base-uri 'none'; form-action 'none'"
+    )
+    scene = base64.b64encode(glb).decode("ascii")
+    page = _text("index.html")
+    page = _replaced(page, STYLE, lambda _: f"<style>{style}</style>")
+    page = _replaced(page, SCRIPT, lambda _: f'<script type="module">{script}</script>')
+    meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
+    page = _replaced(page, HEAD, lambda head: f"{head}\n{meta}")
+    data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
+    return _encoded(_configured(page, config, data))
+
+
+def _text(name: str) -> str:
+    """A text of the build, its lines ended as an HTML parser ends them: hashes are of what it sees."""
+    return static_file(name).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
+
+
+def _configured(page: str, config: Mapping[str, Any], more: str = "") -> str:
+    """The page with its title and configuration; `more` behind them."""
+    for mark in (TITLE, CONFIG):
+        if page.count(mark) != 1:
+            raise _not_built("index.html", f"has not exactly one {mark}")
+    page = page.replace(TITLE, f"<title>{html.escape(str(config.get('title', 'eigenfield')))}</title>")
+    before, after = page.split(CONFIG)  # not `replace`: nothing that came in is searched again
+    return before + CONFIG.replace("{}", json_for_html(config)) + more + after
+
+
+def json_for_html(value: Any) -> str:
+    """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold."""
+    text = json.dumps(value, allow_nan=False, separators=(",", ":"))
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _inline_script(text: str) -> str:
+    """JavaScript that may stand in a script element: what would end it, or begin a comment, is spelt otherwise.
+
+    Such text occurs in strings, templates and regular expressions only, where \\x3c is the same character.
+    """
+    return re.sub(r"<(?=/script|!--)", r"\\x3c", text, flags=re.IGNORECASE)
+
+
+def _inline_style(text: str) -> str:
+    """CSS that may stand in a style element."""
+    return re.sub(r"</(?=style)", r"<\\/", text, flags=re.IGNORECASE)
+
+
+def _replaced(page: str, pattern: re.Pattern[str], text: Callable[[str], str]) -> str:
+    """The page with the one place of `pattern` replaced by what `text` makes of it."""
+    made, count = pattern.subn(lambda match: text(match[0]), page)
+    if count != 1:
+        raise _not_built("index.html", f"has {count} places of {pattern.pattern}")
+    return made
+
+
+def _hash(text: str) -> str:
+    return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
+
+
+def _data_url(data: bytes, mime: str) -> str:
+    return f"data:{mime};base64,{base64.b64encode(data).decode('ascii')}"
+
+
+def _encoded(page: str) -> bytes:
+    return page.encode("utf-8", "replace")  # a title from a file name may hold half a character
+
+
+def _not_built(name: str, reason: str) -> OutputError:
+    return OutputError(
+        "viewer-build",
+        f"the viewer's page {reason}",
+        path=STATIC / name,
+        remedy="build it with `npm ci && npm run build` in web/, or install a released package",
+    )

@@ -1,0 +1,364 @@
+// The JSON of a scene, checked: what stands where in the binary chunk. No byte of that chunk is needed for it.
+
+import { SceneError, damaged } from "./errors.js";
+import { Value, type Json, type JsonObject } from "./json.js";
+import * as limits from "./limits.js";
+
+export interface View {
+  offset: number;
+  length: number;
+  stride: number; // 0: packed
+}
+
+/** A run of `count` x `items` numbers within buffer view `view`. */
+export interface Accessor {
+  view: number;
+  offset: number;
+  count: number;
+  items: number;
+  type: ComponentType;
+  where: string;
+}
+
+export interface Picture {
+  view: number;
+  mimeType: string;
+  scale: number[]; // of R, G, B: value = (code - zero) * scale
+  zero: number[];
+  where: string;
+}
+
+export interface SceneDocument {
+  version: string;
+  generator: string;
+  channels: 1 | 3;
+  mean: Picture;
+  meanSize: [number, number] | null; // null: `images[0]`, whose header says it
+  size: [number, number];
+  textures: Picture[];
+  weights: Accessor[]; // one a basis, side by side
+  names: string[];
+  heldOut: boolean[];
+  reference: number;
+  intrinsics: Accessor;
+  poses: Accessor;
+  sizes: Accessor;
+  colour: Accessor | null;
+  origin: [number, number, number];
+  right: [number, number, number];
+  up: [number, number, number];
+  extent: [number, number];
+  triangles: Accessor | null;
+  settings: JsonObject;
+  scores: JsonObject;
+  views: View[];
+  position: Accessor;
+  uv: Accessor;
+  indices: Accessor;
+  preview: number | null; // buffer view of `images[0]`
+}
+
+type ComponentType = 5121 | 5123 | 5125 | 5126;
+const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
+const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
+const FLOAT = 5126;
+const UINT = 5125;
+
+/** Whether a glTF document says that it is a scene of ours. */
+export function isScene(json: Json): boolean {
+  const root = new Value(json, "");
+  try {
+    return root.key("extensions").key(limits.EXTENSION).exists;
+  } catch {
+    return false;
+  }
+}
+
+/** Reads and checks the document of a scene. Raises SceneError: `version`, `needs`, `unsupported`, `damaged`. */
+export function readDocument(json: Json): SceneDocument {
+  const root = new Value(json, "");
+  const extension = root.key("extensions").key(limits.EXTENSION);
+  const version = checkVersion(extension);
+  const views = readViews(root);
+  const accessor = accessorReader(root, views);
+  const pictureView = (value: Value): number => value.integer(0, views.length - 1);
+
+  checkNodes(root);
+  const preview = previewOf(root, pictureView);
+  const plane = onlyPlane(extension);
+  const channels = channelsOf(plane);
+  const cameras = extension.key("cameras");
+  const names = namesOf(cameras);
+  const heldOut = heldOutOf(cameras, names.length);
+  const encoded = heldOut.filter((out) => !out).length;
+  const basis = readBases(plane, channels, encoded, accessor, pictureView);
+  const { mean, meanSize } = readMean(plane, channels, preview, pictureView);
+  const count = names.length;
+  const colour = cameras.key("colour");
+  if (colour.exists && channels !== 3) throw colour.wrong("needs a plane of three channels");
+
+  const viewPlane = extension.key("viewPlane");
+  const triangles = viewPlane.key("triangles");
+  const primitive = root.key("meshes").at(0).key("primitives").at(0);
+  const mode = primitive.key("mode");
+  if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
+  const attributes = primitive.key("attributes");
+  const generator = extension.key("generator");
+  const decoded = basis.size[0] * basis.size[1] * channels * basis.textures.length;
+  const meanTexels = meanSize ? meanSize[0] * meanSize[1] : 0;
+  if (decoded + 4 * channels * meanTexels > limits.MAX_DECODED) throw plane.wrong("too large when it is decoded");
+
+  return {
+    version,
+    generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
+    channels,
+    mean,
+    meanSize,
+    ...basis,
+    names,
+    heldOut,
+    reference: extension.key("reference").integer(0, count - 1),
+    intrinsics: accessor(cameras.key("intrinsics"), "SCALAR", [FLOAT], 5 * count),
+    poses: accessor(cameras.key("poses"), "SCALAR", [FLOAT], 12 * count),
+    sizes: accessor(cameras.key("sizes"), "SCALAR", [UINT], 2 * count),
+    colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
+    ...readViewPlane(viewPlane),
+    triangles: triangles.exists ? trianglesOf(accessor(triangles, "SCALAR", [UINT], null)) : null,
+    settings: freeForm(extension.key("settings")),
+    scores: freeForm(extension.key("scores")),
+    views,
+    position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
+    uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
+    indices: trianglesOf(accessor(primitive.key("indices"), "SCALAR", [5121, 5123, UINT], null)),
+    preview,
+  };
+}
+
+function checkVersion(extension: Value): string {
+  const version = extension.key("version").text(limits.MAX_NAME);
+  if (!/^1\.\d+$/.test(version)) {
+    throw new SceneError(
+      "version",
+      `The scene is of format version ${version.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`,
+      `${extension.where}/version`,
+    );
+  }
+  const needs = extension.key("needs");
+  for (const need of needs.exists ? needs.items(limits.MAX_VIEWS) : []) {
+    const feature = need.text(limits.MAX_NAME);
+    if (!limits.FEATURES.has(feature)) {
+      const message = `The scene needs "${feature.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`;
+      throw new SceneError("needs", message, need.where);
+    }
+  }
+  return version;
+}
+
+function readViews(root: Value): View[] {
+  const buffer = root.key("buffers").at(0);
+  if (buffer.key("uri").exists) throw buffer.wrong("not the binary chunk");
+  const total = buffer.key("byteLength").integer(0, 2 ** 32 - 1);
+  return root.key("bufferViews").items(limits.MAX_VIEWS).map((view) => {
+    const offset = view.key("byteOffset");
+    const stride = view.key("byteStride");
+    view.key("buffer").integer(0, 0);
+    const made = {
+      offset: offset.exists ? offset.integer(0, total) : 0,
+      length: view.key("byteLength").integer(1, total),
+      stride: stride.exists ? stride.integer(4, 252) : 0,
+    };
+    if (made.offset + made.length > total) throw view.wrong("outside the buffer");
+    return made;
+  });
+}
+
+/** Nodes make trees: in a circle three.js' loader would wait for itself. */
+function checkNodes(root: Value): void {
+  const nodes = root.key("nodes").items(limits.MAX_VIEWS);
+  const hasParent = Array<boolean>(nodes.length).fill(false);
+  for (const node of nodes) {
+    const children = node.key("children");
+    for (const child of children.exists ? children.items(nodes.length) : []) {
+      const index = child.integer(0, nodes.length - 1);
+      if (hasParent[index]) throw child.wrong("a node with two parents");
+      hasParent[index] = true;
+    }
+  }
+  for (const scene of root.key("scenes").items(limits.MAX_VIEWS)) {
+    const roots = scene.key("nodes");
+    for (const top of roots.exists ? roots.items(nodes.length) : []) {
+      if (hasParent[top.integer(0, nodes.length - 1)]) throw top.wrong("a node with two parents");
+    }
+  }
+}
+
+type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
+
+/** Reads accessors by their index; those with a `count` must have it, and lie packed. */
+function accessorReader(root: Value, views: View[]): AccessorReader {
+  const accessors = root.key("accessors").items(limits.MAX_VIEWS);
+  return (index, kind, types, count) => {
+    const at = accessors[index.integer(0, accessors.length - 1)];
+    if (!at) throw index.wrong("no such accessor");
+    const type = at.key("componentType").integer(5120, 5126) as ComponentType;
+    if (!types.includes(type)) throw at.wrong(`component type ${type}`);
+    if (at.key("type").text(limits.MAX_NAME) !== kind) throw at.wrong(`not ${kind}`);
+    if (at.key("sparse").exists) throw at.wrong("sparse");
+    const normalised = at.key("normalized");
+    if (normalised.exists && normalised.raw !== false) throw at.wrong("normalised");
+    const items = ITEMS[kind] ?? 1;
+    const has = at.key("count").integer(1, limits.MAX_WEIGHTS);
+    if (count !== null && has !== count) throw at.wrong(`${count} numbers are needed, not ${has}`);
+    const view = at.key("bufferView").integer(0, views.length - 1);
+    const within = views[view];
+    if (!within) throw at.wrong("no such buffer view");
+    const start = at.key("byteOffset");
+    const offset = start.exists ? start.integer(0, within.length) : 0;
+    const size = BYTES[type] * items;
+    if (within.stride && (within.stride < size || kind === "SCALAR")) throw at.wrong("a stride that cannot be");
+    if (offset + (has - 1) * (within.stride || size) + size > within.length) throw at.wrong("outside its buffer view");
+    if ((offset + within.offset) % BYTES[type]) throw at.wrong("not aligned");
+    return { view, offset, count: has, items, type, where: at.where };
+  };
+}
+
+function limited(accessor: Accessor, most: number): Accessor {
+  if (accessor.count > most) throw damaged(accessor.where, `more than ${most}`);
+  return accessor;
+}
+
+function trianglesOf(accessor: Accessor): Accessor {
+  if (accessor.count % 3) throw damaged(accessor.where, "torn triangles");
+  return limited(accessor, 3 * limits.MAX_TRIANGLES);
+}
+
+function previewOf(root: Value, pictureView: (value: Value) => number): number | null {
+  const images = root.key("images");
+  if (!images.exists) return null;
+  const view = images.at(0).key("bufferView");
+  return view.exists ? pictureView(view) : null;
+}
+
+function onlyPlane(extension: Value): Value {
+  const planes = extension.key("planes").items(limits.MAX_VIEWS);
+  const [plane] = planes;
+  if (!plane) throw extension.key("planes").wrong("no plane");
+  if (planes.length > 1) throw unsupported(`${planes.length} planes`, plane.where);
+  return plane;
+}
+
+function channelsOf(plane: Value): 1 | 3 {
+  const channels = plane.key("channels").integer(1, 64);
+  if (channels !== 1 && channels !== 3) throw unsupported(`${channels} channels`, plane.where);
+  return channels;
+}
+
+function unsupported(what: string, where: string): SceneError {
+  const message = `The scene has ${what}, which this viewer does not draw; draw it with "eigenfield render".`;
+  return new SceneError("unsupported", message, where);
+}
+
+function readSize(value: Value): [number, number] {
+  const [width = 0, height = 0] = value.items(2).map((item) => item.integer(1, limits.MAX_SIDE));
+  if (!width || !height) throw value.wrong("two numbers are needed");
+  if (width * height > limits.MAX_TEXELS) throw value.wrong(`more than ${limits.MAX_TEXELS} texels`);
+  return [width, height];
+}
+
+function readPicture(value: Value, channels: number, pictureView: (value: Value) => number): Picture {
+  const mimeType = value.key("mimeType").text(limits.MAX_NAME);
+  if (!/^image\/(png|jpeg|webp|avif)$/.test(mimeType)) throw value.key("mimeType").wrong("an unknown type");
+  const triple = (name: string): number[] => {
+    const read = value.key(name).numbers(channels);
+    return channels === 3 ? read : [read[0] ?? 0, read[0] ?? 0, read[0] ?? 0];
+  };
+  return {
+    view: pictureView(value.key("bufferView")),
+    mimeType,
+    scale: triple("scale"),
+    zero: triple("zero"),
+    where: value.where,
+  };
+}
+
+function readMean(
+  plane: Value,
+  channels: number,
+  preview: number | null,
+  pictureView: (value: Value) => number,
+): { mean: Picture; meanSize: [number, number] | null } {
+  const own = plane.key("mean");
+  const plain = { scale: [1 / 255, 1 / 255, 1 / 255], zero: [0, 0, 0] };
+  if (!own.exists) {
+    if (preview === null) throw own.wrong("no mean");
+    return { mean: { view: preview, mimeType: "image/png", ...plain, where: "/images/0" }, meanSize: null };
+  }
+  const meanSize = readSize(own.key("size"));
+  if (own.key("scale").exists || own.key("zero").exists) {
+    return { mean: readPicture(own, channels, pictureView), meanSize };
+  }
+  const none = Array<number>(channels).fill(0);
+  const coded = new Value({ ...own.object(), scale: none, zero: none }, own.where);
+  return { mean: { ...readPicture(coded, channels, pictureView), ...plain }, meanSize };
+}
+
+function readBases(
+  plane: Value,
+  channels: number,
+  encoded: number,
+  accessor: AccessorReader,
+  pictureView: (value: Value) => number,
+): { size: [number, number]; textures: Picture[]; weights: Accessor[] } {
+  const textures: Picture[] = [];
+  const weights: Accessor[] = [];
+  let size: [number, number] | null = null;
+  for (const basis of plane.key("bases").items(limits.MAX_BASES)) {
+    const own = readSize(basis.key("size"));
+    const pictures = basis.key("textures").items(limits.MAX_COMPONENTS);
+    if (!pictures.length) continue;
+    if (size && (own[0] !== size[0] || own[1] !== size[1])) {
+      throw unsupported("eigen textures of several sizes", basis.where);
+    }
+    size = own;
+    textures.push(...pictures.map((picture) => readPicture(picture, channels, pictureView)));
+    if (textures.length > limits.MAX_COMPONENTS) throw basis.wrong(`more than ${limits.MAX_COMPONENTS} textures`);
+    weights.push(accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * pictures.length));
+  }
+  return { size: size ?? [1, 1], textures, weights };
+}
+
+function namesOf(cameras: Value): string[] {
+  const names = cameras.key("names").items(limits.MAX_CAMERAS).map((name) => name.text(limits.MAX_NAME));
+  if (!names.length) throw cameras.key("names").wrong("no cameras");
+  if (new Set(names).size !== names.length) throw cameras.key("names").wrong("a name stands twice");
+  const odd = names.findIndex((name) => /[\u0000-\u001f\u007f-\u009f]/.test(name));
+  if (odd >= 0) throw cameras.key("names").at(odd).wrong("control characters");
+  return names;
+}
+
+function heldOutOf(cameras: Value, count: number): boolean[] {
+  const flags = Array<boolean>(count).fill(false);
+  const held = cameras.key("heldOut");
+  if (!held.exists) return flags;
+  for (const item of held.items(count)) {
+    const index = item.integer(0, count - 1);
+    if (flags[index]) throw item.wrong("named twice");
+    flags[index] = true;
+  }
+  if (flags.every((out) => out)) throw held.wrong("all cameras are held out");
+  return flags;
+}
+
+function readViewPlane(value: Value): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {
+  const [right, up] = [value.key("right").triple(), value.key("up").triple()];
+  const dot = (a: number[], b: number[]): number => a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0);
+  for (const off of [dot(right, right) - 1, dot(up, up) - 1, dot(right, up)]) {
+    if (!(Math.abs(off) <= limits.ORTHONORMAL)) throw value.wrong("axes not at right angles, or not of length 1");
+  }
+  const [width = 0, height = 0] = value.key("extent").numbers(2, 0);
+  return { origin: value.key("origin").triple(), right, up, extent: [width, height] };
+}
+
+function freeForm(value: Value): JsonObject {
+  return value.exists ? value.object() : {};
+}

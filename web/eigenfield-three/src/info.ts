@@ -1,0 +1,220 @@
+// What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
+
+import type { Accessor, SceneDocument } from "./document.js";
+import { SceneError, damaged } from "./errors.js";
+import type { Grid } from "./grid.js";
+import type { JsonObject } from "./json.js";
+import * as limits from "./limits.js";
+
+export type Vector = [number, number, number];
+export type Matrix3rows = [Vector, Vector, Vector];
+
+/** World-to-camera, x right, y down, z forward; pixel centres at halves. */
+export interface CaptureCamera {
+  name: string;
+  K: Matrix3rows;
+  R: Matrix3rows;
+  t: Vector;
+  centre: Vector;
+  width: number;
+  height: number;
+  gain: number[] | null; // of a harmonised scene: what it holds is gain * photograph + offset
+  offset: number[] | null;
+}
+
+/** X, Y of a world point p: (p - origin) . right / extent[0], (p - origin) . up / extent[1]. */
+export interface ViewPlane {
+  origin: Vector;
+  right: Vector;
+  up: Vector;
+  normal: Vector;
+  extent: [number, number];
+}
+
+export interface SceneInfo {
+  version: string;
+  generator: string;
+  names: string[];
+  heldOut: boolean[];
+  reference: number;
+  cameras: CaptureCamera[];
+  viewPlane: ViewPlane;
+  grid: { rows: number; columns: number } | null;
+  settings: JsonObject;
+  scores: JsonObject;
+  metresPerUnit: number | null;
+  bytes: { total: number; mesh: number; mean: number; weights: number; other: number; textures: number[] };
+  size: [number, number];
+  vertices: number;
+  triangles: number;
+  facesPlane: boolean; // the cameras look across the view plane; else weights by the ray make no sense
+}
+
+/** Bytes of a buffer view. */
+export type ViewBytes = (view: number) => Promise<ArrayBuffer>;
+
+/** The numbers of an accessor, read whole. */
+export async function readNumbers(
+  accessor: Accessor,
+  scene: SceneDocument,
+  bytes: ViewBytes,
+): Promise<Float32Array | Uint32Array> {
+  const view = await bytes(accessor.view);
+  const needed = scene.views[accessor.view]?.length ?? Infinity;
+  if (view.byteLength < needed) throw cutOff(accessor.where);
+  const count = accessor.count * accessor.items;
+  const copy = view.slice(accessor.offset, accessor.offset + 4 * count);
+  if (accessor.type === 5125) return new Uint32Array(copy);
+  const numbers = new Float32Array(copy);
+  for (const number of numbers) {
+    if (!(Math.abs(number) <= limits.MAX_NUMBER)) throw damaged(accessor.where, `${number} among its numbers`);
+  }
+  return numbers;
+}
+
+export function cutOff(where: string): SceneError {
+  return new SceneError("truncated", `The file is cut off (${where}); download or copy it again.`, where);
+}
+
+export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promise<CaptureCamera[]> {
+  const [intrinsics, poses, sizes, colour] = await Promise.all([
+    readNumbers(scene.intrinsics, scene, bytes),
+    readNumbers(scene.poses, scene, bytes),
+    readNumbers(scene.sizes, scene, bytes),
+    scene.colour ? readNumbers(scene.colour, scene, bytes) : null,
+  ]);
+  return scene.names.map((name, i) => {
+    const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = intrinsics.subarray(5 * i, 5 * i + 5);
+    if (!(fx > 0 && fy > 0)) throw damaged(scene.intrinsics.where, `focal lengths of "${name}"`);
+    const { R, t } = poseOf([...poses.subarray(12 * i, 12 * i + 12)], scene.poses.where, name);
+    const [width = 0, height = 0] = sizes.subarray(2 * i, 2 * i + 2);
+    const largest = Math.max(width, height);
+    if (!width || !height || largest > limits.MAX_CAMERA_SIDE || width * height > limits.MAX_CAMERA_PIXELS) {
+      throw damaged(scene.sizes.where, `"${name}" is ${width} x ${height} pixels`);
+    }
+    const K: Matrix3rows = [[fx, skew, cx], [0, fy, cy], [0, 0, 1]];
+    const [gain, offset] = colour ? coloursOf([...colour.subarray(6 * i, 6 * i + 6)], scene, name) : [null, null];
+    return { name, K, R, t, centre: centreOf(R, t), width, height, gain, offset };
+  });
+}
+
+function poseOf(p: number[], where: string, name: string): { R: Matrix3rows; t: Vector } {
+  const row = (r: number): Vector => [p[4 * r] ?? NaN, p[4 * r + 1] ?? NaN, p[4 * r + 2] ?? NaN];
+  const R: Matrix3rows = [row(0), row(1), row(2)];
+  const t: Vector = [p[3] ?? NaN, p[7] ?? NaN, p[11] ?? NaN];
+  for (let a = 0; a < 3; a++) {
+    for (let b = a; b < 3; b++) {
+      const off = dot(R[a as 0], R[b as 0]) - (a === b ? 1 : 0);
+      if (!(Math.abs(off) <= limits.ORTHONORMAL)) throw damaged(where, `the pose of "${name}" is no rotation`);
+    }
+  }
+  if (!(dot(cross(R[0], R[1]), R[2]) > 0)) throw damaged(where, `the pose of "${name}" is mirrored`);
+  return { R, t };
+}
+
+function coloursOf(numbers: number[], scene: SceneDocument, name: string): [number[], number[]] {
+  const [gain, offset] = [numbers.slice(0, 3), numbers.slice(3)];
+  const fine =
+    gain.every((g) => g >= 1 / limits.MAX_GAIN && g <= limits.MAX_GAIN) &&
+    offset.every((o) => Math.abs(o) <= limits.MAX_OFFSET);
+  if (!fine) throw damaged(scene.colour?.where ?? "", `gain or offset of "${name}"`);
+  return [gain, offset];
+}
+
+/** The (encoded cameras) x (eigen textures) weights, row by row, bases side by side. */
+export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promise<Float32Array> {
+  const parts = await Promise.all(scene.weights.map((accessor) => readNumbers(accessor, scene, bytes)));
+  const rows = scene.heldOut.filter((out) => !out).length;
+  const total = scene.textures.length;
+  const merged = new Float32Array(rows * total);
+  let column = 0;
+  for (const part of parts) {
+    const width = part.length / rows;
+    for (let row = 0; row < rows; row++) {
+      merged.set(part.subarray(row * width, (row + 1) * width), row * total + column);
+    }
+    column += width;
+  }
+  return merged;
+}
+
+/** Triangles of the view plane, as indices of encoded cameras. */
+export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
+  if (!scene.triangles) return new Uint32Array(0);
+  const { where } = scene.triangles;
+  const triangles = Uint32Array.from(await readNumbers(scene.triangles, scene, bytes));
+  const encoded = scene.heldOut.filter((out) => !out).length;
+  for (let i = 0; i < triangles.length; i += 3) {
+    const [a = encoded, b = encoded, c = encoded] = triangles.subarray(i, i + 3);
+    if (Math.max(a, b, c) >= encoded) throw damaged(where, `no encoded camera ${Math.max(a, b, c)}`);
+    if (a === b || b === c || c === a) throw damaged(where, "a triangle with one camera twice");
+  }
+  return triangles;
+}
+
+export function sceneInfo(
+  scene: SceneDocument,
+  cameras: CaptureCamera[],
+  grid: Grid | null,
+  total: number,
+): SceneInfo {
+  const { right, up } = scene;
+  const normal = cross(right, up);
+  const forward: Vector = [0, 0, 0];
+  for (const { R } of cameras) for (let i = 0; i < 3; i++) forward[i as 0] += R[2][i as 0] / cameras.length;
+  const metres = scene.settings["metresPerUnit"];
+  return {
+    version: scene.version,
+    generator: scene.generator,
+    names: scene.names,
+    heldOut: scene.heldOut,
+    reference: scene.reference,
+    cameras,
+    viewPlane: { origin: scene.origin, right, up, normal, extent: scene.extent },
+    grid: grid && { rows: grid.rows, columns: grid.columns },
+    settings: scene.settings,
+    scores: scene.scores,
+    metresPerUnit: typeof metres === "number" && metres > 0 && metres <= limits.MAX_NUMBER ? metres : null,
+    bytes: countBytes(scene, total),
+    size: scene.size,
+    vertices: scene.position.count,
+    triangles: scene.indices.count / 3,
+    facesPlane: Math.abs(dot(forward, normal)) > 0.7,
+  };
+}
+
+function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
+  const counted = new Set<number>();
+  const lengthOf = (view: number): number => {
+    if (counted.has(view)) return 0;
+    counted.add(view);
+    return scene.views[view]?.length ?? 0;
+  };
+  const sum = (views: number[]): number => views.reduce((bytes, view) => bytes + lengthOf(view), 0);
+  const mean = sum(scene.preview === null ? [scene.mean.view] : [scene.preview, scene.mean.view]);
+  const textures = scene.textures.map((picture) => lengthOf(picture.view));
+  const weights = sum(scene.weights.map((accessor) => accessor.view));
+  const mesh = sum([scene.position.view, scene.uv.view, scene.indices.view]);
+  const other = total - mean - weights - mesh - textures.reduce((a, b) => a + b, 0);
+  return { total, mesh, mean, weights, other, textures };
+}
+
+/** X, Y of a world point, dropped onto the view plane. */
+export function planeCoordinates(plane: Omit<ViewPlane, "normal">, point: Vector): [number, number] {
+  const { origin, extent } = plane;
+  const from: Vector = [point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]];
+  return [extent[0] > 0 ? dot(from, plane.right) / extent[0] : 0, extent[1] > 0 ? dot(from, plane.up) / extent[1] : 0];
+}
+
+export function centreOf(R: Matrix3rows, t: Vector): Vector {
+  const entry = (i: 0 | 1 | 2): number => -(R[0][i] * t[0] + R[1][i] * t[1] + R[2][i] * t[2]);
+  return [entry(0), entry(1), entry(2)];
+}
+
+export function dot(a: Vector, b: Vector): number {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+export function cross(a: Vector, b: Vector): Vector {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}

@@ -1,0 +1,76 @@
+// Values of a JSON document with the place they stand at, so that each refusal can name it.
+
+import { damaged } from "./errors.js";
+import { MAX_NUMBER } from "./limits.js";
+
+export type Json = null | boolean | number | string | Json[] | JsonObject;
+export interface JsonObject {
+  [key: string]: Json | undefined;
+}
+
+/** A value and its JSON pointer. */
+export class Value {
+  constructor(
+    readonly raw: Json | undefined,
+    readonly where: string,
+  ) {}
+
+  get exists(): boolean {
+    return this.raw !== undefined;
+  }
+
+  object(): JsonObject {
+    if (this.raw === null || typeof this.raw !== "object" || Array.isArray(this.raw)) throw this.wrong("no object");
+    return this.raw;
+  }
+
+  key(name: string): Value {
+    const object = this.object();
+    const found = Object.hasOwn(object, name) ? object[name] : undefined;
+    return new Value(found, `${this.where}/${name}`);
+  }
+
+  items(most: number): Value[] {
+    if (!Array.isArray(this.raw)) throw this.wrong("no list");
+    if (this.raw.length > most) throw this.wrong(`more than ${most} entries`);
+    return this.raw.map((item, index) => new Value(item, `${this.where}/${index}`));
+  }
+
+  at(index: number): Value {
+    if (!Array.isArray(this.raw)) throw this.wrong("no list");
+    return new Value(this.raw[index], `${this.where}/${index}`);
+  }
+
+  text(longest: number): string {
+    if (typeof this.raw !== "string") throw this.wrong("no text");
+    if (this.raw.length > longest) throw this.wrong(`longer than ${longest} characters`);
+    return this.raw;
+  }
+
+  number(low = -MAX_NUMBER, high = MAX_NUMBER): number {
+    if (typeof this.raw !== "number") throw this.wrong("no number");
+    if (!(this.raw >= low && this.raw <= high)) throw this.wrong(`${this.raw} is not in ${low}..${high}`);
+    return this.raw;
+  }
+
+  integer(low: number, high: number): number {
+    const value = this.number(low, high);
+    if (!Number.isInteger(value)) throw this.wrong(`${value} is no whole number`);
+    return value;
+  }
+
+  numbers(count: number, low = -MAX_NUMBER, high = MAX_NUMBER): number[] {
+    const items = this.items(count);
+    if (items.length !== count) throw this.wrong(`${count} numbers are needed`);
+    return items.map((item) => item.number(low, high));
+  }
+
+  triple(): [number, number, number] {
+    const [a = 0, b = 0, c = 0] = this.numbers(3);
+    return [a, b, c];
+  }
+
+  wrong(what: string): Error {
+    return damaged(this.where || "/", this.exists ? what : "missing");
+  }
+}

@@ -1,0 +1,131 @@
+import { GLTFLoader, type GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { Arrival } from "./arrival.js";
+import { openContainer, type Container } from "./container.js";
+import { isScene } from "./document.js";
+import { SceneError, asSceneError } from "./errors.js";
+import { EigenField } from "./field.js";
+import type { ByteStream, EigenfieldOptions } from "./options.js";
+import { EigenfieldPlugin } from "./plugin.js";
+
+export interface LoadOptions extends EigenfieldOptions {
+  signal?: AbortSignal | undefined;
+  onBytes?: ((loaded: number, total: number | undefined) => void) | undefined;
+}
+
+export interface Loaded {
+  gltf: GLTF;
+  field: EigenField | null; // null: a glTF file without eigen textures
+}
+
+/**
+ * Loads a scene while it arrives: resolves when mesh and mean can be drawn; eigen textures follow in order, and what
+ * goes wrong with them is an `error` event of the field. Rejects with a SceneError, or the signal's reason.
+ */
+export async function loadEigenfield(source: string | Blob | ArrayBuffer, options: LoadOptions = {}): Promise<Loaded> {
+  const { signal } = options;
+  signal?.throwIfAborted();
+  const arrival = new Arrival();
+  const stop = new AbortController();
+  const onAbort = (): void => {
+    arrival.fail(new DOMException("The load was stopped.", "AbortError"));
+    stop.abort();
+  };
+  signal?.addEventListener("abort", onAbort);
+  const fetching = receive(source, arrival, stop.signal, options.onBytes)
+    .catch((reason: unknown) => arrival.fail(reason))
+    .finally(() => signal?.removeEventListener("abort", onAbort));
+  try {
+    const container = await openContainer(arrival);
+    if (!isScene(container.json)) return { gltf: await parsePlain(arrival, container, fetching), field: null };
+    const gltf = await parseScene(arrival, container, options);
+    signal?.throwIfAborted();
+    const field: unknown = gltf.userData["eigenfield"];
+    return { gltf, field: field instanceof EigenField ? field : null };
+  } catch (reason) {
+    stop.abort();
+    signal?.throwIfAborted();
+    throw asSceneError(reason);
+  }
+}
+
+async function parseScene(arrival: Arrival, container: Container, options: EigenfieldOptions): Promise<GLTF> {
+  const loader = new GLTFLoader();
+  const start = container.binary();
+  start.catch(() => undefined); // reads hear of it
+  const stream: ByteStream = {
+    total: container.length,
+    read: async (offset, length) => {
+      const at = (await start) + offset;
+      return arrival.read(at, at + length);
+    },
+  };
+  loader.register((parser) => new EigenfieldPlugin(parser, { ...options, stream }));
+  return loader.parseAsync(container.text, "");
+}
+
+/** A glTF file of another kind: as three.js draws it, once all of it is there. */
+async function parsePlain(arrival: Arrival, container: Container, fetching: Promise<void>): Promise<GLTF> {
+  await fetching;
+  const bytes = await arrival.read(0, container.length);
+  try {
+    return await new GLTFLoader().parseAsync(bytes, "");
+  } catch (reason) {
+    const text = asSceneError(reason).message;
+    throw new SceneError("unsupported", `${text} It has no eigen textures either.`, "", { cause: reason });
+  }
+}
+
+async function receive(
+  source: string | Blob | ArrayBuffer,
+  arrival: Arrival,
+  signal: AbortSignal,
+  onBytes: LoadOptions["onBytes"],
+): Promise<void> {
+  if (source instanceof ArrayBuffer) {
+    arrival.push(new Uint8Array(source));
+    onBytes?.(source.byteLength, source.byteLength);
+    return arrival.end();
+  }
+  const { body, total } = source instanceof Blob ? openBlob(source) : await open(source, signal);
+  const reader = body.getReader();
+  signal.addEventListener("abort", () => void reader.cancel().catch(() => undefined));
+  for (;;) {
+    const { done, value } = await reader.read().catch((reason: unknown) => {
+      throw signal.aborted ? reason : broken(arrival.received, reason);
+    });
+    if (done) break;
+    arrival.push(value);
+    onBytes?.(arrival.received, total);
+  }
+  signal.throwIfAborted();
+  arrival.end();
+}
+
+interface Opened {
+  body: ReadableStream<Uint8Array>;
+  total: number | undefined; // bytes, if known
+}
+
+function openBlob(blob: Blob): Opened {
+  return { body: blob.stream(), total: blob.size };
+}
+
+async function open(url: string, signal: AbortSignal): Promise<Opened> {
+  const response = await fetch(url, { signal }).catch((cause: unknown) => {
+    if (signal.aborted) throw cause;
+    const message = "The scene cannot be fetched; check its address and the connection.";
+    throw new SceneError("network", message, url, { cause });
+  });
+  if (!response.ok || !response.body) {
+    await response.body?.cancel();
+    const message = `The server answered ${response.status} for the scene; check its address.`;
+    throw new SceneError("network", message, url);
+  }
+  const length = response.headers.get("Content-Encoding") ? null : response.headers.get("Content-Length");
+  return { body: response.body, total: length && /^\d+$/.test(length) ? Number(length) : undefined };
+}
+
+function broken(received: number, cause: unknown): SceneError {
+  const message = `The connection broke after ${received} bytes of the scene; load it again.`;
+  return new SceneError("network", message, String(received), { cause });
+}

@@ -1,0 +1,21 @@
+import type { WebGLRenderer } from "three";
+import type { Filter } from "./material.js";
+
+/** Where the binary chunk comes from while the file still arrives. */
+export interface ByteStream {
+  /** Bytes of the whole file. */
+  readonly total: number;
+  /** `length` bytes from `offset` of the binary chunk, once they are there. Rejects with a SceneError. */
+  read(offset: number, length: number): Promise<ArrayBuffer>;
+}
+
+export interface EigenfieldOptions {
+  /** Whose GPU takes the textures; else the first one that draws the scene. */
+  renderer?: WebGLRenderer | undefined;
+  /** GPU bytes that may be used; else `defaultMemory()`. */
+  memory?: number | undefined;
+  /** How textures are read where pixels are no larger than the photographs' own: Catmull-Rom for all, for the mean
+   * alone (the default: nearly as sharp, at a quarter of the cost), or what the GPU does. */
+  filter?: Filter | undefined;
+  stream?: ByteStream | undefined;
+}

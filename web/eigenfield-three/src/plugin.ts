@@ -1,0 +1,117 @@
+import { MeshBasicMaterial, type BufferGeometry, type Material, type Mesh, type Object3D } from "three";
+import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
+import { decodePicture } from "./decode.js";
+import { isScene, readDocument, type SceneDocument } from "./document.js";
+import { SceneError, damaged } from "./errors.js";
+import { EigenField } from "./field.js";
+import { cutOff, planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
+import type { ViewBytes } from "./info.js";
+import { EXTENSION, MAX_NUMBER } from "./limits.js";
+import type { EigenfieldOptions } from "./options.js";
+import { ViewWeights } from "./weights.js";
+
+/**
+ * Draws eigen textures in whatever app uses three.js' GLTFLoader:
+ *
+ *     loader.register((parser) => new EigenfieldPlugin(parser));
+ *
+ * The loaded scene draws itself; `gltf.userData.eigenfield` is its EigenField. Other glTF files load as ever.
+ */
+export class EigenfieldPlugin implements GLTFLoaderPlugin {
+  readonly name = EXTENSION;
+  private scene: SceneDocument | null = null;
+  private readonly ours: boolean;
+
+  constructor(
+    private readonly parser: GLTFParser,
+    private readonly options: EigenfieldOptions = {},
+  ) {
+    this.ours = isScene(parser.json);
+  }
+
+  async beforeRoot(): Promise<void> {
+    if (this.ours) this.scene = readDocument(this.parser.json);
+  }
+
+  /** The picture for other viewers is not needed, and so not decoded. */
+  loadMaterial(index: number): Promise<Material> | null {
+    const primitive = this.scene && this.parser.json.meshes[0].primitives[0];
+    if (!primitive || primitive.material !== index) return null;
+    const { doubleSided } = this.parser.json.materials?.[index] ?? {};
+    const material = new MeshBasicMaterial();
+    material.side = doubleSided === true ? 2 : 0;
+    return Promise.resolve(material);
+  }
+
+  loadBufferView(index: number): Promise<ArrayBuffer> | null {
+    const view = this.scene?.views[index];
+    return view && this.options.stream ? this.options.stream.read(view.offset, view.length) : null;
+  }
+
+  async afterRoot(gltf: GLTF): Promise<void> {
+    const { scene } = this;
+    if (!scene) return;
+    const meshes = proxiesOf(gltf, this.parser);
+    const [mesh] = meshes;
+    if (!mesh) throw damaged("/meshes/0", "no node shows it");
+    checkGeometry(mesh.geometry, scene);
+    const bytes: ViewBytes = async (view) => {
+      const data = (await this.parser.getDependency("bufferView", view)) as ArrayBuffer;
+      if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
+      return data;
+    };
+    const meanBytes = await bytes(scene.mean.view);
+    const [mean, cameras, omega, triangles] = await Promise.all([
+      decodePicture(meanBytes, scene.mean, scene.meanSize),
+      readCameras(scene, bytes),
+      readWeights(scene, bytes),
+      readTriangles(scene, bytes),
+    ]);
+    const encoded = cameras.filter((_, i) => !scene.heldOut[i]);
+    const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
+    const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
+    const info = sceneInfo(scene, cameras, weights.grid, this.fileBytes());
+    gltf.userData["eigenfield"] = new EigenField({ scene, info, meshes, mean, omega, weights, bytes }, this.options);
+  }
+
+  private fileBytes(): number {
+    if (this.options.stream) return this.options.stream.total;
+    const { extensions, json } = this.parser as unknown as {
+      extensions: Record<string, { header?: { length?: number } } | undefined>;
+      json: { buffers: { byteLength: number }[] };
+    };
+    return extensions["KHR_binary_glTF"]?.header?.length ?? json.buffers[0]?.byteLength ?? 0;
+  }
+}
+
+/** Every instance of the first primitive of mesh 0. */
+function proxiesOf(gltf: GLTF, parser: GLTFParser): Mesh[] {
+  const found: Mesh[] = [];
+  gltf.scene.traverse((object: Object3D) => {
+    const from = parser.associations.get(object);
+    if (isMesh(object) && from?.meshes === 0 && (from.primitives ?? 0) === 0) found.push(object);
+  });
+  return found;
+}
+
+function isMesh(object: Object3D): object is Mesh {
+  return (object as Partial<Mesh>).isMesh === true;
+}
+
+function checkGeometry(geometry: BufferGeometry, scene: SceneDocument): void {
+  const position = geometry.getAttribute("position");
+  const uv = geometry.getAttribute("uv");
+  const { index } = geometry;
+  if (!index) throw new SceneError("damaged", "The proxy mesh has no triangles; make or download the file again.");
+  if (uv.count < position.count) throw damaged(scene.uv.where, "too few texture coordinates");
+  for (let i = 0; i < position.count; i++) {
+    const largest = Math.max(Math.abs(position.getX(i)), Math.abs(position.getY(i)), Math.abs(position.getZ(i)));
+    if (!(largest <= MAX_NUMBER)) throw damaged(scene.position.where, `vertex ${i} is not finite`);
+    if (!(Math.max(Math.abs(uv.getX(i)), Math.abs(uv.getY(i))) <= MAX_NUMBER)) {
+      throw damaged(scene.uv.where, `texture coordinates of vertex ${i} are not finite`);
+    }
+  }
+  for (const vertex of index.array) {
+    if (vertex >= position.count) throw damaged(scene.indices.where, `no vertex ${vertex}`);
+  }
+}

@@ -1,0 +1,339 @@
+// How scenes arrive: the mean first, eigen textures in order, and a clear sentence for every file that is not right.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { canvasPixels, difference, readGlb, sceneBytes, startLab, writeGlb } from "./harness.mjs";
+
+const EXTENSION = "EIGENFIELD_eigen_textures";
+
+/** A server's answer that comes in parts, each when the test says so. */
+function slowly(bytes, headers = {}) {
+  let release;
+  let sent = 0;
+  const answer = { wanted: null };
+  const open = new Promise((resolve) => (release = resolve));
+  answer.route = async (_request, response) => {
+    response.writeHead(200, { "Content-Type": "model/gltf-binary", "Content-Length": bytes.length, ...headers });
+    release(response);
+  };
+  answer.sendTo = async (end) => {
+    const response = await open;
+    await new Promise((resolve) => response.write(bytes.subarray(sent, end), resolve));
+    sent = end;
+  };
+  answer.cut = async () => (await open).destroy();
+  answer.finish = async () => {
+    const response = await open;
+    response.end(bytes.subarray(sent));
+  };
+  return answer;
+}
+
+const find = (json) => json.extensions[EXTENSION];
+
+const routes = {};
+let lab;
+before(async () => (lab = await startLab(routes)));
+after(() => lab?.close());
+
+/** Loads `source` and says what came of it; `later` is the error event after a success. */
+function tryLoad(page, source) {
+  return page.evaluate(async (url) => {
+    const { loadEigenfield, SceneError, show, draw } = window.lab;
+    try {
+      const { gltf, field } = await loadEigenfield(url);
+      show(gltf);
+      if (!field) return { plain: true, meshes: gltf.scene.children.length };
+      const later = new Promise((resolve) => {
+        field.addEventListener("error", ({ error }) => resolve({ code: error.code, message: error.message }));
+        field.complete.then(() => resolve(null), () => undefined); // the event tells of it
+      });
+      draw();
+      return { later: await later, loaded: field.loaded };
+    } catch (error) {
+      if (!(error instanceof SceneError)) throw error;
+      return { code: error.code, message: error.message, where: error.where };
+    }
+  }, source);
+}
+
+/** Offsets in the file at which each eigen texture ends. */
+function textureEnds(bytes) {
+  const { json } = readGlb(bytes);
+  const start = 28 + Buffer.from(bytes).readUInt32LE(12);
+  const [plane] = json.extensions[EXTENSION].planes;
+  const end = (view) => start + (json.bufferViews[view].byteOffset ?? 0) + json.bufferViews[view].byteLength;
+  return plane.bases[0].textures.map(({ bufferView }) => end(bufferView));
+}
+
+test("the mean is drawn first, and the picture improves as textures arrive", async () => {
+  const bytes = sceneBytes("scene.glb");
+  const ends = textureEnds(bytes);
+  const slow = slowly(bytes);
+  routes["/slow.glb"] = slow.route;
+  const { page, close } = await lab.open();
+  const { json } = readGlb(bytes);
+  const [strongest] = find(json).planes[0].bases[0].textures;
+  const first = 28 + bytes.readUInt32LE(12) + json.bufferViews[strongest.bufferView].byteOffset;
+  await page.evaluate(() => {
+    window.progress = [];
+    window.loading = window.lab.loadEigenfield("slow.glb", { onBytes: (...seen) => window.progress.push(seen) });
+  });
+  await slow.sendTo(first);
+  const start = await page.evaluate(async () => {
+    const { gltf, field } = await window.loading;
+    window.field = field;
+    window.lab.show(gltf);
+    window.lab.drawView(field, window.lab.novelCamera(field, 0.3, -0.2));
+    return { loaded: field.loaded, total: field.total, count: field.mesh.material.uniforms.count.value };
+  });
+  assert.deepEqual(start, { loaded: 0, total: 6, count: 0 });
+  const pictures = [await canvasPixels(page)];
+  for (const [j, end] of ends.entries()) {
+    await slow.sendTo(j + 1 < ends.length ? end : bytes.length);
+    await page.waitForFunction((count) => window.field.loaded === count, j + 1);
+    const summed = await page.evaluate(() => {
+      window.lab.draw();
+      return window.field.mesh.material.uniforms.count.value;
+    });
+    assert.equal(summed, j + 1);
+    pictures.push(await canvasPixels(page));
+  }
+  await slow.finish();
+  await page.evaluate(() => window.field.complete);
+  await page.evaluate(() => window.lab.draw());
+  const final = await canvasPixels(page);
+  const off = pictures.map((picture) => difference(picture, final).mean);
+  assert.ok(off[0] > 1, "the mean is not the whole picture");
+  assert.ok(off[6] < 0.2 && off[3] < off[0], `differences from the final picture: ${off}`);
+  const progress = await page.evaluate(() => window.progress);
+  assert.deepEqual(progress.at(-1), [bytes.length, bytes.length]);
+  assert.ok(progress.length > 6);
+  await close();
+});
+
+test("each damaged file has its sentence", async () => {
+  const { page, close } = await lab.open();
+  const cases = [
+    ["newer.glb", "version", /format version 2\.0 .* newer viewer\.$/],
+    ["needs.glb", "needs", /"holograms".* newer viewer\.$/],
+    ["no-json.glb", "damaged", /JSON.*again\.$/],
+    ["not-ours.bin", "not-glb", /no GLB; take a \.glb file/],
+  ];
+  for (const [name, code, message] of cases) {
+    const found = await tryLoad(page, name);
+    assert.equal(found.code, code, `${name}: ${JSON.stringify(found)}`);
+    assert.match(found.message, message, name);
+  }
+  assert.deepEqual(await tryLoad(page, "plain.glb"), { plain: true, meshes: 2 });
+  await close();
+});
+
+test("what is cut off or damaged after the mean is drawn is an event, and the rest stays", async () => {
+  const { page, close } = await lab.open();
+  const cut = await tryLoad(page, "truncated.glb");
+  assert.equal(cut.later.code, "truncated");
+  assert.match(cut.later.message, /cut off after \d+ of \d+ bytes.* drawn with [0-5] of 6 eigen textures\.$/);
+  const damaged = await tryLoad(page, "damaged.glb");
+  assert.equal(damaged.later.code, "damaged");
+  assert.match(damaged.later.message, /textures\/\d: it cannot be decoded.* drawn with \d of 6/);
+  await page.evaluate(() => window.lab.draw());
+  await close();
+});
+
+test("files cut off anywhere are told of", async () => {
+  const { page, close } = await lab.open();
+  const bytes = sceneBytes("scene.glb");
+  const part = { length: 0 };
+  routes["/part.glb"] = (_request, response) => response.end(bytes.subarray(0, part.length));
+  const [json, ends] = [bytes.readUInt32LE(12), textureEnds(bytes)];
+  for (const length of [0, 3, 8, 19, 40, 20 + json, 28 + json, 3000 + json, ends[0] - 1, ends[5] - 1]) {
+    part.length = length;
+    const code = length < 4 ? "not-glb" : "truncated";
+    const found = await tryLoad(page, "part.glb");
+    assert.equal(found.code ?? found.later.code, code, `${length}: ${JSON.stringify(found)}`);
+  }
+  await close();
+});
+
+test("a connection that breaks, a wrong address and an abort are told apart", async () => {
+  const { page, close } = await lab.open({ allowed: /404|ERR_|Failed to load/ });
+  const missing = await tryLoad(page, "nowhere.glb");
+  assert.equal(missing.code, "network");
+  assert.equal(missing.message, "The server answered 404 for the scene; check its address.");
+  const nobody = await tryLoad(page, "http://127.0.0.1:9/scene.glb");
+  assert.equal(nobody.code, "network");
+  const bytes = sceneBytes("scene.glb");
+  const slow = slowly(bytes);
+  routes["/broken.glb"] = slow.route;
+  const loading = tryLoad(page, "broken.glb");
+  await slow.sendTo(9000);
+  await slow.cut();
+  assert.match((await loading).message, /^The connection broke after \d+ bytes/);
+  const hanging = slowly(bytes);
+  routes["/hanging.glb"] = hanging.route;
+  const aborting = page.evaluate(async () => {
+    const stop = new AbortController();
+    setTimeout(() => stop.abort(), 100);
+    return window.lab.loadEigenfield("hanging.glb", { signal: stop.signal }).catch((error) => error.name);
+  });
+  await hanging.sendTo(500);
+  assert.equal(await aborting, "AbortError");
+  await close();
+});
+
+test("a file that announces gigabytes takes no memory for them", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("avif.glb"));
+  const huge = structuredClone(json);
+  huge.buffers[0].byteLength = 4_000_000_000;
+  Object.assign(huge.bufferViews[find(huge).planes[0].mean.bufferView], { byteOffset: 0, byteLength: 3_900_000_000 });
+  const bytes = writeGlb({ json: huge, binary });
+  bytes.writeUInt32LE(4_100_000_000, 8);
+  bytes.writeUInt32LE(4_000_000_000, 20 + bytes.readUInt32LE(12));
+  routes["/huge.glb"] = { body: bytes };
+  const before = await page.evaluate(() => performance.memory.usedJSHeapSize);
+  const found = await tryLoad(page, "huge.glb");
+  assert.equal(found.code, "truncated");
+  const grown = (await page.evaluate(() => performance.memory.usedJSHeapSize)) - before;
+  assert.ok(grown < 100e6, `${grown} bytes`);
+  await close();
+});
+
+const CHANGES = {
+  "no eigen textures' weights": (e) => delete e.planes[0].bases[0].weights,
+  "too few weights": (_e, json) => (json.accessors[find(json).planes[0].bases[0].weights].count -= 1),
+  "an accessor outside its view": (_e, json) => (json.accessors[0].byteOffset = 2 ** 20),
+  "a view outside the buffer": (_e, json) => (json.bufferViews[2].byteLength = 2 ** 31),
+  "a view of another buffer": (_e, json) => (json.bufferViews[2].buffer = 1),
+  "a mean of another size": (e) => (e.planes[0].mean.size = [64, 64]),
+  "a mean of an impossible size": (e) => (e.planes[0].mean.size = [1e9, 1e9]),
+  "a size that is no number": (e) => (e.planes[0].bases[0].size = ["x", null]),
+  "no planes": (e) => (e.planes = []),
+  "a reference that is no camera": (e) => (e.reference = 25),
+  "a doubled name": (e) => (e.cameras.names[1] = e.cameras.names[0]),
+  "all held out": (e) => (e.cameras.heldOut = e.cameras.names.map((_, i) => i)),
+  "axes that are not": (e) => (e.viewPlane.right = [2, 0, 0]),
+  "an extent below zero": (e) => (e.viewPlane.extent = [-1, 1]),
+  "no version": (e) => delete e.version,
+  "an unknown picture": (e) => (e.planes[0].bases[0].textures[0].mimeType = "text/html"),
+  "a scale of two numbers": (e) => (e.planes[0].bases[0].textures[0].scale = [1, 1]),
+  "lines": (_e, json) => (json.meshes[0].primitives[0].mode = 1),
+  "no mesh": (_e, json) => delete json.meshes,
+  "no buffer views": (_e, json) => (json.bufferViews = 7),
+  "an accessor of another type": (_e, json) => (json.accessors[0].type = "VEC2"),
+  "no node": (_e, json) => json.nodes.forEach((node) => delete node.mesh),
+  "nodes in a circle": (_e, json) => (json.nodes[0].children = [0]),
+  "scenes in a circle": (_e, json) => {
+    json.nodes.push({ children: [3] }, { children: [2] });
+    json.scenes[0].nodes.push(2);
+  },
+  "names that are a prototype": (e) => (e.cameras.names = { __proto__: [] }),
+};
+
+test("a document that cannot be is refused by name", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("avif.glb"));
+  for (const [what, change] of Object.entries(CHANGES)) {
+    const changed = structuredClone(json);
+    change(find(changed), changed);
+    routes["/changed.glb"] = { body: writeGlb({ json: changed, binary }) };
+    const found = await tryLoad(page, "changed.glb");
+    assert.equal(found.code, "damaged", `${what}: ${JSON.stringify(found)}`);
+    assert.match(found.message, /^The file is damaged \(.+\); make or download it again\.$/, what);
+  }
+  await close();
+});
+
+test("numbers in the binary chunk are checked too", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("scene.glb"));
+  const { planes, cameras, viewPlane } = find(json);
+  const primitive = json.meshes[0].primitives[0];
+  const write = (accessor, value, kind) => (data) => {
+    const { bufferView, byteOffset = 0 } = json.accessors[accessor];
+    data[`write${kind}LE`](value, (json.bufferViews[bufferView].byteOffset ?? 0) + byteOffset);
+  };
+  const cases = {
+    "a weight that is no number": write(planes[0].bases[0].weights, NaN, "Float"),
+    "a focal length of 0": write(cameras.intrinsics, 0, "Float"),
+    "a pose that is no rotation": write(cameras.poses, 3, "Float"),
+    "a photograph of no pixels": write(cameras.sizes, 0, "UInt32"),
+    "a triangle of no camera": write(viewPlane.triangles, 99, "UInt32"),
+    "a vertex at infinity": write(primitive.attributes.POSITION, Infinity, "Float"),
+    "an unknown vertex": write(primitive.indices, 65000, "UInt16"),
+  };
+  for (const [what, change] of Object.entries(cases)) {
+    const data = Buffer.from(binary);
+    change(data);
+    routes["/numbers.glb"] = { body: writeGlb({ json, binary: data }) };
+    const found = await tryLoad(page, "numbers.glb");
+    assert.equal(found.code, "damaged", `${what}: ${JSON.stringify(found)}`);
+  }
+  await close();
+});
+
+test("JSON that is nested too deep, not UTF-8 or too long is refused", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("scene.glb"));
+  const deep = JSON.stringify(json).replace(/}$/, `,"x":${"[".repeat(70)}${"]".repeat(70)}}`);
+  routes["/text.glb"] = { body: writeGlb({ binary, text: deep }) };
+  assert.match((await tryLoad(page, "text.glb")).message, /nested too deep/);
+  const broken = writeGlb({ json, binary });
+  broken[30] = 0xff;
+  routes["/text.glb"] = { body: broken };
+  assert.match((await tryLoad(page, "text.glb")).message, /UTF-8/);
+  const long = writeGlb({ json, binary });
+  long.writeUInt32LE(2 ** 31, 12);
+  long.writeUInt32LE(2 ** 32 - 1, 8);
+  routes["/text.glb"] = { body: long };
+  assert.match((await tryLoad(page, "text.glb")).message, /bytes of JSON/);
+  await close();
+});
+
+test("layouts that this viewer does not draw are named", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("scene.glb"));
+  const two = structuredClone(json);
+  find(two).planes.push(find(two).planes[0]);
+  const channels = structuredClone(json);
+  find(channels).planes[0].channels = 4;
+  for (const changed of [two, channels]) {
+    routes["/layout.glb"] = { body: writeGlb({ json: changed, binary }) };
+    const found = await tryLoad(page, "layout.glb");
+    assert.equal(found.code, "unsupported", JSON.stringify(found));
+    assert.match(found.message, /eigenfield render/);
+  }
+  await close();
+});
+
+test("a Blob, an ArrayBuffer and an address give the same scene", async () => {
+  const { page, close } = await lab.open();
+  const found = await page.evaluate(async () => {
+    const response = await fetch("scene.glb");
+    const blob = await response.blob();
+    const made = [];
+    for (const source of [blob, await blob.arrayBuffer(), "scene.glb"]) {
+      const { gltf, field } = await window.lab.loadEigenfield(source, { renderer: window.lab.renderer });
+      await field.complete;
+      window.lab.show(gltf);
+      window.lab.drawView(field, window.lab.novelCamera(field, 0.1, 0.2));
+      const { total, mesh, mean, weights, other, textures } = field.info.bytes;
+      made.push({ total, sum: mesh + mean + weights + other + textures.reduce((a, b) => a + b), size: blob.size });
+      field.dispose();
+    }
+    return made;
+  });
+  for (const { total, sum, size } of found) assert.deepEqual([total, sum], [size, size]);
+  await close();
+});
+
+test("a scene without eigen textures is its mean", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("scene.glb"));
+  find(json).planes[0].bases = [];
+  routes["/bare.glb"] = { body: writeGlb({ json, binary }) };
+  assert.deepEqual(await tryLoad(page, "bare.glb"), { later: null, loaded: 0 });
+  await page.evaluate(() => window.lab.draw());
+  await close();
+});

@@ -1,0 +1,165 @@
+// The viewer: what it opens, what it says while it does, and what it says when it cannot.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { launch, sceneBytes, scenePath } from "./harness.mjs";
+import { apart, openViewer, picture, state } from "./viewer-page.mjs";
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+const message = (page) => page.locator(".message:not([hidden])").innerText();
+
+test("a scene loads, and starts inside the captured hull", async () => {
+  const { page, close, server } = await openViewer(browser, "scene.glb");
+  const now = await state(page);
+  assert.equal(now.status, "ready");
+  assert.deepEqual([now.loaded, now.total, now.mode], [6, 6, "plane"]);
+  assert.ok(Math.abs(now.x) <= 1 && Math.abs(now.y) <= 1);
+  assert.equal(await page.title(), "scene – eigenfield");
+  assert.ok(new Set((await picture(page)).data).size > 50, "something is drawn");
+  const asked = ["/", "/scene.glb", "/viewer.css", "/viewer.js"];
+  assert.deepEqual(server.requests.sort(), asked, "and nothing else is asked for");
+  await close();
+});
+
+test("the picture is there before the eigen textures, and becomes better as they come", async () => {
+  const bytes = sceneBytes("scene.glb");
+  let release;
+  const rest = new Promise((resolve) => (release = resolve));
+  const first = bytes.length - 20_000;
+  const slow = async (request, response) => {
+    response.writeHead(200, { "Content-Type": "model/gltf-binary", "Content-Length": bytes.length });
+    response.write(bytes.subarray(0, first));
+    await rest;
+    response.end(bytes.subarray(first));
+  };
+  const { page, close } = await openViewer(browser, "scene.glb", { routes: { "/scene.glb": slow } });
+  await page.waitForFunction(() => window.eigenfield.state().loaded > 0);
+  const early = await page.evaluate(() => window.eigenfield.state());
+  assert.ok(early.loaded < 6, `${early.loaded} textures of a file that is not there yet`);
+  const words = await page.locator(".progress").innerText();
+  assert.match(words, /[\d.]+\skB of [\d.]+\s[kM]B · eigen texture \d of 6/);
+  assert.ok((await page.locator("progress").evaluate((bar) => bar.value / bar.max)) > 0.2);
+  const before = await page.evaluate(() => Array.from(window.eigenfield.pixels().data));
+  release();
+  assert.equal((await state(page)).loaded, 6);
+  assert.ok(await page.locator(".progress").isHidden());
+  const now = await page.evaluate(() => Array.from(window.eigenfield.pixels().data));
+  assert.ok(before.some((value, i) => Math.abs(value - now[i]) > 2), "the picture has changed");
+  await close();
+});
+
+for (const [file, code, words] of [
+  ["truncated.glb", "truncated", /cut off|shorter/i],
+  ["damaged.glb", "damaged", /./],
+  ["newer.glb", "version", /version|newer/i],
+  ["needs.glb", "needs", /./],
+  ["not-ours.bin", "not-glb", /./],
+]) {
+  test(`${file}: a sentence and the code ${code}`, async () => {
+    const { page, close } = await openViewer(browser, file);
+    await page.waitForSelector(".message:not([hidden])");
+    const text = await message(page);
+    assert.ok(text.includes(code), text);
+    assert.match(text, words);
+    assert.equal((await state(page)).message.code, code);
+    await close();
+  });
+}
+
+test("an address that leads nowhere", async () => {
+  const options = { config: { scene: "missing.glb" }, allowed: /404/ };
+  const { page, close } = await openViewer(browser, "scene.glb", options);
+  await page.waitForSelector(".message:not([hidden])");
+  assert.match(await message(page), /404/);
+  await close();
+});
+
+test("a plain glTF file is shown as it is", async () => {
+  const { page, close } = await openViewer(browser, "plain.glb", { width: 900 });
+  const now = await state(page);
+  assert.deepEqual([now.status, now.mode, now.total], ["ready", "orbit", 0]);
+  assert.match(await page.locator(".panel").innerText(), /plain glTF file: no eigen textures/);
+  assert.ok(await page.locator(".own").isHidden(), "nothing to set that it does not have");
+  const still = await picture(page);
+  assert.ok(new Set(still.data).size > 3);
+  await page.mouse.move(200, 180);
+  await page.mouse.down();
+  await page.mouse.move(320, 180, { steps: 2 });
+  await page.mouse.up();
+  assert.ok(apart(still, await picture(page)) > 0.5, "dragging turns it");
+  await close();
+});
+
+test("without a scene it asks for one; a chosen file and a dropped one open", async () => {
+  const { page, close } = await openViewer(browser, null);
+  assert.match(await page.locator(".invitation").innerText(), /Drop a \.glb here, or choose a file/);
+  await page.setInputFiles("input[type=file]", scenePath("line.glb"));
+  await page.waitForFunction(() => window.eigenfield.state().status === "ready");
+  assert.equal((await state(page)).title, "line");
+  await drop(page, "scene.glb");
+  await page.waitForFunction(() => window.eigenfield.state().title === "scene");
+  assert.equal((await state(page)).loaded, 6);
+  await drop(page, "not-ours.bin");
+  await page.waitForSelector(".message:not([hidden])");
+  await drop(page, "scene.glb");
+  assert.equal((await state(page)).status, "ready", "an error is not for ever");
+  assert.ok(await page.locator(".message").isHidden());
+  await close();
+});
+
+test("?load= names a scene", async () => {
+  const { page, close } = await openViewer(browser, null, {
+    query: "?load=other.glb", routes: { "/other.glb": { body: sceneBytes("line.glb") } },
+  });
+  const now = await state(page);
+  assert.deepEqual([now.status, now.title], ["ready", "other"]);
+  await close();
+});
+
+test("names that want to be HTML stay names", async () => {
+  const { page, close } = await openViewer(browser, "names.glb", {
+    width: 900, config: { title: "<img src=x onerror=alert(1)>" },
+  });
+  await state(page);
+  assert.equal(await page.locator("img").count(), 0);
+  assert.equal(await page.locator("h1").innerText(), "<img src=x onerror=alert(1)>");
+  const names = await page.evaluate(() => window.eigenfield.field.info.names);
+  const shown = await page.locator("select option").allTextContents();
+  assert.deepEqual(shown.slice(1), names);
+  for (const name of names) {
+    assert.ok(await page.evaluate((one) => window.eigenfield.goToCamera(one), name));
+    assert.equal((await state(page)).camera, name);
+  }
+  await close();
+});
+
+test("no WebGL 2: a sentence", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb", {
+    allowed: /WebGL/,
+    init: () => {
+      HTMLCanvasElement.prototype.getContext = () => null;
+    },
+  });
+  assert.match(await page.locator("[role=alert]").innerText(), /needs WebGL 2/);
+  await close();
+});
+
+/** Drops a file of the test scenes on the page. */
+async function drop(page, name) {
+  const data = sceneBytes(name).toString("base64");
+  await page.evaluate(
+    ([text, file]) => {
+      const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+      const transfer = new DataTransfer();
+      transfer.items.add(new File([bytes], file));
+      for (const kind of ["dragenter", "dragover", "drop"])
+        document.body.dispatchEvent(new DragEvent(kind, { dataTransfer: transfer, bubbles: true, cancelable: true }));
+    },
+    [data, name],
+  );
+}

@@ -1,0 +1,201 @@
+// The viewer: moving by every means, and the limits.
+
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { launch } from "./harness.mjs";
+import { apart, near, openViewer, picture, set, settled, state } from "./viewer-page.mjs";
+
+let browser;
+before(async () => {
+  browser = await launch();
+});
+after(() => browser.close());
+
+async function drag(page, [x0, y0], [x1, y1]) {
+  await page.mouse.move(x0, y0);
+  await page.mouse.down();
+  await page.mouse.move(x1, y1, { steps: 3 });
+  await page.mouse.up();
+}
+
+test("the mouse moves the eye the other way, as one pushes a picture", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  const start = await state(page);
+  const before = await picture(page);
+  await drag(page, [200, 200], [236, 218]); // a tenth and a twentieth of the smaller side
+  const now = await state(page);
+  near(now.x, start.x - 0.26, 0.01);
+  near(now.y, start.y + 0.13, 0.01);
+  assert.ok(apart(before, await picture(page)) > 0.3);
+  await close();
+});
+
+test("a soft stop at the array's edge: a hand pulls a little further, and it comes back", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb", { glide: true });
+  await settled(page);
+  await page.mouse.move(400, 200);
+  await page.mouse.down();
+  await page.mouse.move(20, 200, { steps: 4 });
+  await page.waitForFunction(() => window.eigenfield.state().x > 1.01);
+  assert.ok((await page.evaluate(() => window.eigenfield.state().x)) < 1.15);
+  await page.mouse.up();
+  assert.equal((await state(page)).x, 1);
+  await page.evaluate(() => window.eigenfield.goTo(-7, 0.5));
+  near((await state(page)).x, -1, 0);
+  await close();
+});
+
+test("keys: arrows and letters move, held ones go on, Q and E change the size", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb", { glide: true });
+  const start = await state(page);
+  const hold = async (key) => {
+    const { frames } = await state(page);
+    await page.keyboard.down(key);
+    await page.waitForFunction((count) => window.eigenfield.state().frames > count + 4, frames);
+    await page.keyboard.up(key);
+    return state(page);
+  };
+  assert.ok((await hold("ArrowRight")).x > start.x + 0.02);
+  const up = await hold("w");
+  assert.ok(up.y > start.y + 0.02);
+  assert.ok((await hold("a")).x < up.x - 0.02);
+  assert.ok((await hold("e")).zoom > 1.01);
+  const forward = await hold("r");
+  assert.ok(forward.dolly > 0.005);
+  await page.keyboard.press("Home");
+  const home = await state(page);
+  assert.deepEqual([home.x, home.y, home.zoom, home.dolly], [start.x, start.y, 1, 0]);
+  await close();
+});
+
+test("the wheel makes larger, with Shift goes forward, each within limits", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await settled(page);
+  await page.mouse.move(240, 180);
+  await page.mouse.wheel(0, -400);
+  await page.waitForFunction(() => window.eigenfield.state().zoom > 1.5);
+  for (let i = 0; i < 10; i++) await page.mouse.wheel(0, -900);
+  await page.waitForFunction(() => window.eigenfield.state().zoom === 8);
+  for (let i = 0; i < 10; i++) await page.mouse.wheel(0, 900);
+  await page.waitForFunction(() => window.eigenfield.state().zoom === 1);
+  await page.keyboard.down("Shift");
+  for (let i = 0; i < 10; i++) await page.mouse.wheel(0, -900);
+  await page.keyboard.up("Shift");
+  const { dolly, zoom } = await state(page);
+  assert.ok(dolly > 0.1 && dolly < 1, `${dolly} of the way to the scene`);
+  assert.equal(zoom, 1);
+  const mode = await page.evaluate(() => window.eigenfield.field.weightMode);
+  assert.equal(mode, "ray", "off the plane each ray has its own");
+  await close();
+});
+
+test("touch: one finger moves, two pinch", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb", { context: { hasTouch: true, isMobile: true } });
+  const start = await state(page);
+  const client = await page.context().newCDPSession(page);
+  const touch = (type, ...points) =>
+    client.send("Input.dispatchTouchEvent", { type, touchPoints: points.map(([x, y], id) => ({ x, y, id })) });
+  await touch("touchStart", [240, 180]);
+  await touch("touchMove", [220, 180]);
+  await touch("touchMove", [204, 180]);
+  await touch("touchEnd");
+  const moved = await state(page);
+  near(moved.x, start.x + 0.26, 0.02);
+  near(moved.y, start.y, 0.01);
+  await touch("touchStart", [200, 180], [280, 180]);
+  await touch("touchMove", [160, 180], [320, 180]);
+  await touch("touchEnd");
+  near((await state(page)).zoom, 2, 0.1);
+  await close();
+});
+
+test("a stick of a gamepad moves, and a resting one draws nothing", async () => {
+  const init = () => {
+    const pad = { axes: [0, 0, 0, 0], buttons: Array.from({ length: 16 }, () => ({ pressed: false })) };
+    window.pad = pad;
+    navigator.getGamepads = () => [pad];
+  };
+  const { page, close } = await openViewer(browser, "scene.glb", { init });
+  const start = await state(page);
+  await page.evaluate(() => {
+    window.dispatchEvent(new Event("gamepadconnected"));
+    window.pad.axes[0] = 0.05;
+  });
+  await page.waitForTimeout(200);
+  assert.equal((await state(page)).x, start.x);
+  await page.evaluate(() => void (window.pad.axes[0] = 1));
+  await page.waitForFunction((x) => window.eigenfield.state().x > x + 0.1, start.x);
+  await page.evaluate(() => void (window.pad.axes[0] = 0));
+  await page.evaluate(() => void (window.pad.buttons[5].pressed = true));
+  await page.waitForFunction(() => window.eigenfield.state().camera !== null);
+  await close();
+});
+
+test("cameras on a line: the eye stays on it", async () => {
+  const { page, close } = await openViewer(browser, "line.glb");
+  await settled(page);
+  await drag(page, [240, 180], [200, 120]);
+  const now = await state(page);
+  assert.ok(now.x > 0.1);
+  assert.equal(now.y, 0);
+  await close();
+});
+
+test("a click on the map goes there", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await settled(page);
+  const box = await page.locator(".map canvas").boundingBox();
+  await page.mouse.click(box.x + 12 + (box.width - 24) * 0.75, box.y + 12 + (box.height - 24) * 0.25);
+  const now = await state(page);
+  near(now.x, 0.5, 0.03);
+  near(now.y, 0.5, 0.03);
+  await close();
+});
+
+test("orbit: starts without a jump, turns about the surface, tells when it is outside, and comes back", async () => {
+  const { page, close } = await openViewer(browser, "scene.glb");
+  await page.evaluate(() => window.eigenfield.goTo(0.3, 0.2));
+  await settled(page);
+  const eye = () => page.evaluate(() => window.eigenfield.field.lastWeights.map((weights) => [...weights]));
+  const before = await eye();
+  await page.keyboard.press("o");
+  assert.equal((await state(page)).mode, "orbit");
+  const [a, b] = [before[0], (await eye())[0]];
+  a.forEach((weight, i) => near(weight, b[i], 1e-4));
+  assert.equal((await state(page)).outside, false);
+  await drag(page, [240, 180], [440, 180]);
+  assert.equal((await state(page)).outside, true);
+  assert.match(await page.locator(".cue").innerText(), /Outside the captured views/);
+  await page.keyboard.press("Escape");
+  const back = await state(page);
+  assert.deepEqual([back.mode, back.outside], ["plane", false]);
+  assert.ok(Math.abs(back.x) <= 1 && Math.abs(back.y) <= 1);
+  assert.ok(await page.locator(".cue").isHidden());
+  await close();
+});
+
+test("the view is in the address, and comes from it", async () => {
+  const first = await openViewer(browser, "scene.glb");
+  await first.page.evaluate(() => window.eigenfield.goTo(0.25, -0.5));
+  await set(first.page, { count: 3, view: "mean", weights: "eye", mixing: "bilinear" });
+  await first.page.waitForFunction(() => location.hash.includes("x=0.25") && location.hash.includes("view=mean"));
+  const hash = await first.page.evaluate(() => location.hash);
+  assert.equal(await first.page.evaluate(() => history.length), 2, "no step in the history"); // blank, page
+  await first.close();
+
+  const { page, close } = await openViewer(browser, "scene.glb", { hash });
+  const now = await state(page);
+  assert.deepEqual(
+    [now.x, now.y, now.count, now.view, now.weights, now.mixing, now.mode],
+    [0.25, -0.5, 3, "mean", "eye", "bilinear", "plane"],
+  );
+  await page.evaluate(() => void (location.hash = "#camera=view_0_3&n=2"));
+  await page.waitForFunction(() => window.eigenfield.state().camera === "view_0_3");
+  assert.equal((await state(page)).count, 2);
+  await page.evaluate(() => void (location.hash = "#eye=0.2,0.1,-1&at=0,0,-3"));
+  await page.waitForFunction(() => window.eigenfield.state().mode === "orbit");
+  await page.evaluate(() => void (location.hash = "#x=nonsense&n=-5&mode=%00&view=<b>"));
+  const odd = await state(page);
+  assert.deepEqual([odd.view, odd.status], ["picture", "ready"]);
+  await close();
+});

@@ -1,0 +1,70 @@
+// What the page was told by whoever made it: the JSON in #eigenfield-config. Every key is optional, and a key of the
+// wrong kind is as good as absent.
+
+export interface Config {
+  title: string | null;
+  scene: string | null; // URL, relative to the page
+  bytes: number | null; // of the scene
+  embedded: boolean; // the scene is base64 text in #eigenfield-scene
+  photographs: ReadonlyMap<string, string>; // camera's name to URL
+  metresPerUnit: number | null;
+  version: string | null;
+}
+
+export function readConfig(page: Document): Config {
+  const given = parse(page.getElementById("eigenfield-config")?.textContent ?? "{}");
+  const text = (key: string): string | null => {
+    const value = given[key];
+    return typeof value === "string" && value !== "" ? value : null;
+  };
+  const positive = (key: string): number | null => {
+    const value = given[key];
+    return typeof value === "number" && Number.isFinite(value) && value > 0 ? value : null;
+  };
+  const photographs = given["photographs"];
+  return {
+    title: text("title"),
+    scene: text("scene"),
+    bytes: positive("bytes"),
+    embedded: given["embedded"] === true,
+    photographs: new Map(
+      isObject(photographs)
+        ? Object.entries(photographs).filter((entry): entry is [string, string] => typeof entry[1] === "string")
+        : [],
+    ),
+    metresPerUnit: positive("metresPerUnit"),
+    version: text("version"),
+  };
+}
+
+/** The scene inside the page, or null where there is none. */
+export function embeddedScene(page: Document): Blob | null {
+  const text = page.getElementById("eigenfield-scene")?.textContent?.trim();
+  return text ? fromBase64(text) : null;
+}
+
+/** Base64 text as a Blob, a piece at a time: `atob` on the whole would hold the file three times. */
+export function fromBase64(text: string): Blob {
+  const pieces: Uint8Array<ArrayBuffer>[] = [];
+  const step = 1 << 20; // a multiple of four: each piece is base64 of its own
+  for (let start = 0; start < text.length; start += step) {
+    const binary = atob(text.slice(start, start + step));
+    const bytes = new Uint8Array(binary.length);
+    for (let i = 0; i < binary.length; i++) bytes[i] = binary.charCodeAt(i);
+    pieces.push(bytes);
+  }
+  return new Blob(pieces);
+}
+
+function parse(text: string): Record<string, unknown> {
+  try {
+    const value: unknown = JSON.parse(text);
+    return isObject(value) ? value : {};
+  } catch {
+    return {};
+  }
+}
+
+function isObject(value: unknown): value is Record<string, unknown> {
+  return typeof value === "object" && value !== null && !Array.isArray(value);
+}

@@ -1,0 +1,47 @@
+// Elements made from data. Text becomes text nodes and never markup: names in files come from strangers.
+
+type Child = Node | string;
+type Attributes = Readonly<Record<string, string>>;
+
+export function element<K extends keyof HTMLElementTagNameMap>(
+  tag: K,
+  attributes: Attributes = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
+  made.append(...children);
+  return made;
+}
+
+/** A line drawing of 24 x 24, in the colour of the text around it. */
+export function icon(path: string): SVGSVGElement {
+  const space = "http://www.w3.org/2000/svg";
+  const drawing = document.createElementNS(space, "svg");
+  drawing.setAttribute("viewBox", "0 0 24 24");
+  drawing.setAttribute("aria-hidden", "true");
+  const line = document.createElementNS(space, "path");
+  line.setAttribute("d", path);
+  drawing.append(line);
+  return drawing;
+}
+
+export function button(label: string, path: string, act: () => void): HTMLButtonElement {
+  const made = element("button", { type: "button", class: "icon", "aria-label": label, title: label }, icon(path));
+  made.addEventListener("click", act);
+  return made;
+}
+
+export const ICONS = {
+  home: "M4 11.5 12 5l8 6.5M6.5 10v9h11v-9M10 19v-5h4v5",
+  orbit: "M12 10a2 2 0 1 0 0 4 2 2 0 0 0 0-4ZM19.5 8.5a8.5 8.5 0 0 0-15 0M4.5 15.5a8.5 8.5 0 0 0 15 0M19.5 4v4.5H15",
+  tilt: "M8 3.5h8v17H8zM3 9l-1 3 1 3M21 9l1 3-1 3M11 17.5h2",
+  camera: "M4 8h3.5L9 5.5h6L16.5 8H20v11H4zM12 10a3.2 3.2 0 1 0 0 6.4 3.2 3.2 0 0 0 0-6.4Z",
+  headset: "M3 8h18v9h-6l-2-2.5h-2L9 17H3zM7.5 11v2.5M16.5 11v2.5",
+  open: "M4 19V6h6l2 2.5h8V19zM12 17v-5M9.8 14 12 11.8l2.2 2.2",
+  help: "M12 3.5a8.5 8.5 0 1 0 0 17 8.5 8.5 0 0 0 0-17ZM9.6 9.6c0-3.2 5-3.2 5 0 0 2-2.6 2.1-2.6 4.1M12 16.4v.4",
+  panel: "M4 7h10M18 7h2M14 5v4h4V5zM4 17h2M10 17h10M6 15v4h4v-4z",
+  previous: "M14.5 6 8.5 12l6 6",
+  next: "M9.5 6l6 6-6 6",
+  close: "M6 6l12 12M18 6 6 18",
+};

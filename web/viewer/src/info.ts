@@ -1,0 +1,98 @@
+// The information panel: what the file is, what it says of itself, and what it costs here.
+
+import type { EigenField, SceneInfo } from "eigenfield-three";
+import { element } from "./dom";
+import { bytes, figure, shown, whole } from "./text";
+import type { Viewer } from "./viewer";
+
+type Rows = [string, string][];
+
+export interface Info {
+  readonly root: HTMLElement;
+  update(): void;
+}
+
+export function createInfo(viewer: Viewer): Info {
+  const root = element("div", { class: "facts" });
+  return {
+    root,
+    update: () => {
+      const scene = viewer.scene();
+      const field = scene?.field;
+      if (!scene) return root.replaceChildren();
+      if (!field) {
+        return root.replaceChildren(
+          element("p", {}, "A plain glTF file: no eigen textures. It is shown as it is."),
+        );
+      }
+      root.replaceChildren(
+        ...section("Quality, as measured on the photographs", quality(field.info)),
+        ...section("Bytes", sizes(field.info)),
+        ...section("Scene", facts(field.info)),
+        ...section("Here", [
+          ["GPU memory", bytes(field.gpuBytes)],
+          ["eigen textures", `${field.loaded} of ${field.total}`],
+        ]),
+        ...(field.limitation === null ? [] : [element("p", { class: "warning" }, field.limitation)]),
+        ...settings(field),
+      );
+    },
+  };
+}
+
+function section(title: string, rows: Rows): Node[] {
+  if (rows.length === 0) return [];
+  const table = element("table");
+  for (const [name, value] of rows)
+    table.append(element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
+  return [element("h3", {}, title), table];
+}
+
+function quality({ scores }: SceneInfo): Rows {
+  const rows: Rows = [];
+  const pair = (label: string, ...path: string[]): void => {
+    const [psnr, ssim] = [figure(scores, ...path, "psnr"), figure(scores, ...path, "ssim")];
+    if (psnr !== null || ssim !== null) rows.push([label, `${shown(psnr, 2, " dB")} · SSIM ${shown(ssim, 4)}`]);
+  };
+  pair("texture maps", "uv");
+  pair("encoded views", "image", "encoded");
+  pair("held-out views", "image", "held_out");
+  const ratio = figure(scores, "ratio", "photographs");
+  if (ratio !== null) rows.push(["smaller than its photographs", `${shown(ratio, 1)} ×`]);
+  return rows.length > 0 ? rows : [["not measured", "eigenfield evaluate --store"]];
+}
+
+function sizes({ bytes: parts }: SceneInfo): Rows {
+  const textures = parts.textures.reduce((a, b) => a + b, 0);
+  return [
+    ["file", bytes(parts.total)],
+    ["mesh", bytes(parts.mesh)],
+    ["mean", bytes(parts.mean)],
+    [`${parts.textures.length} eigen textures`, bytes(textures)],
+    ["weights", bytes(parts.weights)],
+    ["calibration and the rest", bytes(parts.other)],
+  ];
+}
+
+function facts(info: SceneInfo): Rows {
+  const held = info.heldOut.filter(Boolean).length;
+  const grid = info.grid ? ` (${info.grid.columns} × ${info.grid.rows})` : "";
+  const view = info.cameras[info.reference];
+  return [
+    ["cameras", `${info.cameras.length}${grid}${held > 0 ? `, ${held} held out` : ""}`],
+    ...(view ? [["photographs", `${view.width} × ${view.height}`] as [string, string]] : []),
+    ["texels", `${info.size[0]} × ${info.size[1]}`],
+    ["vertices", whole(info.vertices)],
+    ["triangles", whole(info.triangles)],
+    ["format", info.version],
+    ...(info.generator === "" ? [] : [["made by", info.generator] as [string, string]]),
+  ];
+}
+
+function settings({ info }: EigenField): Node[] {
+  const entries = Object.entries(info.settings).filter(([, value]) => value !== null);
+  if (entries.length === 0) return [];
+  const text = (value: unknown): string => (typeof value === "string" ? value : JSON.stringify(value));
+  const rows = entries.map(([key, value]): [string, string] => [key, text(value)]);
+  return [element("details", {}, element("summary", {}, "How it was made"), ...section("", rows).slice(1))];
+}

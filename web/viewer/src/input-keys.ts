@@ -1,0 +1,104 @@
+// The keyboard. Keys that are held move; the others act once.
+
+import type { Push } from "./mode";
+import type { Options } from "./options";
+import type { Viewer } from "./viewer";
+
+type Axis = readonly [keyof Push, number];
+
+const HELD: Readonly<Record<string, Axis>> = {
+  ArrowLeft: ["x", -1], KeyA: ["x", -1],
+  ArrowRight: ["x", 1], KeyD: ["x", 1],
+  ArrowUp: ["y", 1], KeyW: ["y", 1],
+  ArrowDown: ["y", -1], KeyS: ["y", -1],
+  KeyE: ["closer", 1], KeyQ: ["closer", -1],
+  KeyR: ["forward", 1], KeyF: ["forward", -1],
+};
+
+export interface Actions {
+  help(): void;
+  panel(): void;
+  screenshot(): void;
+}
+
+export interface Keys {
+  /** What the held keys ask for now; null for nothing. */
+  wish(): Push | null;
+}
+
+export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
+  const held = new Set<string>();
+  const once = (key: string): (() => void) | undefined => {
+    const { view, count, weights, wireframe } = viewer.options();
+    const field = viewer.scene()?.field;
+    const show = (next: Options["view"]) => () => viewer.set({ view: next === view ? "picture" : next });
+    const sum = (step: number) => () =>
+      viewer.set({ count: Math.min(Math.max(Math.min(count, field?.total ?? 0) + step, 0), field?.total ?? 0) });
+    const table: Record<string, () => void> = {
+      o: () => viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane"),
+      "[": () => viewer.nextCamera(-1),
+      "]": () => viewer.nextCamera(1),
+      " ": () => viewer.showPhotograph(!viewer.photographShown()),
+      "1": () => viewer.set({ view: "picture" }),
+      "2": show("mean"),
+      "3": show("eigen"),
+      "4": show("error"),
+      "-": sum(-1),
+      "+": sum(1),
+      "=": sum(1),
+      t: () => viewer.set({ weights: weights === "ray" ? "eye" : "ray" }),
+      m: () => viewer.set({ wireframe: !wireframe }),
+      "0": viewer.home,
+      home: viewer.home,
+      escape: () => {
+        if (viewer.captured() !== null) viewer.moving();
+        else if (viewer.modeName() === "orbit") viewer.comeBack();
+      },
+      p: actions.screenshot,
+      i: actions.panel,
+      h: actions.help,
+      "?": actions.help,
+    };
+    return table[key.toLowerCase()];
+  };
+
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || taken(event)) return;
+    if (HELD[event.code]) {
+      event.preventDefault();
+      held.add(event.code);
+      viewer.request();
+      return;
+    }
+    if (event.repeat && !["[", "]", "-", "+", "="].includes(event.key)) return;
+    const act = once(event.key);
+    if (!act) return;
+    event.preventDefault();
+    act();
+  });
+  addEventListener("keyup", (event) => void held.delete(event.code));
+  addEventListener("blur", () => held.clear());
+
+  return {
+    wish: () => {
+      if (held.size === 0) return null;
+      const push: Push = { x: 0, y: 0, closer: 0, forward: 0 };
+      for (const code of held) {
+        const axis = HELD[code];
+        if (axis) push[axis[0]] += axis[1];
+      }
+      return push;
+    },
+  };
+}
+
+/** Keys that belong to the control that has the focus. */
+function taken(event: KeyboardEvent): boolean {
+  const { target, key } = event;
+  if (!(target instanceof HTMLElement)) return false;
+  if (target.closest("dialog[open]")) return true;
+  if (key === "Escape") return false;
+  if (target instanceof HTMLSelectElement) return true;
+  if (target instanceof HTMLInputElement) return key === " " || key === "Home" || key.startsWith("Arrow");
+  return key === " " && target.closest("button, summary, a") !== null;
+}

@@ -1,0 +1,64 @@
+// Frames on demand: one is drawn when something asked for it, and the next only while something still moves.
+
+export interface Loop {
+  request(): void;
+  frames(): number; // drawn so far
+  rate(): number | null; // frames per second while drawing goes on, else null
+  idle(): boolean;
+  pause(): void; // somebody else (a headset) paces the frames
+  resume(): void;
+}
+
+const LONGEST = 0.1; // seconds: a step after a pause is no longer than this
+const REMEMBERED = 30; // frames over which the rate is taken
+
+/** step: moves things by so many seconds and says whether they still move. draw: one frame. rested: all is still. */
+export function createLoop(step: (seconds: number) => boolean, draw: () => void, rested: () => void): Loop {
+  let handle: number | null = null;
+  let last: number | null = null; // time of the frame before, null after a rest
+  let drawn = 0;
+  let paused = false;
+  const times: number[] = [];
+
+  const frame = (now: number): void => {
+    handle = null;
+    const seconds = last === null ? 1 / 60 : Math.min((now - last) / 1000, LONGEST);
+    if (last === null) times.length = 0;
+    last = now;
+    times.push(now);
+    if (times.length > REMEMBERED) times.shift();
+    const moving = step(seconds);
+    draw();
+    drawn++;
+    if (moving) request();
+    if (handle === null) {
+      last = null;
+      rested();
+    }
+  };
+  const request = (): void => {
+    if (!paused) handle ??= requestAnimationFrame(frame);
+  };
+
+  return {
+    request,
+    frames: () => drawn,
+    rate: () => {
+      const [first] = times;
+      const latest = times[times.length - 1];
+      if (last === null || times.length < 5 || first === undefined || latest === undefined) return null;
+      return (1000 * (times.length - 1)) / (latest - first);
+    },
+    idle: () => handle === null,
+    pause: () => {
+      paused = true;
+      if (handle !== null) cancelAnimationFrame(handle);
+      handle = null;
+      last = null;
+    },
+    resume: () => {
+      paused = false;
+      request();
+    },
+  };
+}

@@ -1,0 +1,118 @@
+// The page: makes the parts, ties them together, and opens what the page was made for.
+
+import { createApi } from "./api";
+import { createCameraMap } from "./camera-map";
+import { readConfig } from "./config";
+import { button, element, ICONS } from "./dom";
+import { takeFiles } from "./files";
+import { createHelp } from "./help";
+import { listenToGamepads, type Gamepads } from "./input-gamepad";
+import { listenToKeys, type Keys } from "./input-keys";
+import { listenToPointers } from "./input-pointer";
+import { createTilt } from "./input-tilt";
+import { createOverlays } from "./overlays";
+import { createPanel } from "./panel";
+import { saveScreenshot } from "./screenshot";
+import { fileSource, namedSource } from "./source";
+import { keepAddress } from "./url";
+import { createViewer, type Viewer } from "./viewer";
+import { createHeadset } from "./xr";
+
+const NO_WEBGL =
+  "This needs WebGL 2, which this browser does not offer here. " +
+  "A current browser with its graphics acceleration switched on shows the scene.";
+const NARROW = "(max-width: 720px)";
+
+function start(): void {
+  const config = readConfig(document);
+  if (config.title !== null) document.title = `${config.title} – eigenfield`;
+  const label = "The scene: arrow keys move, H lists all controls";
+  const canvas = element("canvas", { class: "view", tabindex: "0", role: "application", "aria-label": label });
+  const stageArea = element("main", { class: "stage" }, canvas);
+
+  let keys: Keys | null = null;
+  let gamepads: Gamepads | null = null;
+  /** What keys and sticks that are held do in one frame. */
+  const pushed = (seconds: number): boolean => {
+    const wishes = [keys?.wish(), gamepads?.wish()].filter((wish) => wish != null);
+    for (const wish of wishes) viewer.moving()?.push(wish, seconds);
+    return wishes.length > 0;
+  };
+  let viewer: Viewer;
+  try {
+    viewer = createViewer(canvas, config, pushed);
+  } catch {
+    const words = element("div", { class: "message", role: "alert" }, element("p", {}, NO_WEBGL));
+    document.body.append(element("main", { class: "stage" }, words));
+    return;
+  }
+
+  const chooser = takeFiles((file) => void viewer.open(fileSource(file)), (over) => overlays.hover(over));
+  const overlays = createOverlays(viewer, chooser.choose);
+  const panel = createPanel(viewer);
+  const map = createCameraMap(viewer);
+  const help = createHelp(config.version);
+  const headset = createHeadset(viewer, () => update());
+  const tilt = createTilt(viewer, () => update());
+
+  const showPanel = (shown: boolean): void => {
+    panel.root.hidden = !shown;
+    fold.setAttribute("aria-expanded", String(shown));
+  };
+  const fold = button("Panel  I", ICONS.panel, () => showPanel(panel.root.hidden !== false));
+  fold.setAttribute("aria-controls", "panel");
+  const orbit = button("Orbit  O", ICONS.orbit, () => {
+    viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane");
+  });
+  const lean = button("Move by tilting the device", ICONS.tilt, () => void tilt.toggle());
+  const shoot = button("Save the picture  P", ICONS.camera, () => saveScreenshot(viewer));
+  const tools = element(
+    "div", { class: "tools", role: "toolbar", "aria-label": "Tools" },
+    button("First view  Home", ICONS.home, viewer.home), orbit, lean, headset.root, shoot,
+    button("Open a file", ICONS.open, chooser.choose), button("Controls  H", ICONS.help, help.toggle), fold,
+  );
+  stageArea.append(...overlays.roots, map.root, tools);
+  document.body.append(stageArea, panel.root, help.root, chooser.root);
+
+  const update = (): void => {
+    panel.update();
+    overlays.update();
+    map.update();
+    orbit.setAttribute("aria-pressed", String(viewer.modeName() === "orbit"));
+    orbit.hidden = !viewer.scene()?.plane;
+    lean.hidden = !tilt.possible || !viewer.scene()?.plane;
+    lean.setAttribute("aria-pressed", String(tilt.on()));
+    shoot.disabled = viewer.scene() === null;
+    const name = viewer.scene()?.source.name;
+    if (name !== undefined) document.title = `${name} – eigenfield`;
+  };
+  viewer.onChange(update);
+  viewer.onDraw(() => {
+    overlays.tick();
+    map.update();
+    panel.tick();
+  });
+
+  listenToPointers(viewer);
+  keys = listenToKeys(viewer, {
+    help: help.toggle,
+    panel: () => showPanel(panel.root.hidden !== false),
+    screenshot: () => saveScreenshot(viewer),
+  });
+  gamepads = listenToGamepads(viewer);
+  keepAddress(viewer);
+  showPanel(!matchMedia(NARROW).matches);
+  new ResizeObserver(() => {
+    if (headset.presenting()) return; // the headset has its own size
+    viewer.stage.resize(stageArea.clientWidth, stageArea.clientHeight);
+    viewer.drawNow(); // at once: a canvas that was resized is empty
+    viewer.request();
+  }).observe(stageArea);
+  window.eigenfield = createApi(viewer);
+
+  update();
+  const source = namedSource(config, document, new URL(location.href));
+  if (source) void viewer.open(source);
+}
+
+start();

@@ -1,0 +1,46 @@
+// What both ways of moving, on the view plane and around a point, have in common.
+
+import type { PerspectiveCamera } from "three";
+
+/** What keys and sticks ask for, each -1..1: sideways, up, larger, into the scene. */
+export interface Push {
+  x: number;
+  y: number;
+  closer: number;
+  forward: number;
+}
+
+/** Where a picture lies in the canvas, in parts of its width and height from the top left. */
+export interface Frame {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+export interface Mode {
+  grab(): void;
+  /** The hand moved by so much, in parts of the canvas's smaller side, right and down. */
+  drag(dx: number, dy: number, pan: boolean): void;
+  release(): void;
+  push(wish: Push, seconds: number): void;
+  closer(factor: number): void;
+  /** Into the scene, in parts of its distance. */
+  forward(amount: number): void;
+  /** One frame's movement; true while there is more to come. */
+  step(seconds: number): boolean;
+  place(camera: PerspectiveCamera, aspect: number): Frame;
+  /** No captured view is near what the eye sees. */
+  outside(): boolean;
+}
+
+/** Nobody who asked the system for less motion wants things to glide. */
+export const reducedMotion = (): boolean => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+/** From `value` towards `goal`, exponentially, and exactly there in the end. */
+export function approach(value: number, goal: number, seconds: number, constant: number, close: number): number {
+  if (reducedMotion() || Math.abs(goal - value) < close) return goal;
+  return goal + (value - goal) * Math.exp(-seconds / constant);
+}
+
+export const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), high);

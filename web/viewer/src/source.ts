@@ -1,0 +1,39 @@
+// Where a scene comes from: the page itself, a URL, or a file from this machine.
+
+import type { Config } from "./config";
+import { embeddedScene } from "./config";
+
+export interface Source {
+  name: string; // for people
+  from: string | Blob;
+  bytes: number | null;
+  own: boolean; // the page was made for it: its title and photographs belong to it
+}
+
+/** What the page or its address names, or null: then somebody has to bring a file. */
+export function namedSource(config: Config, page: Document, address: URL): Source | null {
+  const title = config.title ?? "scene";
+  if (config.embedded) {
+    const blob = embeddedScene(page);
+    if (blob) return { name: title, from: blob, bytes: blob.size, own: true };
+  }
+  if (config.scene !== null) return { name: title, from: config.scene, bytes: config.bytes, own: true };
+  const asked = address.searchParams.get("load");
+  if (asked !== null && asked !== "") return { name: lastPart(asked), from: asked, bytes: null, own: false };
+  return null;
+}
+
+export function fileSource(file: File): Source {
+  return { name: withoutSuffix(file.name), from: file, bytes: file.size, own: false };
+}
+
+function lastPart(url: string): string {
+  const name = url.split(/[?#]/)[0]?.split("/").pop() ?? "";
+  try {
+    return withoutSuffix(decodeURIComponent(name)) || "scene";
+  } catch {
+    return withoutSuffix(name) || "scene";
+  }
+}
+
+const withoutSuffix = (name: string): string => name.replace(/\.(glb|gltf)$/i, "");

@@ -1,0 +1,151 @@
+// The canvas and what three.js draws on it: the scene's surface, and over it a photograph where one is shown.
+
+import {
+  Color, DirectionalLight, GLSL3, Group, HemisphereLight, LinearSRGBColorSpace, Mesh, type Object3D,
+  PerspectiveCamera, PlaneGeometry, Scene, ShaderMaterial, SRGBColorSpace, type Texture, Vector4, WebGLRenderer,
+} from "three";
+import type { Frame } from "./mode";
+
+const FINEST = 2; // device pixels a CSS pixel, at most
+
+export interface Stage {
+  readonly canvas: HTMLCanvasElement;
+  readonly renderer: WebGLRenderer;
+  readonly camera: PerspectiveCamera;
+  readonly root: Group; // holds the scene; a headset moves it
+  /** coded: the object writes the photographs' own numbers; otherwise it is lit and managed as glTF says. */
+  put(object: Object3D, coded: boolean): void;
+  clear(): void;
+  setBackground(colour: string): void;
+  /** only: nothing is drawn outside it. over: a picture that fills `only`. */
+  draw(only: Frame | null, over: Texture | null): void;
+  resize(width: number, height: number): void;
+  aspect(): number;
+  /** What was just drawn: call it in the same task as `draw`. Rows from the top, R, G, B, A. */
+  pixels(): { width: number; height: number; data: Uint8Array };
+}
+
+/** Throws where there is no WebGL 2. */
+export function createStage(canvas: HTMLCanvasElement): Stage {
+  const renderer = new WebGLRenderer({ canvas, antialias: true, powerPreference: "high-performance" });
+  renderer.autoClear = false;
+  renderer.outputColorSpace = LinearSRGBColorSpace;
+  const scene = new Scene();
+  const root = new Group();
+  const lights = new Group();
+  lights.add(new HemisphereLight(0xffffff, 0x50535a, 2.2));
+  const lamp = new DirectionalLight(0xffffff, 1.6);
+  lamp.position.set(0.5, 1, 0.8);
+  lights.add(lamp);
+  scene.add(root, lights);
+  const camera = new PerspectiveCamera();
+  const photograph = createPhotographQuad();
+  const background = { colour: "#000000", coded: true };
+  const size = { width: 1, height: 1 };
+
+  const clearColour = (): void => {
+    // Coded numbers go out as they are: the colour must not be taken for sRGB that has to be made linear first.
+    const space = background.coded ? LinearSRGBColorSpace : SRGBColorSpace;
+    renderer.setClearColor(new Color().setStyle(background.colour, space), 1);
+  };
+
+  return {
+    canvas,
+    renderer,
+    camera,
+    root,
+    put: (object, coded) => {
+      root.add(object);
+      lights.visible = !coded;
+      background.coded = coded;
+      renderer.outputColorSpace = coded ? LinearSRGBColorSpace : SRGBColorSpace;
+      clearColour();
+    },
+    clear: () => {
+      for (const object of [...root.children]) discard(object);
+      root.clear();
+    },
+    setBackground: (colour) => {
+      background.colour = colour;
+      clearColour();
+    },
+    draw: (only, over) => {
+      renderer.setScissorTest(false);
+      renderer.clear();
+      if (only) {
+        const { left, top, width, height } = only;
+        renderer.setScissor(
+          left * size.width, (1 - top - height) * size.height, width * size.width, height * size.height,
+        );
+        renderer.setScissorTest(true);
+      }
+      if (only && over) photograph.draw(renderer, over, only);
+      else renderer.render(scene, camera);
+      renderer.setScissorTest(false);
+    },
+    resize: (width, height) => {
+      Object.assign(size, { width: Math.max(width, 1), height: Math.max(height, 1) });
+      renderer.setPixelRatio(Math.min(devicePixelRatio, FINEST));
+      renderer.setSize(size.width, size.height, false);
+    },
+    aspect: () => size.width / size.height,
+    pixels: () => {
+      const gl = renderer.getContext();
+      const { drawingBufferWidth: width, drawingBufferHeight: height } = gl;
+      const upsideDown = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, upsideDown);
+      const data = new Uint8Array(upsideDown.length);
+      for (let y = 0; y < height; y++)
+        data.set(upsideDown.subarray(4 * width * (height - 1 - y), 4 * width * (height - y)), 4 * width * y);
+      return { width, height, data };
+    },
+  };
+}
+
+/** A picture over a part of the canvas, its numbers as they are. */
+function createPhotographQuad(): { draw(renderer: WebGLRenderer, picture: Texture, frame: Frame): void } {
+  const material = new ShaderMaterial({
+    glslVersion: GLSL3,
+    depthTest: false,
+    depthWrite: false,
+    uniforms: { picture: { value: null }, corners: { value: new Vector4() } },
+    vertexShader: `
+      uniform vec4 corners;
+      out vec2 at;
+      void main() {
+        at = vec2(uv.x, 1.0 - uv.y);
+        gl_Position = vec4(mix(corners.xy, corners.zw, uv), 0.0, 1.0);
+      }`,
+    fragmentShader: `
+      uniform sampler2D picture;
+      in vec2 at;
+      out vec4 colour;
+      void main() { colour = vec4(texture(picture, at).rgb, 1.0); }`,
+  });
+  const quad = new Mesh(new PlaneGeometry(2, 2), material);
+  quad.frustumCulled = false;
+  const scene = new Scene().add(quad);
+  const camera = new PerspectiveCamera();
+  return {
+    draw: (renderer, picture, { left, top, width, height }) => {
+      material.uniforms["picture"] = { value: picture };
+      const [right, bottom] = [left + width, top + height];
+      material.uniforms["corners"] = {
+        value: new Vector4(2 * left - 1, 1 - 2 * bottom, 2 * right - 1, 1 - 2 * top),
+      };
+      renderer.render(scene, camera);
+    },
+  };
+}
+
+function discard(object: Object3D): void {
+  object.traverse((part) => {
+    if (!(part instanceof Mesh)) return;
+    part.geometry.dispose();
+    for (const material of [part.material].flat()) {
+      for (const value of Object.values(material))
+        if (typeof value === "object" && value !== null && "isTexture" in value) (value as Texture).dispose();
+      material.dispose();
+    }
+  });
+}
