@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from scenes import row_grid
 import eigenfield as ef
 from eigenfield.basis import eigen_textures, filled, gram_matrix, mean_map, spectrum, weights_of
 from eigenfield.camera import Camera
+from eigenfield.errors import OptionError
 from eigenfield.parallel import set_threads
 from eigenfield.rendering import camera_weights, delaunay_triangles, renderer_of
 from eigenfield.scene import Basis, Plane
@@ -210,6 +213,19 @@ def test_a_world_far_from_its_origin_is_said(caplog):
     with caplog.at_level(logging.WARNING):
         _warn_of_rounding(cameras, [camera.rounded() for camera in cameras], mesh)
     assert "origin" in caplog.text
+
+
+def test_the_real_size_is_kept_where_it_is_known(capture, folder, tmp_path):
+    proxy = folder / "proxy.ply"
+    assert "metresPerUnit" not in ef.encode(capture, proxy=proxy, textures=0).settings
+    ef.encode(capture, proxy=proxy, textures=0, metres_per_unit=0.01).save(tmp_path / "scene.glb")
+    assert ef.load(tmp_path / "scene.glb").settings["metresPerUnit"] == 0.01
+    in_metres = replace(capture, format="hci", layout=SimpleNamespace(measured=True))
+    assert ef.encode(in_metres, proxy=proxy, textures=0).settings["metresPerUnit"] == 1.0
+    assert ef.encode(in_metres, proxy=proxy, textures=0, metres_per_unit=2.0).settings["metresPerUnit"] == 2.0
+    for wrong in (0.0, -1.0, float("nan"), float("inf")):
+        with pytest.raises(OptionError, match="a number above 0"):
+            ef.encode(capture, proxy=proxy, metres_per_unit=wrong)
 
 
 def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):

@@ -71,10 +71,15 @@ class Options:
     hold_out: str | None = None
     resampling: str = "bicubic"
     harmonise: str | None = None
+    metres_per_unit: float | None = None
 
     def __post_init__(self) -> None:
         if self.textures < 0:
             raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
+        if self.metres_per_unit is not None and not (0 < self.metres_per_unit < np.inf):
+            raise OptionError(
+                "metres", f"{self.metres_per_unit:g} metres in a unit were said", remedy="say a number above 0"
+            )
         if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
             raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
         if self.resampling not in FILTERS:
@@ -120,6 +125,7 @@ def encode(
     hold_out: str | None = None,
     resampling: str = "bicubic",
     harmonise: str | None = None,
+    metres_per_unit: float | None = None,
     keep_maps: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -134,12 +140,15 @@ def encode(
     reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
-    scene keeps them for drawing its captured cameras. keep_maps: folder for the filled maps and visibility as pictures.
+    scene keeps them for drawing its captured cameras. metres_per_unit: metres in one unit of the cameras' world, by
+    which a headset shows the scene in its real size; without it what the capture's format says, if it does. keep_maps: folder for the filled maps and visibility as pictures.
     work: folder for the scratch file (4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
-    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise)
+    options = Options(
+        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit
+    )
     names = [view.name for view in capture.views]
     cameras = [view.camera.rounded() for view in capture.views]
     plane = fit_view_plane(cameras)
@@ -177,6 +186,7 @@ def encode(
         "holdOut": hold_out,
         "resampling": resampling,
         **({} if harmonise is None else {"harmonise": harmonise}),
+        **_scale(capture, metres_per_unit),
         **_lenses(capture),
         "photographs": {
             "count": len(encoded),
@@ -264,6 +274,13 @@ def _atlas_size(options: Options, mesh: Mesh, camera: Camera, encoded: Sequence[
             log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)
         return side, side
     return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+
+
+def _scale(capture: LightField, asked: float | None) -> dict[str, float]:
+    """What the settings say of the real size: as asked, or metres where the capture's parameters were in metres."""
+    in_metres = capture.format == "hci" and capture.layout is not None and capture.layout.measured
+    scale = 1.0 if asked is None and in_metres else asked
+    return {} if scale is None else {"metresPerUnit": scale}
 
 
 def _lenses(capture: LightField) -> dict[str, Any]:

@@ -98,6 +98,12 @@ Examples:
     help="Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
     "Captured views are drawn with their own exposure again.",
 )
+@click.option(
+    "--metres-per-unit",
+    type=float,
+    metavar="F",
+    help="Metres in one unit of the cameras' world: headsets then show the real size.  [default: as the capture says]",
+)
 @click.option("--reference", metavar="NAME", help="Reference camera.  [default: nearest the centre of the array]")
 @click.option(
     "--hold-out",
@@ -156,6 +162,7 @@ def command(
     triangles: int | None,
     align: str | None,
     harmonise: str | None,
+    metres_per_unit: float | None,
     reference: str | None,
     hold_out: str | None,
     resampling: str,
@@ -185,7 +192,9 @@ def command(
     check_codec(codec, quality)
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
-    options = Options(textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise)
+    options = Options(
+        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit
+    )
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
         if proxy is not None:
@@ -218,7 +227,7 @@ def command(
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
-            keep_maps=keep_maps, work=scratch, progress=progress,
+            metres_per_unit=metres_per_unit, keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         save(scene, output, codec=codec, quality=quality, overwrite=overwrite, progress=progress)
     sizes = parts(output)
