@@ -171,8 +171,54 @@ def drawing() -> str:
         f" ({figures['read_gb_per_second']:.0f} GB/s read, same run) all textures read once a frame make up.\n\n"
         + table(["N", "bilinear", "bicubic", "of the bandwidth"], rows)
         + f"\nSumming 40 textures takes {figures['composition_40']['ratio_to_numpy']:.2f} of the time of NumPy's matrix"
-        " product on float32 textures.\n\n" + origin(figures, "render") + "\n"
+        " product on float32 textures.\n\n"
+        + shaded()
+        + origin(figures, "render")
+        + origin(result("render-opengl"), "render-opengl")
+        + origin(result("render-browser"), "render-browser")
+        + "\n"
     )
+
+
+def shaded() -> str:
+    """The shader on OpenGL and in a browser: frames a second, and times the cost of a plain texture."""
+    opengl, browser = result("render-opengl"), result("render-browser")
+
+    def cell(entry: dict[str, Any] | None, fps: float | None) -> str:
+        return "" if entry is None or fps is None else f"{number(fps)} ({entry['times_plain']:.1f})"
+
+    rows = []
+    for count in opengl["counts"]:
+        mine, theirs = opengl["counts"][count], browser["counts"].get(count, {})
+        cells = [cell(mine.get(key), mine.get(key, {}).get("fps")) for key in
+                 ("mono_bilinear", "mono_mixed", "mono_bicubic", "stereo_bilinear")]  # fmt: skip
+        for key in ("eye_mixed", "ray_mixed"):
+            entry = theirs.get(key)
+            cells.append(cell(entry, None if entry is None else 1e3 / entry["milliseconds"]))
+        rows.append([count, *cells])
+    width, height = opengl["mono"]
+    eye = "x".join(str(side) for side in opengl["eye"])
+    page = "x".join(str(side) for side in browser["view"])
+    return (
+        "The shader that browsers and the OpenGL renderer share, frames per second and in brackets how many times as long"
+        f" a frame takes as with one plain texture on the same mesh. OpenGL at {width}x{height} and in stereo (2 x {eye},"
+        f" each fragment with weights of its own) on {opengl['driver']}; {browser['browser']} at {page} on"
+        f" {driver(browser['driver'])}: **both draw on the processor, no GPU was there**; N = 0 is the plain texture."
+        " `mixed` reads the mean with a cubic filter, the eigen textures with a linear one.\n\n"
+        + table(["N", "OpenGL bilinear", "mixed", "bicubic", "stereo bilinear", "browser mixed", "by the ray"], rows)
+        + "\n![Frames per second against the number of eigen textures](docs/frames.png)\n\n"
+        f"The viewer's script is {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js in it; the demo scene's first"
+        f" picture needs {browser['first_picture_bytes'] / 1e3:.0f} of its {browser['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
+    )
+
+
+def number(value: float) -> str:
+    return f"{value:.0f}" if value >= 10 else f"{value:.1f}" if value >= 1 else f"{value:.2f}"
+
+
+def driver(name: str) -> str:
+    """What draws, out of ANGLE's long name for it."""
+    return "SwiftShader" if "SwiftShader" in name else name
 
 
 def section() -> str:

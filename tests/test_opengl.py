@@ -18,7 +18,7 @@ from eigenfield.errors import EigenfieldError, FormatError, OptionError
 from eigenfield.format import file_bytes, save
 from eigenfield.rendering import OpenGLRenderer, camera_colour, view_weights, viewpoint, weight_map
 from eigenfield.rendering import opengl as opengl_module
-from eigenfield.scene import Plane
+from eigenfield.scene import Basis, Plane
 
 LARGEST, MEAN = 2, 0.5  # grey levels by which renderers may differ away from edges
 
@@ -77,15 +77,46 @@ def test_mixed_is_between_bilinear_and_bicubic(context, loaded):
     assert 0 < near < 0.2 * far
 
 
-@pytest.mark.parametrize("count", [0, 1, 5, None])
-def test_any_number_of_textures(context, loaded, count):
+@pytest.mark.parametrize("rays", [False, True])
+@pytest.mark.parametrize("count", [0, 1, 3, 4, 5, None])
+def test_any_number_of_the_textures_is_summed(context, loaded, count, rays):
+    """Four share a texel; those of a group that are not wanted add nothing."""
     camera, weights = viewpoint(loaded, at=(0.4, 0.3))
-    drawn = OpenGLRenderer(loaded, context=context).draw(camera, weights, textures=count)
+    drawn = OpenGLRenderer(loaded, context=context).draw(camera, None if rays else weights, textures=count)
     agree(drawn, ef.render(loaded, at=(0.4, 0.3), textures=count, samples=1))
 
 
+@pytest.mark.parametrize("textures", [1, 2, 4, 5])
+def test_scenes_of_any_number_of_textures(context, textures, tmp_path):
+    """Codes of several bases, the last texels not full."""
+    save(scene(textures=textures), tmp_path / "scene.glb", codec="png")
+    coded = ef.load(tmp_path / "scene.glb")
+    plane = coded.planes[0]
+    (basis,) = plane.bases
+    cut = textures // 2
+    rest = Basis(basis.textures[cut:], basis.scale[cut:], basis.zero[cut:], basis.weights[:, cut:])
+    split = replace(coded, planes=(Plane(plane.mean, (basis.truncated(cut), rest)),))
+    expected = ef.render(coded, at=(0.4, 0.3), samples=1)
+    camera, weights = viewpoint(coded, at=(0.4, 0.3))
+    for drawn in (coded, split):
+        agree(OpenGLRenderer(drawn, context=context).draw(camera, weights), expected)
+
+
+def test_each_texture_has_its_own_weight(context, loaded):
+    """Of each component of a texel and of each group: one texture alone is what the software renderer draws of it."""
+    camera, weights = viewpoint(loaded, at=(0.4, 0.3))
+    plane = loaded.planes[0]
+    (basis,) = plane.bases
+    for j in range(basis.count):
+        alone = np.zeros_like(basis.weights)
+        alone[:, j] = basis.weights[:, j]
+        one = replace(loaded, planes=(Plane(plane.mean, (replace(basis, weights=alone),)),))
+        drawn = OpenGLRenderer(one, context=context).draw(camera, weights)
+        agree(drawn, ef.render(one, at=(0.4, 0.3), samples=1))
+
+
 @pytest.mark.parametrize("channels", [1, 3])
-@pytest.mark.parametrize("textures", [0, 3])
+@pytest.mark.parametrize("textures", [0, 3, 5])
 def test_fresh_scenes_of_one_and_three_channels(context, channels, textures):
     fresh = tiny_scene(channels=channels, textures=textures, cameras=9)
     camera, weights = viewpoint(fresh, at=(0.2, -0.6))

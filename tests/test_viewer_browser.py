@@ -47,7 +47,7 @@ def test_in_chromium(path, folder):
         "EIGENFIELD_SCENES": str(folder), "EIGENFIELD_CHROMIUM": str(CHROMIUM), "EIGENFIELD_PYTHON": sys.executable,
     }  # fmt: skip
     done = subprocess.run(
-        ["node", "--test", "--test-reporter=spec", str(path)],
+        ["node", "--test", "--test-force-exit", "--test-reporter=spec", str(path)],
         cwd=WEB, env=surroundings, capture_output=True, text=True, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]

@@ -9,12 +9,17 @@ writes into FOLDER
     line.glb            five cameras on a line
     harmonised.glb      with a gain and an offset for every camera
     held-out.glb        every third camera held out
+    one.glb, four.glb   with that many textures, the first of scene.glb
+    grey.glb            one channel, 5 textures
     names.glb           camera names that want to be HTML
     plain.glb           a glTF file without eigen textures
     newer.glb, needs.glb, truncated.glb, damaged.glb, no-json.glb, not-ours.bin
+    photographed.glb    scene.glb with cameras named as the files of capture/
+    around.glb          twelve cameras around a column: no plane, no grid; two held out
     capture/            photographs of scene.glb's cameras (drawn by the software renderer) and transforms.json
     references.json     a list of pictures: {"scene", "file", "filter", "at": [X, Y] | null, "camera": name | null,
-                        "free": {"K", "R", "t"} | null, "width", "height"}; `free` is drawn with weights by the ray
+                        "free": {"K", "R", "t"} | null, "count": number | null, "width", "height"}; `free` is drawn
+                        with weights by the ray, `count` with the first eigen textures alone
     weights.json        view weights and novel cameras at places in the array and beyond: a list of {"scene", "places":
                         [{"at": [X, Y], "weights": {mode: one for each encoded camera}, "camera": K, R, t in a row}]}
     *.png               the pictures, drawn with one sample a pixel
@@ -37,6 +42,7 @@ from scenes import bumpy_square, encoded_triangles, float_basis, smooth_pictures
 import eigenfield as ef
 from eigenfield.camera import Camera
 from eigenfield.format import save
+from eigenfield.mesh import Mesh
 from eigenfield.rendering import novel_camera, renderer_of, view_weights
 from eigenfield.scene import Plane, Scene
 from eigenfield.viewplane import find_grid, fit_view_plane
@@ -94,6 +100,55 @@ def scene(columns: int = 5, rows: int = 5, textures: int = 6, held_out: int = 0)
     )
 
 
+def grey_scene() -> Scene:
+    """The first channel of a scene of 5 textures."""
+    coloured = scene(textures=5)
+    plane = coloured.planes[0]
+    (basis,) = plane.bases
+    alone = replace(basis, textures=basis.textures[..., :1], scale=basis.scale[:, :1], zero=basis.zero[:, :1])
+    return replace(coloured, planes=(Plane(np.ascontiguousarray(plane.mean[..., :1]), (alone,)),))
+
+
+def around(count: int = 12) -> Scene:
+    """A column of radius 1, seen by level cameras on a circle of radius 4 around it; the fourth and eighth held out.
+    Up is -y, as in captures by COLMAP."""
+    views = []
+    for angle in 2 * np.pi * np.arange(count) / count:
+        forward = np.array([-np.sin(angle), 0.0, np.cos(angle)])
+        R = np.stack([np.cross([0.0, 1.0, 0.0], forward), [0.0, 1.0, 0.0], forward])
+        K = np.array([[300.0, 0, WIDTH / 2], [0, 300, HEIGHT / 2], [0, 0, 1]])
+        views.append(Camera(K, R, R @ forward * 4.0, WIDTH, HEIGHT))
+    held = np.zeros(count, bool)
+    held[[3, 7]] = True
+    plane = fit_view_plane(views)
+    encoded = count - int(held.sum())
+    plain = scene(textures=4)
+    mean, basis = plain.planes[0].mean, float_basis(encoded, 4, SIDE, SIDE, 3)
+    return replace(
+        plain,
+        mesh=_column(),
+        planes=(Plane(mean, (basis,)),),
+        names=tuple(f"round{number}.png" for number in range(1, count + 1)),
+        cameras=tuple(views),
+        held_out=held,
+        reference=0,
+        view_plane=plane,
+        triangles=encoded_triangles(plane.coordinates([view.centre for view in views])[~held]),
+    )
+
+
+def _column(steps: int = 24) -> Mesh:
+    """A cylinder around y, open at both ends."""
+    turn, height = np.meshgrid(np.linspace(0, 1, steps + 1), np.linspace(0, 1, 5))
+    angle = 2 * np.pi * turn.ravel()
+    vertices = np.stack([np.sin(angle), 2 * height.ravel() - 1, -np.cos(angle)], axis=1)
+    corner = (np.arange(4)[:, None] * (steps + 1) + np.arange(steps)).ravel()
+    right, below = corner + 1, corner + steps + 1
+    triangles = np.concatenate([np.stack([corner, right, below], 1), np.stack([right, below + 1, below], 1)])
+    uv = np.stack([0.02 + 0.96 * turn.ravel(), 0.02 + 0.96 * height.ravel()], axis=1)
+    return Mesh(vertices.astype(np.float32), triangles.astype(np.int32), uv.astype(np.float32))
+
+
 def write(folder: Path) -> None:
     """Write everything into `folder`, which is made."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -103,12 +158,20 @@ def write(folder: Path) -> None:
     save(scene(columns=5, rows=1), folder / "line.glb", codec="png", overwrite=True)
     save(scene(held_out=3), folder / "held-out.glb", codec="png", overwrite=True)
     save(replace(plain, colours=_colours(25)), folder / "harmonised.glb", codec="png", overwrite=True)
+    for name, textures in (("one", 1), ("four", 4)):
+        save(scene(textures=textures), folder / f"{name}.glb", codec="png", overwrite=True)
+    save(grey_scene(), folder / "grey.glb", codec="png", overwrite=True)
+    photographed = tuple(f"{name}.png" for name in plain.names)
+    save(replace(plain, names=photographed), folder / "photographed.glb", codec="png", overwrite=True)
+    save(around(), folder / "around.glb", codec="png", overwrite=True)
     hostile = ("</script><img src=x onerror=alert(1)>", '"><svg onload=alert(2)>', "a&b<c>'d'", "é中 x")
     save(replace(plain, names=hostile + plain.names[4:]), folder / "names.glb", codec="png", overwrite=True)
     _bad_files(folder)
     _capture(folder / "capture", ef.load(folder / "scene.glb"))
     pictures = [*_references(folder, "scene.glb"), *_references(folder, "line.glb", PLACES[:2])]
-    pictures += _free_references(folder, "scene.glb")
+    pictures += [*_references(folder, "one.glb", PLACES[1:2]), *_references(folder, "four.glb", PLACES[1:2])]
+    pictures += _references(folder, "grey.glb", PLACES[1:2])
+    pictures += [*_counted_references(folder, "scene.glb"), *_free_references(folder, "scene.glb")]
     (folder / "references.json").write_text(json.dumps(pictures, indent=1), encoding="utf-8")
     weights = [{"scene": name, "places": _weights(folder / name)} for name in ("scene.glb", "line.glb", "held-out.glb")]
     (folder / "weights.json").write_text(json.dumps(weights), encoding="utf-8")
@@ -146,6 +209,16 @@ def _references(folder: Path, name: str, places: tuple[tuple[float, float], ...]
     return listed
 
 
+def _counted_references(folder: Path, name: str) -> list[dict]:
+    """With fewer textures than the scene has."""
+    loaded, listed = ef.load(folder / name), []
+    for count in (0, 1, 3, 4, 5):
+        picture = ef.render(loaded, at=PLACES[1], filter="bilinear", samples=1, textures=count).to_uint8()
+        file = f"{Path(name).stem}-first-{count}.png"
+        listed.append(_keep(folder, file, picture, name, "bilinear", at=PLACES[1], count=count))
+    return listed
+
+
 def _free_references(folder: Path, name: str) -> list[dict]:
     loaded = ef.load(folder / name)
     listed = []
@@ -168,9 +241,10 @@ def free_camera(eye: np.ndarray) -> Camera:
 
 
 def _keep(folder: Path, file: str, picture: np.ndarray, name: str, filter: str, **what: object) -> dict:
-    Image.fromarray(picture).save(folder / file)
+    Image.fromarray(np.broadcast_to(picture, (*picture.shape[:2], 3))).save(folder / file)
     size = {"width": picture.shape[1], "height": picture.shape[0]}
-    return {"scene": name, "file": file, "filter": filter, "at": None, "camera": None, "free": None, **what, **size}
+    missing = dict.fromkeys(("at", "camera", "free", "count"))
+    return {"scene": name, "file": file, "filter": filter, **missing, **what, **size}
 
 
 def _capture(folder: Path, loaded: Scene) -> None:

@@ -141,8 +141,9 @@ def encode(
     "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
     scene keeps them for drawing its captured cameras. metres_per_unit: metres in one unit of the cameras' world, by
-    which a headset shows the scene in its real size; without it what the capture's format says, if it does. keep_maps: folder for the filled maps and visibility as pictures.
-    work: folder for the scratch file (4 bytes x channels x cameras x texels).
+    which a headset shows the scene in its real size; without it what the capture's format says, if it does. keep_maps:
+    folder for the filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x
+    cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """

@@ -28,6 +28,7 @@ function drawReference(page, wanted) {
   return page.evaluate((reference) => {
     const { field } = window;
     field.filter = reference.filter;
+    field.count = reference.count ?? Infinity;
     field.camera = null;
     let view;
     if (reference.at) view = window.lab.novelCamera(field, ...reference.at);
@@ -206,6 +207,40 @@ test("held-out cameras have the weights of their place, encoded ones their row",
   await close();
 });
 
+test("a single eigen texture is what its step of the slider adds", async () => {
+  const { page, close } = await lab.open();
+  for (const [name, total] of [["scene.glb", 6], ["grey.glb", 5]]) {
+    await load(page, name);
+    const shot = async (settings) => {
+      const { gain, weights } = await page.evaluate((values) => {
+        const { field, lab } = window;
+        Object.assign(field, { filter: "bilinear", view: "picture", count: Infinity, ...values });
+        lab.drawView(field, lab.novelCamera(field, 0.4, -0.3));
+        return { gain: field.mesh.material.uniforms.shownGain.value, weights: [...field.lastWeights[0]] };
+      }, settings);
+      return { ...(await canvasPixels(page)), gain, weights };
+    };
+    for (let j = 0; j < total; j++) await shot({ view: "eigen", eigen: j });
+    await page.waitForTimeout(500); // strengths are measured when textures are first shown
+    let before = await shot({ count: 0 });
+    for (let j = 0; j < total; j++) {
+      const after = await shot({ count: j + 1 });
+      const alone = await shot({ view: "eigen", eigen: j });
+      const off = [];
+      for (let i = 0; i < after.data.length; i++) {
+        const inside = [before, after, alone].every(({ data }) => data[i] > 0 && data[i] < 255);
+        const expected = ((alone.data[i] - 127.5) / alone.gain) * alone.weights[j];
+        if (inside) off.push(Math.abs(after.data[i] - before.data[i] - expected));
+      }
+      const mean = off.reduce((sum, value) => sum + value, 0) / off.length;
+      assert.ok(off.length > 30_000 && mean < 0.6, `${name}, texture ${j}: mean ${mean} of ${off.length}`);
+      before = after;
+    }
+    await page.evaluate(() => window.field.dispose());
+  }
+  await close();
+});
+
 test("slider, mean and single eigen textures show what they say", async () => {
   const { page, close } = await lab.open();
   await load(page, "scene.glb");
@@ -284,7 +319,7 @@ test("a harmonised scene gives a camera its own exposure back", async () => {
 
 test("with little memory eigen textures become smaller, then fewer, and it says so", async () => {
   const { page, close } = await lab.open();
-  // seven textures of 87 kB with their mips, two weight maps of 133 kB, 18 kB of geometry
+  // seven layers of 87 kB with their mips, two weight maps of 133 kB, 18 kB of geometry, 66 kB for the one that comes
   const seen = [];
   for (const memory of [8 * 2 ** 20, 600_000, 420_000, 367_000]) {
     await load(page, "scene.glb", { memory });
@@ -302,7 +337,7 @@ test("with little memory eigen textures become smaller, then fewer, and it says 
   }
   assert.deepEqual([seen[0].usable, seen[0].scaleDown, seen[0].limitation], [6, 1, null]);
   assert.deepEqual(seen.slice(1).map(({ usable, scaleDown }) => [usable, scaleDown]), [[6, 2], [6, 4], [4, 4]]);
-  const why = "the scene needs 0.9 MB of graphics memory and 0.4 MB may be used.";
+  const why = "the scene needs 1.0 MB of graphics memory and 0.4 MB may be used.";
   assert.equal(seen[2].limitation, `Eigen textures have 1/4 of their size: ${why}`);
   assert.equal(seen[3].limitation, `4 of 6 eigen textures are drawn, eigen textures have 1/4 of their size: ${why}`);
   await close();
@@ -329,6 +364,59 @@ test("a lost context comes back with all textures", async () => {
   assert.deepEqual(loaded, [0, 6]);
   await drawReference(page, references[0]);
   assert.equal(difference(await canvasPixels(page), before).largest, 0);
+  await close();
+});
+
+test("what others have set of WebGL stays as it is, and does not spoil the textures", async () => {
+  const { page, close } = await lab.open();
+  const { first, changed } = await page.evaluate(async () => {
+    const { lab } = window;
+    const gl = lab.renderer.getContext();
+    const { gltf, field } = await lab.loadEigenfield("scene.glb", { renderer: lab.renderer });
+    window.field = field;
+    const first = field.loaded;
+    const names = ["BLEND", "CULL_FACE", "DEPTH_TEST", "SCISSOR_TEST", "STENCIL_TEST", "RASTERIZER_DISCARD"];
+    for (const name of names) gl.enable(gl[name]);
+    gl.blendFunc(gl.ZERO, gl.ZERO);
+    gl.cullFace(gl.FRONT_AND_BACK);
+    gl.scissor(0, 0, 1, 1);
+    gl.viewport(1, 2, 3, 4);
+    gl.colorMask(false, true, false, true);
+    gl.activeTexture(gl.TEXTURE0);
+    const sampler = gl.createSampler();
+    gl.bindSampler(0, sampler);
+    gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+    gl.activeTexture(gl.TEXTURE3);
+    gl.bindVertexArray(gl.createVertexArray());
+    gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, true);
+    const bindings = ["CURRENT_PROGRAM", "VERTEX_ARRAY_BINDING", "DRAW_FRAMEBUFFER_BINDING", "READ_FRAMEBUFFER_BINDING"];
+    const others = ["VIEWPORT", "COLOR_WRITEMASK", "ACTIVE_TEXTURE", "SCISSOR_BOX", "UNPACK_FLIP_Y_WEBGL"];
+    const state = () => {
+      const unit = gl.getParameter(gl.ACTIVE_TEXTURE);
+      gl.activeTexture(gl.TEXTURE0);
+      const first = [gl.getParameter(gl.SAMPLER_BINDING), gl.getParameter(gl.TEXTURE_BINDING_2D)];
+      gl.activeTexture(unit);
+      const values = others.map((name) => String(gl.getParameter(gl[name])));
+      const bound = bindings.map((name) => gl.getParameter(gl[name]));
+      return [...first, ...bound, ...values, ...names.map((name) => gl.isEnabled(gl[name]))];
+    };
+    const before = state();
+    await field.complete;
+    const after = state();
+    gl.bindSampler(0, null);
+    gl.disable(gl.RASTERIZER_DISCARD);
+    gl.pixelStorei(gl.UNPACK_FLIP_Y_WEBGL, false);
+    lab.renderer.resetState();
+    lab.show(gltf);
+    return { first, changed: before.flatMap((value, i) => (value === after[i] ? [] : [i])) };
+  });
+  assert.ok(first < 6, `${first} textures were there before anything was set`);
+  assert.deepEqual(changed, []);
+  const reference = references.find(({ scene, at, filter }) => scene === "scene.glb" && at && filter === "bilinear");
+  await drawReference(page, reference);
+  const { largest } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
+  assert.ok(largest <= 2, `largest ${largest}`);
   await close();
 });
 

@@ -80,7 +80,7 @@ test("an address that leads nowhere", async () => {
 });
 
 test("a plain glTF file is shown as it is", async () => {
-  const { page, close } = await openViewer(browser, "plain.glb", { width: 900 });
+  const { page, close } = await openViewer(browser, "plain.glb", { width: 900, height: 600 });
   const now = await state(page);
   assert.deepEqual([now.status, now.mode, now.total], ["ready", "orbit", 0]);
   assert.match(await page.locator(".panel").innerText(), /plain glTF file: no eigen textures/);
@@ -123,7 +123,7 @@ test("?load= names a scene", async () => {
 
 test("names that want to be HTML stay names", async () => {
   const { page, close } = await openViewer(browser, "names.glb", {
-    width: 900, config: { title: "<img src=x onerror=alert(1)>" },
+    width: 900, height: 600, config: { title: "<img src=x onerror=alert(1)>" },
   });
   await state(page);
   assert.equal(await page.locator("img").count(), 0);

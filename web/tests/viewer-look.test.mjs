@@ -30,7 +30,7 @@ test("at view-plane coordinates the picture is the software renderer's", async (
 });
 
 test("the slider: fewer textures, fewer bytes, another picture, its SSIM where the file tells", async () => {
-  const { page, close } = await openViewer(browser, "scene.glb", { width: 900 });
+  const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
   const all = await state(page);
   const full = await picture(page);
   const slider = page.locator(".panel input[type=range]").nth(1);
@@ -89,7 +89,7 @@ test("through a captured camera: its own weights and exposure, and the photograp
 });
 
 test("without photographs the comparison is off, and says how to have it", async () => {
-  const { page, close } = await openViewer(browser, "scene.glb", { width: 900 });
+  const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
   await state(page);
   await page.keyboard.press("]");
   await page.keyboard.press(" ");

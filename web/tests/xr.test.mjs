@@ -116,6 +116,7 @@ test("the head moves: so do the weights; a known size is kept", async () => {
   near(moved.off, -0.2 / 0.2, 2e-3);
   moved.drawn.forEach((weight, j) => near(weight, moved.wanted[j], 1e-4));
   assert.equal(await page.evaluate(() => window.eigenfield.field.weightMode), "ray");
+  assert.equal(await page.evaluate(() => window.eigenfield.field.filter), "bilinear", "quick, as a headset wants it");
   await close();
 });
 

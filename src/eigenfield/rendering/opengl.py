@@ -193,7 +193,9 @@ class OpenGLRenderer:
         mesh, view = scene.mesh, scene.view_plane
         self._rows = component_rows(scene)
         self._groups = -(-max(self.count, 1) // 4)
-        head = f"#version 330 core\n#define COUNT {max(self.count, 1)}\n#define BICUBIC {FILTERS.index(filter)}\n"
+        channels = plane.mean.shape[2]
+        head = f"#version 330 core\n#define COUNT {max(self.count, 1)}\n#define CHANNELS {channels}\n"
+        head += f"#define BICUBIC {FILTERS.index(filter)}\n"
         self._program = self._keep(
             context.program(vertex_shader=VERTEX, fragment_shader=head + surface_source() + FRAGMENT)
         )
@@ -216,7 +218,9 @@ class OpenGLRenderer:
         self._set("toRGB", np.eye(3))
         height, width = plane.mean.shape[:2]
         detail = median_footprint(make_surface(mesh, height, width), scene.cameras[scene.reference])
+        rows, columns = self._bases[0].textures.shape[1:3] if self._bases else (height, width)
         self._set("finest", ONE_SAMPLE * max(detail, 1.0))
+        self._set("finestEigen", ONE_SAMPLE * max(detail * np.sqrt(rows * columns / (height * width)), 1.0))
         extent = np.asarray(view.extent, np.float64)
         axes = np.divide([view.right, view.up], extent[:, None], out=np.zeros((2, 3)), where=extent[:, None] > 0)
         self._set("planeOrigin", view.origin - self._middle)
@@ -225,23 +229,26 @@ class OpenGLRenderer:
         self._set("planeY", axes[1])
 
     def _upload_bases(self) -> Any:
-        """The texture array, and the numbers that make values of what it stores."""
+        """The texture array, four eigen textures to a texel, and the numbers that make values of what it stores."""
         if self.count == 0:
             return None
         height, width, channels = self._bases[0].textures.shape[1:]
         codes = all(basis.textures.dtype == np.uint8 for basis in self._bases)
-        layers = [basis.textures if codes else basis.values() for basis in self._bases]
-        size = (int(width), int(height), self.count)
-        data = np.concatenate(layers) if len(layers) > 1 else np.ascontiguousarray(layers[0])
-        kept = data if codes else data.astype(np.float32)
-        dtype = "f1" if codes else "f4"
-        array = self._keep(self.context.texture_array(size, channels, kept, alignment=1, dtype=dtype))
-        scale = np.concatenate([basis.scale for basis in self._bases]).astype(np.float64)
-        zero = np.concatenate([basis.zero for basis in self._bases]).astype(np.float64)
-        if not codes:
-            scale, zero = np.ones_like(scale), np.zeros_like(zero)
-        self._set("eigenScale", _three((255 if codes else 1) * scale))
-        self._set("eigenBias", _three(-zero * scale))
+        layers = int(channels) * self._groups
+        dtype, stored, full = ("f1", np.uint8, 255) if codes else ("f4", np.float32, 1)
+        array = self._keep(self.context.texture_array((width, height, layers), 4, dtype=dtype))
+        scale, bias = np.zeros((2, layers, 4))
+        texels = np.zeros((height, width, 4), stored)  # of one layer: more than that is never held
+        owned = [(basis, own) for basis in self._bases for own in range(basis.count)]
+        for layer in range(layers):
+            group, channel = divmod(layer, channels)
+            for part, (basis, own) in enumerate(owned[4 * group : 4 * group + 4]):
+                texels[..., part] = basis.textures[own, ..., channel]
+                scale[layer, part] = full * basis.scale[own, channel]
+                bias[layer, part] = -float(basis.zero[own, channel]) * basis.scale[own, channel]
+            array.write(texels, viewport=(0, 0, layer, width, height, 1))
+        self._set("eigenScale", scale)
+        self._set("eigenBias", bias)
         return _filtered(array)
 
     def _weight_maps(self) -> None:
@@ -348,11 +355,6 @@ def _filtered(texture: Any) -> Any:
     if texture.components == 1:
         texture.swizzle = "RRR1"
     return texture
-
-
-def _three(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(N, 1 or 3) as (N, 3)."""
-    return np.broadcast_to(values, (len(values), 3))
 
 
 def _clip_matrix(camera: Camera, middle: NDArray[np.float64], radius: float) -> NDArray[np.float64]:

@@ -69,6 +69,8 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private readonly textures: Textures;
   private readonly rowOf: Int32Array; // of each camera among the encoded, -1 if it is held out
   private readonly gains = new Map<number, number>();
+  private readonly detail: number; // of an atlas, along a side of the photographs' pixels
+  private readonly meanSize: [number, number];
   private maps: { texture: DataArrayTexture; mixing: Mixing; usable: number } | null = null;
   private frame = -1;
 
@@ -96,10 +98,10 @@ export class EigenField extends EventDispatcher<FieldEvents> {
       this.addEventListener("error", ({ error }) => reject(error));
     });
     this.complete.catch(() => undefined); // who does not wait for it hears of it by the event
-    this.listen();
     const reference = info.cameras[info.reference];
-    const detail = reference ? medianFootprint(mesh.geometry, reference, [mean.width, mean.height]) : 1;
-    this.material.uniforms.finest.value = ONE_SAMPLE * Math.max(detail, 1);
+    this.detail = reference ? medianFootprint(mesh.geometry, reference, [1, 1]) : 0;
+    this.meanSize = [mean.width, mean.height];
+    this.listen();
     for (const each of meshes) {
       each.material = this.material;
       each.onBeforeRender = (renderer, _scene, camera) => this.prepare(renderer, camera, each);
@@ -168,13 +170,21 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   }
 
   private listen(): void {
-    this.textures.onPlan = ({ usable, limitation }) => {
-      resizeMaterial(this.material, this.parts.scene.textures, usable);
+    this.textures.onPlan = ({ usable, meanDown, scaleDown, limitation }) => {
+      const { scene } = this.parts;
+      resizeMaterial(this.material, scene.textures, usable);
+      this.material.uniforms.finest.value = this.finestOf(this.meanSize, meanDown);
+      this.material.uniforms.finestEigen.value = this.finestOf(scene.size, scaleDown);
       if (limitation) queueMicrotask(() => this.dispatchEvent({ type: "limited" })); // not within a draw
     };
     this.textures.onTexture = () => this.dispatchEvent({ type: "texture" });
     this.textures.onComplete = () => this.dispatchEvent({ type: "complete" });
     this.textures.onError = (reason) => this.fail(reason);
+  }
+
+  /** Texels a pixel up to which the finest level of a texture on the GPU is read. */
+  private finestOf([width, height]: [number, number], down: number): number {
+    return ONE_SAMPLE * Math.max(1, (this.detail * Math.sqrt(width * height)) / down);
   }
 
   private mix({ camera, weight }: Blend): Float64Array {

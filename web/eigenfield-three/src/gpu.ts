@@ -1,4 +1,4 @@
-// Textures made by WebGL itself: pictures go to the GPU a layer at a time, without a copy that stays in memory. What
+// Textures made by WebGL itself: pictures go to the GPU one at a time, without a copy that stays in memory. What
 // three.js believes to be bound is put back after each call.
 
 import type { DeviceLimits } from "./memory.js";
@@ -27,26 +27,31 @@ export function makeTexture(gl: GL, picture: ImageBitmap): WebGLTexture {
   return texture;
 }
 
-/** Room for `layers` pictures of one size, or null if there is no memory. Filters linearly until `finishArray`. */
+/** Layers of zeros, or null if there is no memory. Filters linearly until `finishArray`. */
 export function makeArray(gl: GL, width: number, height: number, layers: number): WebGLTexture | null {
-  while (gl.getError() !== gl.NO_ERROR && !gl.isContextLost()); // errors of others
-  const texture = gl.createTexture();
-  bound(gl, gl.TEXTURE_2D_ARRAY, texture, () => {
+  return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
     gl.texStorage3D(gl.TEXTURE_2D_ARRAY, levels(width, height), gl.RGBA8, width, height, layers);
     clampEdges(gl, gl.TEXTURE_2D_ARRAY);
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
     gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
   });
+}
+
+/** Room for a picture to be read texel by texel, or null. */
+export function makeRoom(gl: GL, width: number, height: number): WebGLTexture | null {
+  return allocated(gl, gl.TEXTURE_2D, () => {
+    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
+  });
+}
+
+function allocated(gl: GL, target: GLenum, store: () => void): WebGLTexture | null {
+  while (gl.getError() !== gl.NO_ERROR && !gl.isContextLost()); // errors of others
+  const texture = gl.createTexture();
+  bound(gl, target, texture, store);
   if (gl.getError() !== gl.OUT_OF_MEMORY) return texture;
   gl.deleteTexture(texture);
   return null;
-}
-
-export function fillLayer(gl: GL, texture: WebGLTexture, layer: number, picture: ImageBitmap): void {
-  const { width, height } = picture;
-  bound(gl, gl.TEXTURE_2D_ARRAY, texture, () => {
-    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, layer, width, height, 1, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-  });
 }
 
 /** Makes the mips of an array whose layers are all there, and filters with them from now on. */
@@ -72,7 +77,7 @@ function useMips(gl: GL, target: GLenum): void {
 }
 
 /** Calls `work` with the texture bound and pictures taken as they are, then puts everything back. */
-function bound(gl: GL, target: GLenum, texture: WebGLTexture, work: () => void): void {
+export function bound(gl: GL, target: GLenum, texture: WebGLTexture, work: () => void): void {
   const array = target === gl.TEXTURE_2D_ARRAY;
   const before = gl.getParameter(array ? gl.TEXTURE_BINDING_2D_ARRAY : gl.TEXTURE_BINDING_2D) as WebGLTexture | null;
   const wanted: [GLenum, number | boolean][] = [

@@ -4,6 +4,7 @@ import { DoubleSide, FrontSide, GLSL3, Matrix3, Matrix4, RawShaderMaterial, Vect
 import type { IUniform, Texture } from "three";
 import surface from "../../../src/eigenfield/rendering/shaders/surface.glsl?raw";
 import type { Picture, SceneDocument } from "./document.js";
+import { layersOf } from "./memory.js";
 
 /** How the finest level is read: BICUBIC of the shader. */
 export const FILTERS = { bilinear: 0, mixed: 1, bicubic: 2 } as const;
@@ -77,6 +78,7 @@ export interface SurfaceUniforms {
   viewWeights: IUniform<Float32Array>;
   weightMaps: IUniform<Texture | null>;
   finest: IUniform<number>;
+  finestEigen: IUniform<number>;
   eye: IUniform<Vector3>;
   planeOrigin: IUniform<Vector3>;
   planeNormal: IUniform<Vector3>;
@@ -94,7 +96,7 @@ export interface SurfaceUniforms {
 
 export interface SurfaceMaterial extends RawShaderMaterial {
   uniforms: SurfaceUniforms;
-  defines: { COUNT: number; BICUBIC: 0 | 1 | 2 };
+  defines: { COUNT: number; CHANNELS: 1 | 3; BICUBIC: 0 | 1 | 2 };
 }
 
 /** The material of a scene before any eigen texture is there. */
@@ -112,12 +114,13 @@ export function makeMaterial(
     meanBias: { value: biasOf(scene.mean) },
     count: { value: 0 },
     eigenTextures: { value: eigen },
-    eigenScale: { value: new Float32Array(3) },
-    eigenBias: { value: new Float32Array(3) },
+    eigenScale: { value: new Float32Array(4 * scene.channels) },
+    eigenBias: { value: new Float32Array(4 * scene.channels) },
     rayWeights: { value: false },
     viewWeights: { value: new Float32Array(4) },
     weightMaps: { value: null },
     finest: { value: 1 },
+    finestEigen: { value: 1 },
     eye: { value: new Vector3() },
     planeOrigin: { value: new Vector3(...scene.origin) },
     planeNormal: { value: new Vector3().crossVectors(new Vector3(...scene.right), new Vector3(...scene.up)) },
@@ -137,22 +140,27 @@ export function makeMaterial(
     vertexShader: VERTEX,
     fragmentShader: FRAGMENT,
     uniforms,
-    defines: { COUNT: 1, BICUBIC: FILTERS.mixed },
+    defines: { COUNT: 1, CHANNELS: scene.channels, BICUBIC: FILTERS.mixed },
     side: doubleSided ? DoubleSide : FrontSide,
   });
   material.name = "eigen textures";
   return material as SurfaceMaterial;
 }
 
-/** Makes room for `count` eigen textures, at least 1; their scales as the shader takes them. */
+/** Makes room for `count` eigen textures, at least 1; their scales as the shader takes them, four to a layer. */
 export function resizeMaterial(material: SurfaceMaterial, textures: Picture[], count: number): void {
   const room = Math.max(1, count);
-  const { uniforms } = material;
-  uniforms.eigenScale.value = new Float32Array(3 * room);
-  uniforms.eigenBias.value = new Float32Array(3 * room);
+  const { uniforms, defines } = material;
+  const layers = layersOf(room, defines.CHANNELS);
+  const scales = (uniforms.eigenScale.value = new Float32Array(4 * layers));
+  const biases = (uniforms.eigenBias.value = new Float32Array(4 * layers));
   textures.slice(0, count).forEach((picture, j) => {
-    uniforms.eigenScale.value.set(scaleOf(picture).toArray(), 3 * j);
-    uniforms.eigenBias.value.set(biasOf(picture).toArray(), 3 * j);
+    const [scale, bias] = [scaleOf(picture), biasOf(picture)];
+    for (let channel = 0; channel < defines.CHANNELS; channel++) {
+      const at = 4 * (defines.CHANNELS * Math.floor(j / 4) + channel) + (j % 4);
+      scales[at] = scale.getComponent(channel);
+      biases[at] = bias.getComponent(channel);
+    }
   });
   uniforms.viewWeights.value = new Float32Array(4 * Math.ceil(room / 4));
   material.defines.COUNT = room;

@@ -14,6 +14,7 @@ export interface DeviceLimits {
 export interface Needs {
   mean: [number, number];
   size: [number, number];
+  channels: 1 | 3;
   total: number;
   geometry: number; // bytes
 }
@@ -44,6 +45,11 @@ export function textureBytes([width, height]: [number, number], down = 1): numbe
   return Math.round(4 * MIPS * Math.ceil(width / down) * Math.ceil(height / down));
 }
 
+/** Layers of RGBA8 that hold `textures` of `channels`, four to a texel; at least those of one. */
+export function layersOf(textures: number, channels: 1 | 3): number {
+  return channels * Math.max(1, Math.ceil(textures / 4));
+}
+
 /** Bytes of the maps that hold the weights of `textures`. */
 export function mapBytes(textures: number): number {
   return Math.max(1, Math.ceil(textures / 4)) * MAP_SIDE * MAP_SIDE * 8;
@@ -51,20 +57,28 @@ export function mapBytes(textures: number): number {
 
 /** The largest choice within the limits. */
 export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
-  const uniforms = Math.floor((limits.vectors - 40) / 2.25); // 2 for scale and bias of each, 1 for 4 weights
-  const most = Math.max(0, Math.min(needs.total, limits.layers, uniforms));
+  const uniforms = Math.floor((limits.vectors - 40) / (2 * needs.channels + 1)); // scales, biases, weights of four
+  const groups = Math.min(uniforms, Math.floor(limits.layers / needs.channels));
+  const most = Math.max(0, Math.min(needs.total, 4 * groups));
   const meanDown = [1, 2, 4, 8, 16].find(
     (down) => Math.max(...needs.mean) / down <= limits.side && textureBytes(needs.mean, down) <= limits.memory / 2,
   ) ?? 16;
   const fixed = textureBytes(needs.mean, meanDown) + needs.geometry;
   const bytes = (down: number, count: number): number =>
-    fixed + count * textureBytes(needs.size, down) + mapBytes(count);
+    fixed + (count && layersOf(count, needs.channels) * textureBytes(needs.size, down)) + mapBytes(count);
+  const hasRoom = (down: number, count: number): boolean =>
+    bytes(down, count) + onTheWay(needs, down) <= limits.memory;
   const fits = (down: number): boolean => Math.max(...needs.size) / down <= limits.side;
-  const scaleDown = [1, 2, 4].find((down) => fits(down) && bytes(down, most) <= limits.memory) ?? 4;
+  const scaleDown = [1, 2, 4].find((down) => fits(down) && hasRoom(down, most)) ?? 4;
   let usable = fits(scaleDown) ? most : 0;
-  while (usable > 0 && bytes(scaleDown, usable) > limits.memory) usable--;
+  while (usable > 0 && !hasRoom(scaleDown, usable)) usable--;
   const plan = { meanDown, scaleDown, usable, bytes: bytes(scaleDown, usable) };
   return { ...plan, limitation: sentence(plan, needs, limits) };
+}
+
+/** Bytes of the picture that is being packed while textures arrive. */
+function onTheWay({ size, total }: Needs, down: number): number {
+  return total && 4 * Math.ceil(size[0] / down) * Math.ceil(size[1] / down);
 }
 
 function sentence(plan: Omit<Plan, "limitation">, needs: Needs, limits: DeviceLimits): string | null {
@@ -73,8 +87,8 @@ function sentence(plan: Omit<Plan, "limitation">, needs: Needs, limits: DeviceLi
   if (plan.usable && plan.scaleDown > 1) parts.push(`eigen textures have 1/${plan.scaleDown} of their size`);
   if (plan.meanDown > 1) parts.push(`the mean texture has 1/${plan.meanDown} of its size`);
   if (!parts.length) return null;
-  const textures = textureBytes(needs.mean) + needs.total * textureBytes(needs.size);
-  const all = textures + needs.geometry + mapBytes(needs.total);
+  const textures = textureBytes(needs.mean) + layersOf(needs.total, needs.channels) * textureBytes(needs.size);
+  const all = textures + onTheWay(needs, 1) + needs.geometry + mapBytes(needs.total);
   const why =
     all > limits.memory
       ? `the scene needs ${megabytes(all)} MB of graphics memory and ${megabytes(limits.memory)} MB may be used`

@@ -4,8 +4,9 @@ import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
 import type { ViewBytes } from "./info.js";
-import { defaultMemory, makePlan, type Plan } from "./memory.js";
+import { defaultMemory, layersOf, makePlan, type Plan } from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
+import { makePacker, type Packer } from "./packing.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
@@ -25,6 +26,7 @@ export class Textures {
   onError: (reason: unknown) => void = () => undefined;
 
   private renderer: WebGLRenderer | null = null;
+  private packer: Packer | null = null; // while eigen textures arrive
   private bitmap: ImageBitmap | null; // the mean, until it is on the GPU
   private readonly meanSize: [number, number];
   private turn = 0; // of loading: an older one stops
@@ -73,6 +75,7 @@ export class Textures {
     this.turn += 1;
     this.loaded = 0;
     const gl = this.renderer?.getContext();
+    this.freePacker();
     for (const texture of [this.mean, this.eigen]) {
       if (gl && texture.sourceTexture instanceof WebGLTexture) gl.deleteTexture(texture.sourceTexture);
       texture.sourceTexture = null;
@@ -86,6 +89,7 @@ export class Textures {
     this.turn += 1;
     this.loaded = 0;
     this.mean.sourceTexture = this.eigen.sourceTexture = null;
+    this.packer = null; // its objects went with the context
   };
 
   private readonly onRestored = (): void => {
@@ -93,8 +97,9 @@ export class Textures {
   };
 
   private async load(gl: WebGL2RenderingContext, turn: number): Promise<void> {
-    const { array, plan } = this.makeRoom(gl);
+    const { array, packer, plan } = this.makeRoom(gl);
     this.plan = plan;
+    this.packer = packer;
     this.eigen.sourceTexture = array;
     this.onPlan(plan);
     await this.loadMean(gl, turn, plan.meanDown);
@@ -106,7 +111,7 @@ export class Textures {
         }
         const bitmap = await queue[0];
         queue.shift();
-        if (turn === this.turn && bitmap) gpu.fillLayer(gl, array, j, bitmap);
+        if (turn === this.turn && bitmap) packer.put(bitmap, j);
         bitmap?.close();
         if (turn !== this.turn) return;
         this.loaded = j + 1;
@@ -116,24 +121,32 @@ export class Textures {
       for (const left of queue) left.then((bitmap) => bitmap.close()).catch(() => undefined);
     }
     if (turn !== this.turn) return;
+    this.freePacker();
     gpu.finishArray(gl, array);
     this.onComplete();
   }
 
   /** Room for the eigen textures, within the memory that may be used and that there is. */
-  private makeRoom(gl: WebGL2RenderingContext): { array: WebGLTexture; plan: Plan } {
-    const { size, textures } = this.parts.scene;
-    const needs = { mean: this.meanSize, size, total: textures.length, geometry: this.geometry };
+  private makeRoom(gl: WebGL2RenderingContext): { array: WebGLTexture; packer: Packer; plan: Plan } {
+    const { size, textures, channels } = this.parts.scene;
+    const needs = { mean: this.meanSize, size, channels, total: textures.length, geometry: this.geometry };
     for (let memory = this.options.memory ?? defaultMemory(); ; memory /= 2) {
       const plan = makePlan(needs, gpu.deviceLimits(gl, memory));
       const [width, height] = plan.usable ? size : [1, 1];
       const [w, h] = [Math.ceil(width / plan.scaleDown), Math.ceil(height / plan.scaleDown)];
-      const array = gpu.makeArray(gl, w, h, Math.max(1, plan.usable));
-      if (array) return { array, plan };
+      const [array, picture] = [gpu.makeArray(gl, w, h, layersOf(plan.usable, channels)), gpu.makeRoom(gl, w, h)];
+      if (array && picture) return { array, packer: makePacker(gl, array, picture, channels), plan };
+      gl.deleteTexture(array);
+      gl.deleteTexture(picture);
       if (!plan.usable) {
         throw new SceneError("unsupported", "The graphics memory is full; close other pages and try again.");
       }
     }
+  }
+
+  private freePacker(): void {
+    this.packer?.free();
+    this.packer = null;
   }
 
   /** At once if it is decoded and needs no resizing: the first draw shows it. */

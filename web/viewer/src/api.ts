@@ -7,16 +7,18 @@
 //   set({...})           any of State's options: view, eigen (from 0), count, weights, mixing, filter, wireframe,
 //                        background; also mode ("plane", "orbit") and photograph (boolean)
 //   open(file)           another scene: a Blob or a URL
-//   settled()            when everything is loaded, drawn, and still
-//   pixels()             the picture now: width, height, and RGBA rows from the top
+//   settled()            when everything is loaded, drawn in full, and still
+//   pixels()             the picture now, in full: width, height, and RGBA rows from the top
 //   eyes()               where the eye is, or in a headset both are: x, y, z in the capture's world
 
 import { Vector3 } from "three";
 import type { EigenField } from "eigenfield-three";
 import type { Frame } from "./mode";
 import type { Options } from "./options";
+import type { Detail } from "./pace";
 import { bytesWith, uvSsim } from "./scores";
-import type { Message, ModeName, Status, Viewer } from "./viewer";
+import type { Message, ModeName, Status } from "./session";
+import type { Viewer } from "./viewer";
 
 export interface State extends Options {
   status: Status;
@@ -31,6 +33,7 @@ export interface State extends Options {
   dolly: number;
   outside: boolean;
   frame: Frame; // where the captured picture lies in the canvas
+  detail: Detail; // how the last frame was drawn: coarser while movement is too much for the machine
   frames: number; // drawn since the page opened
   loaded: number; // eigen textures on the GPU
   total: number; // in the file
@@ -81,6 +84,7 @@ export function createApi(viewer: Viewer): Embedded {
         dolly: scene?.plane?.at().dolly ?? 0,
         outside: viewer.outside(),
         frame: viewer.frame(),
+        detail: viewer.detail(),
         frames: viewer.frames(),
         loaded: field?.loaded ?? 0,
         total,

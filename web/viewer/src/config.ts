@@ -1,5 +1,5 @@
-// What the page was told by whoever made it: the JSON in #eigenfield-config. Every key is optional, and a key of the
-// wrong kind is as good as absent.
+// What the page was told: by whoever made it, the JSON in #eigenfield-config, and by its address, ?memory=MB. Every key
+// is optional, and a key of the wrong kind is as good as absent.
 
 export interface Config {
   title: string | null;
@@ -9,9 +9,10 @@ export interface Config {
   photographs: ReadonlyMap<string, string>; // camera's name to URL
   metresPerUnit: number | null;
   version: string | null;
+  memory: number | null; // GPU bytes the page may use; null: by the device
 }
 
-export function readConfig(page: Document): Config {
+export function readConfig(page: Document, address: URL): Config {
   const given = parse(page.getElementById("eigenfield-config")?.textContent ?? "{}");
   const text = (key: string): string | null => {
     const value = given[key];
@@ -22,6 +23,7 @@ export function readConfig(page: Document): Config {
     return typeof value === "number" && Number.isFinite(value) && value > 0 ? value : null;
   };
   const photographs = given["photographs"];
+  const megabytes = Number(address.searchParams.get("memory"));
   return {
     title: text("title"),
     scene: text("scene"),
@@ -34,6 +36,7 @@ export function readConfig(page: Document): Config {
     ),
     metresPerUnit: positive("metresPerUnit"),
     version: text("version"),
+    memory: megabytes > 0 && Number.isFinite(megabytes) ? megabytes * 1e6 : null,
   };
 }
 

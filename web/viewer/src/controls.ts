@@ -91,16 +91,27 @@ export function tick(label: string, changed: (on: boolean) => void): Control<boo
 }
 
 /** One of many. */
+export interface MenuGroup {
+  label: string | null; // null: its entries stand alone
+  entries: readonly (readonly [string, string])[];
+}
+
 export function menu(label: string, chosen: (value: string) => void): Control<string> & {
   readonly input: HTMLSelectElement;
-  fill(entries: readonly (readonly [string, string])[]): void;
+  fill(groups: readonly MenuGroup[]): void;
 } {
   const input = element("select", { "aria-label": label });
   input.addEventListener("change", () => chosen(input.value));
   return {
     root: input,
     input,
-    fill: (entries) => input.replaceChildren(...entries.map(([value, text]) => element("option", { value }, text))),
+    fill: (groups) => {
+      const made = groups.flatMap(({ label: name, entries }) => {
+        const options = entries.map(([value, text]) => element("option", { value }, text));
+        return name === null ? options : [element("optgroup", { label: name }, ...options)];
+      });
+      input.replaceChildren(...made);
+    },
     show: (value) => void (input.value = value),
     enable: (enabled) => void (input.disabled = !enabled),
   };

@@ -40,24 +40,37 @@ export function createInfo(viewer: Viewer): Info {
   };
 }
 
-function section(title: string, rows: Rows): Node[] {
-  if (rows.length === 0) return [];
-  const table = element("table");
-  for (const [name, value] of rows)
-    table.append(element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value)));
-  return [element("h3", {}, title), table];
+/** What one wants to know first: how near it comes to its photographs, and what it takes here. */
+export function briefly({ info, gpuBytes }: EigenField): HTMLElement {
+  return rowsOf([...imageQuality(info), ["GPU memory", bytes(gpuBytes)]]);
 }
 
-function quality({ scores }: SceneInfo): Rows {
-  const rows: Rows = [];
-  const pair = (label: string, ...path: string[]): void => {
-    const [psnr, ssim] = [figure(scores, ...path, "psnr"), figure(scores, ...path, "ssim")];
-    if (psnr !== null || ssim !== null) rows.push([label, `${shown(psnr, 2, " dB")} · SSIM ${shown(ssim, 4)}`]);
-  };
-  pair("texture maps", "uv");
-  pair("encoded views", "image", "encoded");
-  pair("held-out views", "image", "held_out");
-  const ratio = figure(scores, "ratio", "photographs");
+function section(title: string, rows: Rows): Node[] {
+  if (rows.length === 0) return [];
+  return [element("h3", {}, title), rowsOf(rows)];
+}
+
+function rowsOf(rows: Rows): HTMLElement {
+  const row = ([name, value]: [string, string]): HTMLElement =>
+    element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value));
+  return element("table", {}, ...rows.map(row));
+}
+
+/** PSNR and SSIM of a kind of picture, where the file has them. */
+function measured({ scores }: SceneInfo, label: string, ...path: string[]): Rows {
+  const [psnr, ssim] = [figure(scores, ...path, "psnr"), figure(scores, ...path, "ssim")];
+  if (psnr === null && ssim === null) return [];
+  return [[label, `${shown(psnr, 2, "\u00a0dB")}\u00a0· SSIM\u00a0${shown(ssim, 4)}`]];
+}
+
+const imageQuality = (info: SceneInfo): Rows => [
+  ...measured(info, "encoded views", "image", "encoded"),
+  ...measured(info, "held-out views", "image", "held_out"),
+];
+
+function quality(info: SceneInfo): Rows {
+  const rows = [...measured(info, "texture maps", "uv"), ...imageQuality(info)];
+  const ratio = figure(info.scores, "ratio", "photographs");
   if (ratio !== null) rows.push(["smaller than its photographs", `${shown(ratio, 1)} ×`]);
   return rows.length > 0 ? rows : [["not measured", "eigenfield evaluate --store"]];
 }

@@ -38,6 +38,7 @@ export function listenToKeys(viewer: Viewer, actions: Actions): Keys {
       o: () => viewer.setMode(viewer.modeName() === "plane" ? "orbit" : "plane"),
       "[": () => viewer.nextCamera(-1),
       "]": () => viewer.nextCamera(1),
+      n: viewer.nearestCamera,
       " ": () => viewer.showPhotograph(!viewer.photographShown()),
       "1": () => viewer.set({ view: "picture" }),
       "2": show("mean"),

@@ -30,7 +30,7 @@ export function createTilt(viewer: Viewer, changed: () => void): Tilt {
     }
     start ??= { across, down, ...viewer.coordinates() };
     viewer.scene()?.plane?.goTo(start.x + (across - start.across) / REACH, start.y + (down - start.down) / REACH);
-    viewer.request();
+    viewer.moving();
   };
 
   return {
@@ -48,6 +48,8 @@ export function createTilt(viewer: Viewer, changed: () => void): Tilt {
           start = null;
           addEventListener("deviceorientation", lean);
           on = true;
+        } else {
+          viewer.say("This browser does not tell the page how the device is held: allow it motion sensors.");
         }
       }
       changed();

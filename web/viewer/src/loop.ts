@@ -2,6 +2,8 @@
 
 export interface Loop {
   request(): void;
+  /** A hand moved something: the next frame shows movement even if nothing glides. */
+  touch(): void;
   frames(): number; // drawn so far
   rate(): number | null; // frames per second while drawing goes on, else null
   idle(): boolean;
@@ -12,25 +14,39 @@ export interface Loop {
 const LONGEST = 0.1; // seconds: a step after a pause is no longer than this
 const REMEMBERED = 30; // frames over which the rate is taken
 
+/** What is known of a frame when it is drawn. */
+export interface Moment {
+  now: number; // milliseconds
+  moves: boolean;
+  follows: boolean; // the frame before asked for it
+}
+
 /** step: moves things by so many seconds and says whether they still move. draw: one frame. rested: all is still. */
-export function createLoop(step: (seconds: number) => boolean, draw: () => void, rested: () => void): Loop {
+export function createLoop(
+  step: (seconds: number) => boolean,
+  draw: (moment: Moment) => void,
+  rested: () => void,
+): Loop {
   let handle: number | null = null;
   let last: number | null = null; // time of the frame before, null after a rest
   let drawn = 0;
   let paused = false;
+  let touched = false;
   const times: number[] = [];
 
   const frame = (now: number): void => {
     handle = null;
+    const follows = last !== null;
     const seconds = last === null ? 1 / 60 : Math.min((now - last) / 1000, LONGEST);
     if (last === null) times.length = 0;
     last = now;
     times.push(now);
     if (times.length > REMEMBERED) times.shift();
-    const moving = step(seconds);
-    draw();
+    const moves = step(seconds);
+    draw({ now, moves: moves || touched, follows });
+    touched = false;
     drawn++;
-    if (moving) request();
+    if (moves) request();
     if (handle === null) {
       last = null;
       rested();
@@ -42,6 +58,10 @@ export function createLoop(step: (seconds: number) => boolean, draw: () => void,
 
   return {
     request,
+    touch: () => {
+      touched = true;
+      request();
+    },
     frames: () => drawn,
     rate: () => {
       const [first] = times;

@@ -21,10 +21,11 @@ import { createHeadset } from "./xr";
 const NO_WEBGL =
   "This needs WebGL 2, which this browser does not offer here. " +
   "A current browser with its graphics acceleration switched on shows the scene.";
-const NARROW = "(max-width: 720px)";
+const SMALL = "(max-width: 720px), (max-height: 500px)"; // the panel would leave little of the picture
 
 function start(): void {
-  const config = readConfig(document);
+  const address = new URL(location.href);
+  const config = readConfig(document, address);
   if (config.title !== null) document.title = `${config.title} – eigenfield`;
   const label = "The scene: arrow keys move, H lists all controls";
   const canvas = element("canvas", { class: "view", tabindex: "0", role: "application", "aria-label": label });
@@ -101,7 +102,7 @@ function start(): void {
   });
   gamepads = listenToGamepads(viewer);
   keepAddress(viewer);
-  showPanel(!matchMedia(NARROW).matches);
+  showPanel(!matchMedia(SMALL).matches);
   new ResizeObserver(() => {
     if (headset.presenting()) return; // the headset has its own size
     viewer.stage.resize(stageArea.clientWidth, stageArea.clientHeight);
@@ -111,7 +112,7 @@ function start(): void {
   window.eigenfield = createApi(viewer);
 
   update();
-  const source = namedSource(config, document, new URL(location.href));
+  const source = namedSource(config, document, address);
   if (source) void viewer.open(source);
 }
 

@@ -18,6 +18,8 @@ export interface Frame {
   height: number;
 }
 
+export const WHOLE: Frame = { left: 0, top: 0, width: 1, height: 1 };
+
 export interface Mode {
   grab(): void;
   /** The hand moved by so much, in parts of the canvas's smaller side, right and down. */

@@ -2,12 +2,11 @@
 // thing turn as it stands; a camera's roll is kept on the way in and let go with the first movement.
 
 import { MathUtils, type Object3D, type PerspectiveCamera, Quaternion, Raycaster, Vector2, Vector3 } from "three";
-import { approach, clamp, type Frame, type Mode, type Push } from "./mode";
+import { approach, clamp, type Mode, type Push, WHOLE } from "./mode";
 
 const TURN = 2.4; // radians that a drag across the smaller side of the canvas turns
 const STEEPEST = 1.45; // radians above or below
 const SMOOTH = 0.07; // seconds
-const WHOLE: Frame = { left: 0, top: 0, width: 1, height: 1 };
 
 /** Where captured views are, in the world of three.js: what `outside` and the speed of movement need to know. */
 export interface Surroundings {
@@ -15,11 +14,12 @@ export interface Surroundings {
   centre: Vector3; // of the surface
   radius: number;
   tangents: Vector2; // half the reference camera's picture over its focal length, across and down
+  focus: Vector3 | null; // what cameras that stand around look at: a free eye turns about it, and stays among them
   outside(eye: Vector3, target: Vector3): boolean;
 }
 
 export interface OrbitMode extends Mode {
-  /** Take over from wherever a camera stands, about the point of the surface that it looks at. */
+  /** Take over from wherever a camera stands, about the point of the surface that it looks at or one near `focus`. */
   enter(camera: PerspectiveCamera, look: Vector2): void;
   /** Make the point of the surface at canvas coordinates (-1..1, up) the one to turn about. */
   aim(camera: PerspectiveCamera, at: Vector2): void;
@@ -85,7 +85,8 @@ export function createOrbitMode(object: Object3D, around: Surroundings): OrbitMo
       const eye = new Vector3().setFromMatrixPosition(camera.matrixWorld);
       ray.setFromCamera(look, camera);
       const along = ray.ray.direction.clone();
-      const hit = surface(camera, look);
+      const depth = around.focus ? around.focus.clone().sub(eye).dot(along) : 0;
+      const hit = depth > 0 ? eye.clone().addScaledVector(along, depth) : surface(camera, look);
       aimed(eye, hit ?? eye.clone().addScaledVector(along, Math.max(eye.distanceTo(around.centre), 1e-3)));
       settle();
       const [, upwards] = sideways();

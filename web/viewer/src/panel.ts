@@ -1,12 +1,14 @@
 // The panel beside the picture.
 
+import type { SceneInfo } from "eigenfield-three";
 import { choice, menu, slider, tick } from "./controls";
 import { button, element, ICONS } from "./dom";
-import { createInfo } from "./info";
+import { briefly, createInfo } from "./info";
 import { BACKGROUNDS } from "./options";
 import { bytesWith, uvSsim } from "./scores";
 import { bytes, shown } from "./text";
-import type { Scene, Viewer } from "./viewer";
+import type { Scene } from "./session";
+import type { Viewer } from "./viewer";
 
 const NO_PHOTOGRAPHS = "The photographs are not here. With the capture: eigenfield view scene.glb CAPTURE";
 const NO_PLANE = "The cameras stand around the object: there is no plane that they look across.";
@@ -19,9 +21,13 @@ export interface Panel {
   tick(): void;
 }
 
+const cameraLabel = ({ names, heldOut }: SceneInfo, index: number): string =>
+  `${names[index] ?? index}${heldOut[index] === true ? " ○ held out" : ""}`;
+
 export function createPanel(viewer: Viewer): Panel {
   const title = element("h1");
   const summary = element("p", { class: "quiet" });
+  const brief = element("div", { class: "brief" });
 
   const view = choice(
     "Show",
@@ -31,6 +37,7 @@ export function createPanel(viewer: Viewer): Panel {
   const eigen = slider("Eigen texture", (value) => viewer.set({ view: "eigen", eigen: value - 1 }));
   const count = slider("Eigen textures", (value) => viewer.set({ count: value }));
   const worth = element("p", { class: "quiet figures" });
+  const limitation = element("p", { class: "warning" });
 
   const camera = menu("Captured camera", (value) => {
     if (value === "") viewer.moving();
@@ -38,8 +45,10 @@ export function createPanel(viewer: Viewer): Panel {
   });
   const previous = button("Previous camera  [", ICONS.previous, () => viewer.nextCamera(-1));
   const next = button("Next camera  ]", ICONS.next, () => viewer.nextCamera(1));
+  const nearest = button("Nearest camera  N", ICONS.nearest, viewer.nearestCamera);
   const flip = element("button", { type: "button", class: "wide", "aria-pressed": "false" }, "Photograph");
   flip.addEventListener("click", () => viewer.showPhotograph(!viewer.photographShown()));
+  const heldOut = element("p", { class: "quiet held" });
   const noPhotographs = element(
     "p", { class: "quiet" }, "To compare: ", element("code", {}, "eigenfield view scene.glb CAPTURE"),
   );
@@ -79,12 +88,15 @@ export function createPanel(viewer: Viewer): Panel {
   const cameras = element(
     "fieldset", { class: "control" },
     element("legend", {}, "Captured camera"),
-    element("div", { class: "cameras" }, previous, camera.root, next), flip, noPhotographs,
+    element("div", { class: "cameras" }, previous, camera.root, next, nearest), heldOut, flip, noPhotographs,
   );
-  const own = element("div", { class: "own" }, view.root, eigen.root, count.root, worth, cameras, mode.root);
+  const own = element(
+    "div", { class: "own" },
+    view.root, eigen.root, count.root, worth, limitation, cameras, mode.root,
+  );
   const root = element(
     "aside", { class: "panel", "aria-label": "Controls and information", id: "panel" },
-    element("header", {}, title, summary), own, drawing, about, rate,
+    element("header", {}, title, summary, brief), own, drawing, about, rate,
   );
 
   let filled: Scene | null = null;
@@ -96,17 +108,21 @@ export function createPanel(viewer: Viewer): Panel {
     for (const control of [weights, mixing, filter]) control.root.hidden = field === null;
     if (!field) {
       summary.textContent = "A plain glTF file: no eigen textures.";
+      brief.replaceChildren();
       return;
     }
     const { info: facts } = field;
     const parts = [`${facts.names.length} cameras`, `${field.total} eigen textures`, bytes(facts.bytes.total)];
     summary.textContent = parts.join(" · ");
     camera.fill([
-      ["", "free view"],
-      ...facts.names.map((name, i): [string, string] => [
-        String(i), facts.heldOut[i] === true ? `${name} (held out)` : name,
-      ]),
+      { label: null, entries: [["", "free view"]] },
+      ...viewer.cameraOrder().map(({ label, indices }) => ({
+        label, entries: indices.map((i): [string, string] => [String(i), cameraLabel(facts, i)]),
+      })),
     ]);
+    const held = facts.heldOut.filter(Boolean).length;
+    heldOut.hidden = held === 0;
+    heldOut.textContent = `${held} held out: the encoder never saw ${held === 1 ? "it" : "them"}.`;
     count.setRange(0, field.total);
     eigen.setRange(1, Math.max(field.total, 1));
     view.allow("eigen", field.total > 0, "The file has no eigen textures.");
@@ -133,6 +149,7 @@ export function createPanel(viewer: Viewer): Panel {
       if (about.open) info.update();
       const { field } = scene;
       if (!field) return;
+      brief.replaceChildren(briefly(field));
       const photographs = viewer.hasPhotograph();
       view.show(options.view);
       view.allow("error", photographs, NO_PHOTOGRAPHS);
@@ -143,9 +160,9 @@ export function createPanel(viewer: Viewer): Panel {
       const drawn = viewer.summed();
       count.show(wanted);
       count.say(drawn < wanted ? `${drawn} of ${wanted}` : `${wanted} of ${field.total}`);
-      worth.textContent =
-        `${bytes(bytesWith(field.info, drawn))} · UV SSIM ${shown(uvSsim(field.info, drawn), 4)}` +
-        (field.limitation === null ? "" : ` · ${field.limitation}`);
+      worth.textContent = `${bytes(bytesWith(field.info, drawn))} · UV SSIM ${shown(uvSsim(field.info, drawn), 4)}`;
+      limitation.hidden = field.limitation === null;
+      limitation.textContent = field.limitation;
       const captured = viewer.captured();
       camera.show(captured === null ? "" : String(captured));
       flip.disabled = !photographs;
@@ -160,7 +177,9 @@ export function createPanel(viewer: Viewer): Panel {
     },
     tick: () => {
       const now = viewer.rate();
-      rate.textContent = now === null ? "still" : `${now.toFixed(0)} frames per second`;
+      const { scale, linear } = viewer.detail();
+      const drawn = scale < 1 ? ", coarser until it rests" : linear ? ", linear until it rests" : "";
+      rate.textContent = now === null ? "still" : `${now.toFixed(0)} frames per second${drawn}`;
     },
   };
 }

@@ -20,6 +20,10 @@ export interface Stage {
   /** only: nothing is drawn outside it. over: a picture that fills `only`. */
   draw(only: Frame | null, over: Texture | null): void;
   resize(width: number, height: number): void;
+  /** Device pixels a CSS pixel of the full picture. */
+  ratio(): number;
+  /** Draws with so much of the full resolution; the browser makes it as large as ever. */
+  setScale(scale: number): void;
   aspect(): number;
   /** What was just drawn: call it in the same task as `draw`. Rows from the top, R, G, B, A. */
   pixels(): { width: number; height: number; data: Uint8Array };
@@ -42,6 +46,8 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
   const photograph = createPhotographQuad();
   const background = { colour: "#000000", coded: true };
   const size = { width: 1, height: 1 };
+  const ratio = (): number => Math.min(devicePixelRatio, FINEST);
+  let scale = 1;
 
   const clearColour = (): void => {
     // Coded numbers go out as they are: the colour must not be taken for sRGB that has to be made linear first.
@@ -85,8 +91,14 @@ export function createStage(canvas: HTMLCanvasElement): Stage {
     },
     resize: (width, height) => {
       Object.assign(size, { width: Math.max(width, 1), height: Math.max(height, 1) });
-      renderer.setPixelRatio(Math.min(devicePixelRatio, FINEST));
+      renderer.setPixelRatio(ratio() * scale);
       renderer.setSize(size.width, size.height, false);
+    },
+    ratio,
+    setScale: (next) => {
+      if (next === scale) return;
+      scale = next;
+      renderer.setPixelRatio(ratio() * scale); // it makes the buffer anew, empty: draw in the same task
     },
     aspect: () => size.width / size.height,
     pixels: () => {

@@ -1,11 +1,12 @@
 // The captured views as the free eye sees them: which way is up, where the thing is, and whether any camera was near.
 
-import { Box3, type Object3D, Sphere, Vector2, Vector3 } from "three";
+import { Box3, Matrix3, type Object3D, Sphere, Vector2, Vector3 } from "three";
 import type { EigenField } from "eigenfield-three";
 import { row } from "./geometry";
 import type { Surroundings } from "./orbit-mode";
 
 const EDGE = 1.03; // view-plane units: a little beyond the array is no lie yet
+const AGREED = 0.5; // length of the mean of unit vectors that have a direction in common
 const LEAST_ANGLE = 0.15; // radians between the eye and the nearest camera that are always fine
 
 export function surroundingsOf(field: EigenField): Surroundings {
@@ -15,9 +16,11 @@ export function surroundingsOf(field: EigenField): Surroundings {
   const outwards = (v: readonly number[]): Vector3 => new Vector3(v[0], v[1], v[2]).transformDirection(world);
   const placed = (v: readonly number[]): Vector3 => new Vector3(v[0], v[1], v[2]).applyMatrix4(world);
 
-  const up = new Vector3();
-  for (const camera of cameras) up.sub(outwards(row(camera.R, 1)));
-  if (up.length() < 0.2 * cameras.length) up.copy(outwards(viewPlane.up));
+  // What the cameras agree on; if they were held sideways and stand around, the axis of the ring that they stand on.
+  const agreed = new Vector3();
+  for (const camera of cameras) agreed.sub(outwards(row(camera.R, 1)));
+  const axis = outwards(facesPlane ? viewPlane.up : viewPlane.normal);
+  const up = agreed.length() > AGREED * cameras.length ? agreed : axis.multiplyScalar(agreed.dot(axis) < 0 ? -1 : 1);
   const { centre, radius } = extentOf(field.mesh);
 
   const [right, upwards] = [outwards(viewPlane.right), outwards(viewPlane.up)];
@@ -45,7 +48,26 @@ export function surroundingsOf(field: EigenField): Surroundings {
   const tangents = view
     ? new Vector2(view.width / (2 * row(view.K, 0)[0]), view.height / (2 * row(view.K, 1)[1]))
     : new Vector2(0.5, 0.5);
-  return { up: up.normalize(), centre, radius, tangents, outside: facesPlane ? beyondPlane : farFromAll };
+  const focus = facesPlane ? null : focusOf(centres, cameras.map((camera) => outwards(row(camera.R, 2))));
+  return { up: up.normalize(), centre, radius, tangents, focus, outside: facesPlane ? beyondPlane : farFromAll };
+}
+
+/** The point nearest to all optical axes, least squares: sum of (1 - f fT) (p - c) = 0. Null if they are parallel. */
+function focusOf(centres: Vector3[], forwards: Vector3[]): Vector3 | null {
+  const sum = new Array<number>(9).fill(0);
+  const target = new Vector3();
+  centres.forEach((centre, i) => {
+    const f = forwards[i];
+    if (!f) return;
+    target.add(centre).addScaledVector(f, -centre.dot(f));
+    const axis = f.toArray();
+    for (let k = 0; k < 9; k++) {
+      const [r, c] = [Math.floor(k / 3), k % 3];
+      sum[k] = (sum[k] ?? 0) + (r === c ? 1 : 0) - (axis[r] ?? 0) * (axis[c] ?? 0);
+    }
+  });
+  const normal = new Matrix3().fromArray(sum); // symmetric: the order of its elements does not matter
+  return Math.abs(normal.determinant()) < 1e-6 * centres.length ** 3 ? null : target.applyMatrix3(normal.invert());
 }
 
 /** The sphere around an object's box. */

@@ -19,32 +19,32 @@ function b(e, t = "") {
 	return e instanceof _ ? e : new _("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/limits.ts
-var x = "EIGENFIELD_eigen_textures", S = /* @__PURE__ */ new Set(), C = 64 * 2 ** 20, w = 16384, T = 16384, E = 2 ** 27, D = 4096, ee = 8 * 2 ** 30, te = 1e5, ne = 2 ** 29, O = 1024, re = 2 ** 26, ie = 2 ** 27, ae = 2 ** 28, k = 1e30;
+var x = "EIGENFIELD_eigen_textures", S = /* @__PURE__ */ new Set(), C = 64 * 2 ** 20, w = 16384, T = 16384, E = 2 ** 27, ee = 4096, te = 8 * 2 ** 30, ne = 1e5, re = 2 ** 29, D = 1024, ie = 2 ** 26, ae = 2 ** 27, oe = 2 ** 28, O = 1e30;
 // eigenfield-three/src/info.ts
-async function A(e, t, n) {
+async function k(e, t, n) {
 	let r = await n(e.view), i = t.views[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw oe(e.where);
+	if (r.byteLength < i) throw se(e.where);
 	let a = e.count * e.items, o = r.slice(e.offset, e.offset + 4 * a);
 	if (e.type === 5125) return new Uint32Array(o);
 	let s = new Float32Array(o);
 	for (let t of s) if (!(Math.abs(t) <= 1e30)) throw v(e.where, `${t} among its numbers`);
 	return s;
 }
-function oe(e) {
+function se(e) {
 	return new _("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-async function se(e, t) {
+async function ce(e, t) {
 	let [n, r, i, a] = await Promise.all([
-		A(e.intrinsics, e, t),
-		A(e.poses, e, t),
-		A(e.sizes, e, t),
-		e.colour ? A(e.colour, e, t) : null
+		k(e.intrinsics, e, t),
+		k(e.poses, e, t),
+		k(e.sizes, e, t),
+		e.colour ? k(e.colour, e, t) : null
 	]);
 	return e.names.map((t, o) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = n.subarray(5 * o, 5 * o + 5);
 		if (!(s > 0 && c > 0)) throw v(e.intrinsics.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ce([...r.subarray(12 * o, 12 * o + 12)], e.poses.where, t), [m = 0, h = 0] = i.subarray(2 * o, 2 * o + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > ne) throw v(e.sizes.where, `"${t}" is ${m} x ${h} pixels`);
+		let { R: f, t: p } = le([...r.subarray(12 * o, 12 * o + 12)], e.poses.where, t), [m = 0, h = 0] = i.subarray(2 * o, 2 * o + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > re) throw v(e.sizes.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -61,7 +61,7 @@ async function se(e, t) {
 				0,
 				1
 			]
-		], [_, y] = a ? le([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
+		], [_, y] = a ? ue([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
@@ -75,7 +75,7 @@ async function se(e, t) {
 		};
 	});
 }
-function ce(e, t, n) {
+function le(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -99,13 +99,13 @@ function ce(e, t, n) {
 		t: a
 	};
 }
-function le(e, t, n) {
+function ue(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw v(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function ue(e, t) {
-	let n = await Promise.all(e.weights.map((n) => A(n, e, t))), r = e.heldOut.filter((e) => !e).length, i = e.textures.length, a = new Float32Array(r * i), o = 0;
+async function de(e, t) {
+	let n = await Promise.all(e.weights.map((n) => k(n, e, t))), r = e.heldOut.filter((e) => !e).length, i = e.textures.length, a = new Float32Array(r * i), o = 0;
 	for (let e of n) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) a.set(e.subarray(n * t, (n + 1) * t), n * i + o);
@@ -113,9 +113,9 @@ async function ue(e, t) {
 	}
 	return a;
 }
-async function de(e, t) {
+async function fe(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = Uint32Array.from(await A(e.triangles, e, t)), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = Uint32Array.from(await k(e.triangles, e, t)), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw v(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -123,7 +123,7 @@ async function de(e, t) {
 	}
 	return r;
 }
-function fe(e, t, n, r) {
+function pe(e, t, n, r) {
 	let { right: i, up: a } = e, o = M(i, a), s = [
 		0,
 		0,
@@ -152,14 +152,14 @@ function fe(e, t, n, r) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof c == "number" && c > 0 && c <= 1e30 ? c : null,
-		bytes: pe(e, r),
+		bytes: me(e, r),
 		size: e.size,
 		vertices: e.position.count,
 		triangles: e.indices.count / 3,
 		facesPlane: Math.abs(j(s, o)) > .7
 	};
 }
-function pe(e, t) {
+function me(e, t) {
 	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = i(e.preview === null ? [e.mean.view] : [e.preview, e.mean.view]), o = e.textures.map((e) => r(e.view)), s = i(e.weights.map((e) => e.view)), c = i([
 		e.position.view,
 		e.uv.view,
@@ -174,7 +174,7 @@ function pe(e, t) {
 		textures: o
 	};
 }
-function me(e, t) {
+function A(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -378,47 +378,53 @@ function je(e) {
 function N([e, t], n = 1) {
 	return Math.round(4 * Oe * Math.ceil(e / n) * Math.ceil(t / n));
 }
+function P(e, t) {
+	return t * Math.max(1, Math.ceil(e / 4));
+}
 function Me(e) {
 	return Math.max(1, Math.ceil(e / 4)) * 129 * 129 * 8;
 }
 function Ne(e, t) {
-	let n = Math.floor((t.vectors - 40) / 2.25), r = Math.max(0, Math.min(e.total, t.layers, n)), i = [
+	let n = Math.floor((t.vectors - 40) / (2 * e.channels + 1)), r = Math.min(n, Math.floor(t.layers / e.channels)), i = Math.max(0, Math.min(e.total, 4 * r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.mean) / n <= t.side && N(e.mean, n) <= t.memory / 2) ?? 16, a = N(e.mean, i) + e.geometry, o = (t, n) => a + n * N(e.size, t) + Me(n), s = (n) => Math.max(...e.size) / n <= t.side, c = [
+	].find((n) => Math.max(...e.mean) / n <= t.side && N(e.mean, n) <= t.memory / 2) ?? 16, o = N(e.mean, a) + e.geometry, s = (t, n) => o + (n && P(n, e.channels) * N(e.size, t)) + Me(n), c = (n, r) => s(n, r) + Pe(e, n) <= t.memory, l = (n) => Math.max(...e.size) / n <= t.side, u = [
 		1,
 		2,
 		4
-	].find((e) => s(e) && o(e, r) <= t.memory) ?? 4, l = s(c) ? r : 0;
-	for (; l > 0 && o(c, l) > t.memory;) l--;
-	let u = {
-		meanDown: i,
-		scaleDown: c,
-		usable: l,
-		bytes: o(c, l)
+	].find((e) => l(e) && c(e, i)) ?? 4, d = l(u) ? i : 0;
+	for (; d > 0 && !c(u, d);) d--;
+	let f = {
+		meanDown: a,
+		scaleDown: u,
+		usable: d,
+		bytes: s(u, d)
 	};
 	return {
-		...u,
-		limitation: Pe(u, e, t)
+		...f,
+		limitation: Fe(f, e, t)
 	};
 }
-function Pe(e, t, n) {
+function Pe({ size: e, total: t }, n) {
+	return t && 4 * Math.ceil(e[0] / n) * Math.ceil(e[1] / n);
+}
+function Fe(e, t, n) {
 	let r = [];
 	if (e.usable < t.total && r.push(`${e.usable} of ${t.total} eigen textures are drawn`), e.usable && e.scaleDown > 1 && r.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && r.push(`the mean texture has 1/${e.meanDown} of its size`), !r.length) return null;
-	let i = N(t.mean) + t.total * N(t.size) + t.geometry + Me(t.total), a = i > n.memory ? `the scene needs ${Fe(i)} MB of graphics memory and ${Fe(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Ie(r.join(", "))}: ${a}.`;
-}
-function Fe(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let i = N(t.mean) + P(t.total, t.channels) * N(t.size) + Pe(t, 1) + t.geometry + Me(t.total), a = i > n.memory ? `the scene needs ${Ie(i)} MB of graphics memory and ${Ie(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Le(r.join(", "))}: ${a}.`;
 }
 function Ie(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function Le(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // eigenfield-three/src/maps.ts
-function Le(r, i, a, o, s) {
+function Re(r, i, a, o, s) {
 	let u = Math.max(1, Math.ceil(s / 4)), d = new Uint16Array(u * 129 * 129 * 4);
 	for (let e = 0; e < 129; e++) for (let t = 0; t < 129; t++) {
 		let { camera: c, weight: l } = r.at(2 * t / 128 - 1, 2 * e / 128 - 1, i), [u, f, p, m] = [
@@ -436,21 +442,21 @@ function Le(r, i, a, o, s) {
 	return f.format = p, f.type = c, f.minFilter = f.magFilter = l, f.wrapS = f.wrapT = e, f.needsUpdate = !0, f;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Re = "// Equations 7 and 8 on the surface of the proxy, one fragment at a time.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, and\n//   COUNT    eigen textures in the array, at least 1\n//   BICUBIC  where the finest level is read: 0 bilinear, 1 Catmull-Rom for the mean, 2 for the eigen textures too\n// Pixels of more than `finest` texels are left to the samplers and their mip maps.\n// Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define GROUPS ((COUNT + 3) / 4)\n\nuniform sampler2D meanTexture;\nuniform vec3 meanScale;               // mean = stored * meanScale + meanBias, stored in 0..1\nuniform vec3 meanBias;\n\nuniform int count;                    // eigen textures to sum, 0 to COUNT\nuniform sampler2DArray eigenTextures; // stored codes / 255, a layer each\nuniform vec3 eigenScale[COUNT];       // 255 * scale, of each channel\nuniform vec3 eigenBias[COUNT];        // -zero * scale\n\nuniform bool rayWeights;              // look the weights up where the ray to the eye meets the view plane\nuniform vec4 viewWeights[GROUPS];     // else these: weights 4 g .. 4 g + 3\nuniform sampler2DArray weightMaps;    // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\n\nuniform float finest;                 // texels a pixel up to which the finest level is read: 1.5 times those a pixel\n                                      // of the photographs covers, which holds no more than its own average\nuniform vec3 eye;                     // capture's world, as all that follows\nuniform vec3 planeOrigin;\nuniform vec3 planeNormal;\nuniform vec3 planeX;                  // right / extent[0], up / extent[1]; zero where the extent is\nuniform vec3 planeY;\n\nuniform mat3 toRGB;                   // channels as stored to R, G, B\nuniform vec3 exposureScale;           // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a\nuniform vec3 exposureBias;            // captured camera of a harmonised scene, else 1 and 0\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras), where the eye itself stands.\nvec2 viewCoordinates(vec3 place) {\n  vec3 ray = eye - place;\n  float along = dot(planeNormal, ray);\n  float height = dot(planeNormal, planeOrigin - place);\n  bool meets = along * height > 0.0 && abs(along) > 1e-5 * length(ray);\n  vec3 offset = (meets ? place + ray * (height / along) : eye) - planeOrigin;\n  return clamp(vec2(dot(offset, planeX), dot(offset, planeY)), -1.0, 1.0);\n}\n\nfloat levelBias() { return -log2(finest); }\n\n#if BICUBIC > 0\n// Catmull-Rom's sixteen taps as nine bilinear ones: of the two middle taps of an axis one between them.\nstruct Taps {\n  vec2 at[3];      // texture coordinates\n  vec2 weight[3];\n  bool fine;       // false: a pixel covers too many texels, let the sampler filter\n};\n\nTaps makeTaps(vec2 uv, vec2 size) {\n  vec2 texel = clamp(uv * size, vec2(0.5), size - 0.5) - 0.5;\n  vec2 base = floor(texel);\n  vec2 f = texel - base;\n  vec2 f2 = f * f, f3 = f2 * f;\n  vec2 w0 = 0.5 * (2.0 * f2 - f3 - f), w1 = 0.5 * (3.0 * f3 - 5.0 * f2 + 2.0);\n  vec2 w2 = 0.5 * (4.0 * f2 - 3.0 * f3 + f), w3 = 0.5 * (f3 - f2);\n  Taps taps;\n  taps.at[0] = (base - 0.5) / size;\n  taps.at[1] = (base + 0.5 + w2 / (w1 + w2)) / size;\n  taps.at[2] = (base + 2.5) / size;\n  taps.weight[0] = w0;\n  taps.weight[1] = w1 + w2;\n  taps.weight[2] = w3;\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  taps.fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  return taps;\n}\n\nvec3 readMean(Taps taps, vec2 uv) {\n  vec3 plain = texture(meanTexture, uv, levelBias()).rgb;\n  if (!taps.fine) return plain;\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 3; row++)\n    for (int column = 0; column < 3; column++)\n      sum += taps.weight[column].x * taps.weight[row].y *\n             textureLod(meanTexture, vec2(taps.at[column].x, taps.at[row].y), 0.0).rgb;\n  return sum;\n}\n#endif\n\n#if BICUBIC > 1\nvec3 readEigen(Taps taps, vec2 uv, int layer) {\n  if (!taps.fine) return texture(eigenTextures, vec3(uv, float(layer)), levelBias()).rgb;\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 3; row++)\n    for (int column = 0; column < 3; column++)\n      sum += taps.weight[column].x * taps.weight[row].y *\n             textureLod(eigenTextures, vec3(taps.at[column].x, taps.at[row].y, float(layer)), 0.0).rgb;\n  return sum;\n}\n#endif\n\nvec4 weightsOf(int group, vec2 view) {\n  if (!rayWeights) return viewWeights[group];\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  return textureLod(weightMaps, vec3(at, float(group)), 0.0);\n}\n\n// The mean alone, as R, G, B.\nvec3 meanColour(vec2 uv) {\n#if BICUBIC > 0\n  vec3 stored = readMean(makeTaps(uv, vec2(textureSize(meanTexture, 0))), uv);\n#else\n  vec3 stored = texture(meanTexture, uv, levelBias()).rgb;\n#endif\n  return toRGB * (stored * meanScale + meanBias);\n}\n\n// One eigen texture's values, which are signed.\nvec3 eigenColour(vec2 uv, int layer) {\n  return toRGB * (texture(eigenTextures, vec3(uv, float(layer)), levelBias()).rgb * eigenScale[layer] + eigenBias[layer]);\n}\n\n// mean + sum over j of w_j(view) E_j (equation 8) at texture coordinates uv of the surface point `place`.\nvec3 surfaceColour(vec2 uv, vec3 place) {\n  vec3 sum = vec3(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n#if BICUBIC > 1\n  Taps taps = makeTaps(uv, vec2(textureSize(eigenTextures, 0).xy));\n#endif\n  for (int group = 0; group < GROUPS; group++) {\n    if (4 * group >= count) break;\n    vec4 weights = weightsOf(group, view);\n    for (int k = 0; k < 4; k++) {\n      int j = 4 * group + k;\n      if (j >= count) break;\n#if BICUBIC > 1\n      vec3 stored = readEigen(taps, uv, j);\n#else\n      vec3 stored = texture(eigenTextures, vec3(uv, float(j)), levelBias()).rgb;\n#endif\n      sum += weights[k] * (stored * eigenScale[j] + eigenBias[j]);\n    }\n  }\n  vec3 colour = meanColour(uv) + toRGB * sum;\n  return clamp(colour * exposureScale + exposureBias, 0.0, 1.0);\n}\n", ze = {
+var ze = "// Equations 7 and 8 on the surface of the proxy, one fragment at a time.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, and\n//   COUNT     eigen textures in the array, at least 1\n//   CHANNELS  of each as stored: 3, or 1 that stands for all three\n//   BICUBIC   where the finest level is read: 0 bilinear, 1 Catmull-Rom for the mean, 2 for the eigen textures too\n// Four eigen textures share a texel: layer CHANNELS g + c of the array holds channel c of textures 4 g .. 4 g + 3, so\n// that a channel of four is one read and one product with their weights (decision 13).\n// Pixels of more than `finest` texels are left to the samplers and their mip maps.\n// Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define GROUPS ((COUNT + 3) / 4)\n\nuniform sampler2D meanTexture;\nuniform vec3 meanScale;               // mean = stored * meanScale + meanBias, stored in 0..1\nuniform vec3 meanBias;\n\nuniform int count;                    // eigen textures to sum, 0 to COUNT\nuniform sampler2DArray eigenTextures; // stored codes / 255; anything finite where there is no texture (yet)\nuniform vec4 eigenScale[CHANNELS * GROUPS]; // 255 * scale, of each layer\nuniform vec4 eigenBias[CHANNELS * GROUPS];  // -zero * scale\n\nuniform bool rayWeights;              // look the weights up where the ray to the eye meets the view plane\nuniform vec4 viewWeights[GROUPS];     // else these: weights 4 g .. 4 g + 3\nuniform sampler2DArray weightMaps;    // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\n\nuniform float finest;                 // texels a pixel up to which the finest level is read: 1.5 times those a pixel\n                                      // of the photographs covers, which holds no more than its own average\nuniform float finestEigen;            // the same in texels of the eigen textures, which may be smaller than the mean\nuniform vec3 eye;                     // capture's world, as all that follows\nuniform vec3 planeOrigin;\nuniform vec3 planeNormal;\nuniform vec3 planeX;                  // right / extent[0], up / extent[1]; zero where the extent is\nuniform vec3 planeY;\n\nuniform mat3 toRGB;                   // channels as stored to R, G, B\nuniform vec3 exposureScale;           // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a\nuniform vec3 exposureBias;            // captured camera of a harmonised scene, else 1 and 0\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras), where the eye itself stands.\nvec2 viewCoordinates(vec3 place) {\n  vec3 ray = eye - place;\n  float along = dot(planeNormal, ray);\n  float height = dot(planeNormal, planeOrigin - place);\n  bool meets = along * height > 0.0 && abs(along) > 1e-5 * length(ray);\n  vec3 offset = (meets ? place + ray * (height / along) : eye) - planeOrigin;\n  return clamp(vec2(dot(offset, planeX), dot(offset, planeY)), -1.0, 1.0);\n}\n\n#if BICUBIC > 0\n// Catmull-Rom's sixteen taps as nine bilinear ones: of the two middle taps of an axis one between them.\nstruct Taps {\n  vec2 at[3];      // texture coordinates\n  vec2 weight[3];\n  vec2 across;     // what a pixel covers, in texture coordinates\n  vec2 down;\n  bool fine;       // false: that is too many texels, let the sampler filter\n};\n\nTaps makeTaps(vec2 uv, vec2 size, float most) {\n  vec2 texel = clamp(uv * size, vec2(0.5), size - 0.5) - 0.5;\n  vec2 base = floor(texel);\n  vec2 f = texel - base;\n  vec2 f2 = f * f, f3 = f2 * f;\n  vec2 w0 = 0.5 * (2.0 * f2 - f3 - f), w1 = 0.5 * (3.0 * f3 - 5.0 * f2 + 2.0);\n  vec2 w2 = 0.5 * (4.0 * f2 - 3.0 * f3 + f), w3 = 0.5 * (f3 - f2);\n  Taps taps;\n  taps.at[0] = (base - 0.5) / size;\n  taps.at[1] = (base + 0.5 + w2 / (w1 + w2)) / size;\n  taps.at[2] = (base + 2.5) / size;\n  taps.weight[0] = w0;\n  taps.weight[1] = w1 + w2;\n  taps.weight[2] = w3;\n  taps.across = dFdx(uv);\n  taps.down = dFdy(uv);\n  vec2 across = taps.across * size, down = taps.down * size;\n  taps.fine = max(dot(across, across), dot(down, down)) <= most * most;\n  return taps;\n}\n\nvec3 readMean(Taps taps, vec2 uv) {\n  vec3 plain = texture(meanTexture, uv, -log2(finest)).rgb;\n  if (!taps.fine) return plain;\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 3; row++)\n    for (int column = 0; column < 3; column++)\n      sum += taps.weight[column].x * taps.weight[row].y *\n             textureLod(meanTexture, vec2(taps.at[column].x, taps.at[row].y), 0.0).rgb;\n  return sum;\n}\n#endif\n\n#if BICUBIC > 1\nTaps eigenTaps; // of this fragment; whoever reads layers makes them first\n\nvec4 readLayer(vec2 uv, int layer) {\n  if (!eigenTaps.fine) { // the next fragment's may be: no derivatives here\n    vec2 across = eigenTaps.across / finestEigen, down = eigenTaps.down / finestEigen;\n    return textureGrad(eigenTextures, vec3(uv, float(layer)), across, down);\n  }\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 3; row++)\n    for (int column = 0; column < 3; column++)\n      sum += eigenTaps.weight[column].x * eigenTaps.weight[row].y *\n             textureLod(eigenTextures, vec3(eigenTaps.at[column].x, eigenTaps.at[row].y, float(layer)), 0.0);\n  return sum;\n}\n\nvoid readyTaps(vec2 uv) { eigenTaps = makeTaps(uv, vec2(textureSize(eigenTextures, 0).xy), finestEigen); }\n#else\nvec4 readLayer(vec2 uv, int layer) {\n  return texture(eigenTextures, vec3(uv, float(layer)), -log2(finestEigen));\n}\n\nvoid readyTaps(vec2 uv) {}\n#endif\n\n// One channel of four eigen textures, weighted and summed.\nfloat sumLayer(vec2 uv, int layer, vec4 weights) {\n  return dot(weights, readLayer(uv, layer) * eigenScale[layer] + eigenBias[layer]);\n}\n\nvec3 sumGroup(vec2 uv, int group, vec4 weights) {\n#if CHANNELS == 1\n  return vec3(sumLayer(uv, group, weights));\n#else\n  int layer = 3 * group;\n  return vec3(sumLayer(uv, layer, weights), sumLayer(uv, layer + 1, weights), sumLayer(uv, layer + 2, weights));\n#endif\n}\n\nvec4 weightsOf(int group, vec2 view) {\n  if (!rayWeights) return viewWeights[group];\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  return textureLod(weightMaps, vec3(at, float(group)), 0.0);\n}\n\n// The mean alone, as R, G, B.\nvec3 meanColour(vec2 uv) {\n#if BICUBIC > 0\n  vec3 stored = readMean(makeTaps(uv, vec2(textureSize(meanTexture, 0)), finest), uv);\n#else\n  vec3 stored = texture(meanTexture, uv, -log2(finest)).rgb;\n#endif\n  return toRGB * (stored * meanScale + meanBias);\n}\n\n// One eigen texture's values, which are signed.\nvec3 eigenColour(vec2 uv, int j) {\n  readyTaps(uv);\n  return toRGB * sumGroup(uv, j / 4, vec4(equal(ivec4(j % 4), ivec4(0, 1, 2, 3))));\n}\n\n// mean + sum over j of w_j(view) E_j (equation 8) at texture coordinates uv of the surface point `place`.\nvec3 surfaceColour(vec2 uv, vec3 place) {\n  vec3 sum = vec3(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  readyTaps(uv);\n  for (int group = 0; group < GROUPS; group++) {\n    if (4 * group >= count) break;\n    vec4 summed = vec4(lessThan(ivec4(4 * group) + ivec4(0, 1, 2, 3), ivec4(count))); // 0 from `count` on\n    sum += sumGroup(uv, group, weightsOf(group, view) * summed);\n  }\n  vec3 colour = meanColour(uv) + toRGB * sum;\n  return clamp(colour * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Be = {
 	bilinear: 0,
 	mixed: 1,
 	bicubic: 2
-}, Be = {
+}, Ve = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Ve = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", He = `
+}, He = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ue = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Re}
+${ze}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform int shownEigen;
 uniform float shownGain;       // of the eigen texture around mid grey
@@ -482,19 +488,20 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function Ue(e, t, n, i) {
+function We(e, t, n, i) {
 	let a = (e, t) => new h(...e).multiplyScalar(t > 0 ? 1 / t : 0), c = {
 		meanTexture: { value: t },
-		meanScale: { value: Ge(e.mean) },
-		meanBias: { value: Ke(e.mean) },
+		meanScale: { value: Ke(e.mean) },
+		meanBias: { value: qe(e.mean) },
 		count: { value: 0 },
 		eigenTextures: { value: n },
-		eigenScale: { value: /* @__PURE__ */ new Float32Array(3) },
-		eigenBias: { value: /* @__PURE__ */ new Float32Array(3) },
+		eigenScale: { value: new Float32Array(4 * e.channels) },
+		eigenBias: { value: new Float32Array(4 * e.channels) },
 		rayWeights: { value: !1 },
 		viewWeights: { value: /* @__PURE__ */ new Float32Array(4) },
 		weightMaps: { value: null },
 		finest: { value: 1 },
+		finestEigen: { value: 1 },
 		eye: { value: new h() },
 		planeOrigin: { value: new h(...e.origin) },
 		planeNormal: { value: new h().crossVectors(new h(...e.right), new h(...e.up)) },
@@ -503,47 +510,52 @@ function Ue(e, t, n, i) {
 		toRGB: { value: new u() },
 		exposureScale: { value: new h(1, 1, 1) },
 		exposureBias: { value: new h() },
-		shown: { value: Be.picture },
+		shown: { value: Ve.picture },
 		shownEigen: { value: 0 },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new d() }
 	}, l = new m({
 		glslVersion: s,
-		vertexShader: Ve,
-		fragmentShader: He,
+		vertexShader: He,
+		fragmentShader: Ue,
 		uniforms: c,
 		defines: {
 			COUNT: 1,
-			BICUBIC: ze.mixed
+			CHANNELS: e.channels,
+			BICUBIC: Be.mixed
 		},
 		side: i ? r : o
 	});
 	return l.name = "eigen textures", l;
 }
-function We(e, t, n) {
-	let r = Math.max(1, n), { uniforms: i } = e;
-	i.eigenScale.value = new Float32Array(3 * r), i.eigenBias.value = new Float32Array(3 * r), t.slice(0, n).forEach((e, t) => {
-		i.eigenScale.value.set(Ge(e).toArray(), 3 * t), i.eigenBias.value.set(Ke(e).toArray(), 3 * t);
+function Ge(e, t, n) {
+	let r = Math.max(1, n), { uniforms: i, defines: a } = e, o = P(r, a.CHANNELS), s = i.eigenScale.value = new Float32Array(4 * o), c = i.eigenBias.value = new Float32Array(4 * o);
+	t.slice(0, n).forEach((e, t) => {
+		let [n, r] = [Ke(e), qe(e)];
+		for (let e = 0; e < a.CHANNELS; e++) {
+			let i = 4 * (a.CHANNELS * Math.floor(t / 4) + e) + t % 4;
+			s[i] = n.getComponent(e), c[i] = r.getComponent(e);
+		}
 	}), i.viewWeights.value = new Float32Array(4 * Math.ceil(r / 4)), e.defines.COUNT = r, e.needsUpdate = !0;
 }
-function Ge(e) {
+function Ke(e) {
 	return new h().fromArray(e.scale).multiplyScalar(255);
 }
-function Ke(e) {
+function qe(e) {
 	return new h().fromArray(e.scale.map((t, n) => -(e.zero[n] ?? 0) * t));
 }
 // eigenfield-three/src/headers.ts
-function qe(e) {
+function Je(e) {
 	let t = new DataView(e);
 	try {
-		return Je(t) ?? Ye(t) ?? Xe(t) ?? Ze(t);
+		return Ye(t) ?? Xe(t) ?? Ze(t) ?? Qe(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function P(e, t) {
+function F(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -551,14 +563,14 @@ function P(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Je(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || P(e, 12) !== "IHDR" ? null : {
+function Ye(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || F(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20)
 	};
 }
-function Ye(e) {
+function Xe(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -578,9 +590,9 @@ function Ye(e) {
 		}
 	}
 }
-function Xe(e) {
-	if (P(e, 0) !== "RIFF" || P(e, 8) !== "WEBP") return null;
-	let t = "image/webp", n = P(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+function Ze(e) {
+	if (F(e, 0) !== "RIFF" || F(e, 8) !== "WEBP") return null;
+	let t = "image/webp", n = F(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		type: t,
 		width: 1 + r(24),
@@ -600,11 +612,11 @@ function Xe(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Ze(e) {
-	if (P(e, 4) !== "ftyp") return null;
+function Qe(e) {
+	if (F(e, 4) !== "ftyp") return null;
 	let t = null, n = (r, i) => {
 		for (let a = r; a + 8 <= i;) {
-			let r = e.getUint32(a), o = P(e, a + 4), s = r === 0 ? i : a + r;
+			let r = e.getUint32(a), o = F(e, a + 4), s = r === 0 ? i : a + r;
 			if (r === 1 || s < a + 8 || s > i) return;
 			if (o === "meta" && n(a + 12, s), (o === "iprp" || o === "ipco") && n(a + 8, s), o === "ispe") {
 				let [n, r] = [e.getUint32(a + 12), e.getUint32(a + 16)];
@@ -620,15 +632,15 @@ function Ze(e) {
 	return n(0, e.byteLength), t;
 }
 // eigenfield-three/src/decode.ts
-var Qe = {
+var $e = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, $e = {
+}, et = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function et(e, t, n) {
-	let r = qe(e);
+function tt(e, t, n) {
+	let r = Je(e);
 	if (!r) throw v(t.where, "no picture");
 	let { width: i, height: a } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw v(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
@@ -636,25 +648,25 @@ function et(e, t, n) {
 	if (!o || Math.max(i, a) > 16384 || o > E) throw v(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function F(e, t, n, r = 1) {
-	let [i, a] = et(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function I(e, t, n, r = 1) {
+	let [i, a] = tt(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = qe(e)?.type ?? t.mimeType, u;
+	}, l = Je(e)?.type ?? t.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Qe,
+			...$e,
 			...c
 		});
 	} catch (e) {
-		throw await tt(l) ? v(t.where, "it cannot be decoded") : nt(l, t, e);
+		throw await nt(l) ? v(t.where, "it cannot be decoded") : rt(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), v(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-async function tt(e) {
-	let t = $e[e];
+async function nt(e) {
+	let t = et[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -663,26 +675,26 @@ async function tt(e) {
 		return !1;
 	}
 }
-function nt(e, t, n) {
+function rt(e, t, n) {
 	return new _("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/strength.ts
-var I = 128, rt = .98;
-async function it(e, t) {
-	let n = await F(e, t, null), r = new OffscreenCanvas(I, I).getContext("2d", { willReadFrequently: !0 });
+var L = 128, it = .98;
+async function at(e, t) {
+	let n = await I(e, t, null), r = new OffscreenCanvas(L, L).getContext("2d", { willReadFrequently: !0 });
 	if (!r) return 1;
-	r.imageSmoothingEnabled = !1, r.drawImage(n, 0, 0, I, I), n.close();
-	let { data: i } = r.getImageData(0, 0, I, I), a = [];
+	r.imageSmoothingEnabled = !1, r.drawImage(n, 0, 0, L, L), n.close();
+	let { data: i } = r.getImageData(0, 0, L, L), a = [];
 	for (let e = 0; e < i.length; e++) {
 		let n = e & 3, r = ((i[e] ?? 0) - (t.zero[n] ?? 0)) * (t.scale[n] ?? 0);
 		n < 3 && a.push(Math.abs(r));
 	}
 	a.sort((e, t) => e - t);
-	let o = a[Math.floor(rt * a.length)] ?? 0;
+	let o = a[Math.floor(it * a.length)] ?? 0;
 	return o > 0 ? .45 / o : 1;
 }
 // eigenfield-three/src/gpu.ts
-function at(e, t) {
+function ot(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
@@ -690,40 +702,42 @@ function at(e, t) {
 		memory: t
 	};
 }
-function ot(e, t) {
+function st(e, t) {
 	let n = e.createTexture();
-	return L(e, e.TEXTURE_2D, n, () => {
-		e.texStorage2D(e.TEXTURE_2D, ut(t.width, t.height), e.RGBA8, t.width, t.height), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, e.RGBA, e.UNSIGNED_BYTE, t), e.generateMipmap(e.TEXTURE_2D), dt(e, e.TEXTURE_2D), ft(e, e.TEXTURE_2D);
+	return R(e, e.TEXTURE_2D, n, () => {
+		e.texStorage2D(e.TEXTURE_2D, ft(t.width, t.height), e.RGBA8, t.width, t.height), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, e.RGBA, e.UNSIGNED_BYTE, t), e.generateMipmap(e.TEXTURE_2D), pt(e, e.TEXTURE_2D), mt(e, e.TEXTURE_2D);
 	}), n;
 }
-function st(e, t, n, r) {
-	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
-	let i = e.createTexture();
-	return L(e, e.TEXTURE_2D_ARRAY, i, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, ut(t, n), e.RGBA8, t, n, r), dt(e, e.TEXTURE_2D_ARRAY), e.texParameteri(e.TEXTURE_2D_ARRAY, e.TEXTURE_MIN_FILTER, e.LINEAR), e.texParameteri(e.TEXTURE_2D_ARRAY, e.TEXTURE_MAG_FILTER, e.LINEAR);
-	}), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(i), null) : i;
-}
 function ct(e, t, n, r) {
-	let { width: i, height: a } = r;
-	L(e, e.TEXTURE_2D_ARRAY, t, () => {
-		e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, n, i, a, 1, e.RGBA, e.UNSIGNED_BYTE, r);
+	return ut(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, ft(t, n), e.RGBA8, t, n, r), pt(e, e.TEXTURE_2D_ARRAY), e.texParameteri(e.TEXTURE_2D_ARRAY, e.TEXTURE_MIN_FILTER, e.LINEAR), e.texParameteri(e.TEXTURE_2D_ARRAY, e.TEXTURE_MAG_FILTER, e.LINEAR);
 	});
 }
-function lt(e, t) {
-	L(e, e.TEXTURE_2D_ARRAY, t, () => {
-		e.generateMipmap(e.TEXTURE_2D_ARRAY), ft(e, e.TEXTURE_2D_ARRAY);
+function lt(e, t, n) {
+	return ut(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function ut(e, t) {
-	return 1 + Math.floor(Math.log2(Math.max(e, t)));
+function ut(e, t, n) {
+	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
+	let r = e.createTexture();
+	return R(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
 function dt(e, t) {
-	e.texParameteri(t, e.TEXTURE_WRAP_S, e.CLAMP_TO_EDGE), e.texParameteri(t, e.TEXTURE_WRAP_T, e.CLAMP_TO_EDGE);
+	R(e, e.TEXTURE_2D_ARRAY, t, () => {
+		e.generateMipmap(e.TEXTURE_2D_ARRAY), mt(e, e.TEXTURE_2D_ARRAY);
+	});
 }
 function ft(e, t) {
+	return 1 + Math.floor(Math.log2(Math.max(e, t)));
+}
+function pt(e, t) {
+	e.texParameteri(t, e.TEXTURE_WRAP_S, e.CLAMP_TO_EDGE), e.texParameteri(t, e.TEXTURE_WRAP_T, e.CLAMP_TO_EDGE);
+}
+function mt(e, t) {
 	e.texParameteri(t, e.TEXTURE_MIN_FILTER, e.LINEAR_MIPMAP_LINEAR), e.texParameteri(t, e.TEXTURE_MAG_FILTER, e.LINEAR);
 }
-function L(e, t, n, r) {
+function R(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -737,8 +751,57 @@ function L(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
+// eigenfield-three/src/packing.ts
+var ht = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", gt = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform int channel;\nout vec4 code;\nvoid main() {\n  code = vec4(texelFetch(picture, ivec2(gl_FragCoord.xy), 0)[channel]);\n}\n";
+function _t(e, t, n, r) {
+	let i = vt(e), [a, o] = [e.createFramebuffer(), e.createVertexArray()], s = e.getUniformLocation(i, "channel"), c = ({ width: n, height: c }, l) => {
+		e.useProgram(i), e.bindVertexArray(o), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(0, 0, n, c), e.colorMask(l % 4 == 0, l % 4 == 1, l % 4 == 2, l % 4 == 3);
+		for (let n = 0; n < r; n++) {
+			let i = r * Math.floor(l / 4) + n;
+			e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, t, 0, i), e.uniform1i(s, n), e.drawArrays(e.TRIANGLES, 0, 3);
+		}
+	};
+	return {
+		put(t, r) {
+			yt(e, () => R(e, e.TEXTURE_2D, n, () => {
+				e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, e.RGBA, e.UNSIGNED_BYTE, t), bt(e, () => c(t, r));
+			}));
+		},
+		free() {
+			e.deleteTexture(n), e.deleteVertexArray(o), e.deleteFramebuffer(a), e.deleteProgram(i);
+		}
+	};
+}
+function vt(e) {
+	let t = e.createProgram();
+	for (let [n, r] of [[e.VERTEX_SHADER, ht], [e.FRAGMENT_SHADER, gt]]) {
+		let i = e.createShader(n);
+		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
+	}
+	return e.linkProgram(t), t;
+}
+function yt(e, t) {
+	let n = e.getParameter(e.ACTIVE_TEXTURE);
+	e.activeTexture(e.TEXTURE0);
+	let r = e.getParameter(e.SAMPLER_BINDING);
+	e.bindSampler(0, null), t(), e.bindSampler(0, r), e.activeTexture(n);
+}
+function bt(e, t) {
+	let n = [
+		e.BLEND,
+		e.CULL_FACE,
+		e.DEPTH_TEST,
+		e.DITHER,
+		e.RASTERIZER_DISCARD,
+		e.SAMPLE_ALPHA_TO_COVERAGE,
+		e.SAMPLE_COVERAGE,
+		e.SCISSOR_TEST,
+		e.STENCIL_TEST
+	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
+	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
+}
 // eigenfield-three/src/textures.ts
-var pt = 3, mt = class {
+var xt = 3, St = class {
 	parts;
 	geometry;
 	options;
@@ -751,6 +814,7 @@ var pt = 3, mt = class {
 	onComplete = () => void 0;
 	onError = () => void 0;
 	renderer = null;
+	packer = null;
 	bitmap;
 	meanSize;
 	turn = 0;
@@ -777,58 +841,64 @@ var pt = 3, mt = class {
 	detach() {
 		this.turn += 1, this.loaded = 0;
 		let e = this.renderer?.getContext();
+		this.freePacker();
 		for (let t of [this.mean, this.eigen]) e && t.sourceTexture instanceof WebGLTexture && e.deleteTexture(t.sourceTexture), t.sourceTexture = null;
 		this.renderer?.domElement.removeEventListener("webglcontextlost", this.onLost), this.renderer?.domElement.removeEventListener("webglcontextrestored", this.onRestored), this.renderer = null;
 	}
 	onLost = () => {
-		this.turn += 1, this.loaded = 0, this.mean.sourceTexture = this.eigen.sourceTexture = null;
+		this.turn += 1, this.loaded = 0, this.mean.sourceTexture = this.eigen.sourceTexture = null, this.packer = null;
 	};
 	onRestored = () => {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let { array: n, plan: r } = this.makeRoom(e);
-		this.plan = r, this.eigen.sourceTexture = n, this.onPlan(r), await this.loadMean(e, t, r.meanDown);
-		let i = [];
+		let { array: n, packer: r, plan: i } = this.makeRoom(e);
+		this.plan = i, this.packer = r, this.eigen.sourceTexture = n, this.onPlan(i), await this.loadMean(e, t, i.meanDown);
+		let a = [];
 		try {
-			for (let a = 0; a < r.usable; a++) {
-				for (; i.length < pt && a + i.length < r.usable;) i.push(this.decode(a + i.length, r.scaleDown));
-				let o = await i[0];
-				if (i.shift(), t === this.turn && o && ct(e, n, a, o), o?.close(), t !== this.turn) return;
-				this.loaded = a + 1, this.onTexture();
+			for (let e = 0; e < i.usable; e++) {
+				for (; a.length < xt && e + a.length < i.usable;) a.push(this.decode(e + a.length, i.scaleDown));
+				let n = await a[0];
+				if (a.shift(), t === this.turn && n && r.put(n, e), n?.close(), t !== this.turn) return;
+				this.loaded = e + 1, this.onTexture();
 			}
 		} finally {
-			for (let e of i) e.then((e) => e.close()).catch(() => void 0);
+			for (let e of a) e.then((e) => e.close()).catch(() => void 0);
 		}
-		t === this.turn && (lt(e, n), this.onComplete());
+		t === this.turn && (this.freePacker(), dt(e, n), this.onComplete());
 	}
 	makeRoom(e) {
-		let { size: t, textures: n } = this.parts.scene, r = {
+		let { size: t, textures: n, channels: r } = this.parts.scene, i = {
 			mean: this.meanSize,
 			size: t,
+			channels: r,
 			total: n.length,
 			geometry: this.geometry
 		};
 		for (let n = this.options.memory ?? Ae();; n /= 2) {
-			let i = Ne(r, at(e, n)), [a, o] = i.usable ? t : [1, 1], [s, c] = [Math.ceil(a / i.scaleDown), Math.ceil(o / i.scaleDown)], l = st(e, s, c, Math.max(1, i.usable));
-			if (l) return {
-				array: l,
-				plan: i
+			let a = Ne(i, ot(e, n)), [o, s] = a.usable ? t : [1, 1], [c, l] = [Math.ceil(o / a.scaleDown), Math.ceil(s / a.scaleDown)], [u, d] = [ct(e, c, l, P(a.usable, r)), lt(e, c, l)];
+			if (u && d) return {
+				array: u,
+				packer: _t(e, u, d, r),
+				plan: a
 			};
-			if (!i.usable) throw new _("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (e.deleteTexture(u), e.deleteTexture(d), !a.usable) throw new _("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
+	}
+	freePacker() {
+		this.packer?.free(), this.packer = null;
 	}
 	async loadMean(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, { bitmap: a } = this;
-		this.bitmap = null, (!a || n > 1) && (a?.close(), a = await F(await i(r.mean.view), r.mean, r.meanSize, n)), t === this.turn && (this.mean.sourceTexture = ot(e, a)), a.close();
+		this.bitmap = null, (!a || n > 1) && (a?.close(), a = await I(await i(r.mean.view), r.mean, r.meanSize, n)), t === this.turn && (this.mean.sourceTexture = st(e, a)), a.close();
 	}
 	decode(e, t) {
 		let { scene: n, bytes: r } = this.parts, i = n.textures[e];
 		if (!i) return Promise.reject(/* @__PURE__ */ RangeError(`no eigen texture ${e}`));
-		let a = r(i.view).then((e) => F(e, i, n.size, t));
+		let a = r(i.view).then((e) => I(e, i, n.size, t));
 		return a.catch(() => void 0), a;
 	}
-}, ht = 1.5, gt = .001, R = class extends i {
+}, Ct = 1.5, wt = .001, z = class extends i {
 	parts;
 	mesh;
 	info;
@@ -848,6 +918,8 @@ var pt = 3, mt = class {
 	textures;
 	rowOf;
 	gains = /* @__PURE__ */ new Map();
+	detail;
+	meanSize;
 	maps = null;
 	frame = -1;
 	constructor(e, t = {}) {
@@ -856,13 +928,13 @@ var pt = 3, mt = class {
 		if (!s) throw Error("a field needs a mesh");
 		this.mesh = s, this.info = r, this.total = n.textures.length, this.filter = t.filter ?? "mixed", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let c = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : c++), this.textures = new mt(e, yt(s), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : c++), this.textures = new St(e, Dt(s), t);
 		let l = [s.material].flat().some((e) => e.side !== o);
-		this.material = Ue(n, this.textures.mean, this.textures.eigen, l), this.complete = new Promise((e, t) => {
+		this.material = We(n, this.textures.mean, this.textures.eigen, l), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
-		}), this.complete.catch(() => void 0), this.listen();
-		let u = r.cameras[r.reference], d = u ? Te(s.geometry, u, [a.width, a.height]) : 1;
-		this.material.uniforms.finest.value = ht * Math.max(d, 1);
+		}), this.complete.catch(() => void 0);
+		let u = r.cameras[r.reference];
+		this.detail = u ? Te(s.geometry, u, [1, 1]) : 0, this.meanSize = [a.width, a.height], this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -892,7 +964,7 @@ var pt = 3, mt = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e];
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * this.total, (t + 1) * this.total));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...me(this.info.viewPlane, n.centre));
+		return this.componentWeights(...A(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -901,9 +973,13 @@ var pt = 3, mt = class {
 		this.textures.dispose(), this.maps?.texture.dispose(), this.material.dispose(), this.mesh.geometry.dispose();
 	}
 	listen() {
-		this.textures.onPlan = ({ usable: e, limitation: t }) => {
-			We(this.material, this.parts.scene.textures, e), t && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
+		this.textures.onPlan = ({ usable: e, meanDown: t, scaleDown: n, limitation: r }) => {
+			let { scene: i } = this.parts;
+			Ge(this.material, i.textures, e), this.material.uniforms.finest.value = this.finestOf(this.meanSize, t), this.material.uniforms.finestEigen.value = this.finestOf(i.size, n), r && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
+	}
+	finestOf([e, t], n) {
+		return Ct * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	mix({ camera: e, weight: t }) {
 		let { omega: n } = this.parts, r = new Float64Array(this.total);
@@ -917,9 +993,9 @@ var pt = 3, mt = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let { uniforms: r } = this.material, i = vt(t, n, r.eye.value), [a, o] = me(this.info.viewPlane, i), s = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, c = s === null ? this.componentWeights(a, o) : this.cameraWeights(s);
+		let { uniforms: r } = this.material, i = Et(t, n, r.eye.value), [a, o] = A(this.info.viewPlane, i), s = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, c = s === null ? this.componentWeights(a, o) : this.cameraWeights(s);
 		r.viewWeights.value.fill(0), r.viewWeights.value.set(c.subarray(0, this.usable)), r.rayWeights.value = s === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(i), r.rayWeights.value && (r.weightMaps.value = this.mapsOf(this.mixing)), r.count.value = Math.min(this.loaded, Math.max(0, Math.floor(this.count))), this.setView();
-		let l = ze[this.filter];
+		let l = Be[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(c);
 	}
 	setView() {
@@ -930,31 +1006,31 @@ var pt = 3, mt = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
-		e.shown.value = Be[o === "eigen" && s >= this.loaded ? "mean" : o], e.shownEigen.value = Math.max(0, s), o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Ve[o === "eigen" && s >= this.loaded ? "mean" : o], e.shownEigen.value = Math.max(0, s), o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new d().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new d().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !bt(t.image), u = new d().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new d().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new d().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Ot(t.image), u = new d().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
 		let t = this.gains.get(e);
 		if (t !== void 0) return t;
 		let n = this.parts.scene.textures[e];
-		return this.gains.set(e, 1), n && this.parts.bytes(n.view).then((e) => it(e, n)).then((t) => {
+		return this.gains.set(e, 1), n && this.parts.bytes(n.view).then((e) => at(e, n)).then((t) => {
 			this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 		}).catch(() => void 0), 1;
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= gt * Math.max(...r);
+		return Math.abs(i) <= wt * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Le(this.parts.weights, e, this.parts.omega, this.total, t);
+		let n = Re(this.parts.weights, e, this.parts.omega, this.total, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -962,33 +1038,33 @@ var pt = 3, mt = class {
 		}, n;
 	}
 	fail(e) {
-		if (xt(e)) return;
+		if (kt(e)) return;
 		let t = b(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new _(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, _t = new d(), z = new h();
-function vt(e, t, n) {
-	return z.setFromMatrixPosition(e.matrixWorld).applyMatrix4(_t.copy(t.matrixWorld).invert()), n.copy(z), [
-		z.x,
-		z.y,
-		z.z
+}, Tt = new d(), B = new h();
+function Et(e, t, n) {
+	return B.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Tt.copy(t.matrixWorld).invert()), n.copy(B), [
+		B.x,
+		B.y,
+		B.z
 	];
 }
-function yt(e) {
+function Dt(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function bt(e) {
+function Ot(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function xt(e) {
+function kt(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var St = class {
+var At = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -1031,53 +1107,53 @@ var St = class {
 		}
 		return n.buffer;
 	}
-}, Ct = 1179937895, wt = 1313821514, Tt = 5130562;
-async function Et(e) {
+}, jt = 1179937895, Mt = 1313821514, Nt = 5130562;
+async function Pt(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof _ && t.code === "truncated" ? jt(e.received === 0) : t;
+		throw t instanceof _ && t.code === "truncated" ? zt(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ct) throw jt(!1);
+	if (new DataView(t).getUint32(0, !0) !== jt) throw zt(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new _("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw v("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== wt) throw v("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Mt) throw v("16", "it does not begin with JSON");
 	if (o > C) throw v("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw v("12", "a chunk longer than the file");
-	let s = Ot(await e.read(20, 20 + o));
+	let s = It(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: kt(s),
-		binary: () => Dt(e, 20 + o, i)
+		json: Lt(s),
+		binary: () => Ft(e, 20 + o, i)
 	};
 }
-async function Dt(e, t, n) {
+async function Ft(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw v(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === Tt) return r + 8;
+		if (t.getUint32(4, !0) === Nt) return r + 8;
 		r += 8 + i;
 	}
 	throw v(String(t), "no binary chunk");
 }
-function Ot(e) {
+function It(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw v("20", "its JSON is not UTF-8");
 	}
 }
-function kt(e) {
-	if (At(e) > 64) throw v("20", "its JSON is nested too deep");
+function Lt(e) {
+	if (Rt(e) > 64) throw v("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw v("20", "its JSON cannot be read");
 	}
 }
-function At(e) {
+function Rt(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -1088,11 +1164,11 @@ function At(e) {
 	}
 	return n;
 }
-function jt(e) {
+function zt(e) {
 	return new _("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/json.ts
-var B = class e {
+var V = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1123,7 +1199,7 @@ var B = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -k, t = k) {
+	number(e = -O, t = O) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1133,7 +1209,7 @@ var B = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -k, n = k) {
+	numbers(e, t = -O, n = O) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1149,36 +1225,36 @@ var B = class e {
 	wrong(e) {
 		return v(this.where || "/", this.exists ? e : "missing");
 	}
-}, Mt = {
+}, Bt = {
 	5121: 1,
 	5123: 2,
 	5125: 4,
 	5126: 4
-}, Nt = {
+}, Vt = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
-}, V = 5126, H = 5125;
-function Pt(e) {
-	let t = new B(e, "");
+}, H = 5126, U = 5125;
+function Ht(e) {
+	let t = new V(e, "");
 	try {
 		return t.key("extensions").key(x).exists;
 	} catch {
 		return !1;
 	}
 }
-function Ft(e) {
-	let t = new B(e, ""), n = t.key("extensions").key(x), r = It(n), i = Lt(t), a = zt(t, i), o = (e) => e.integer(0, i.length - 1);
-	Rt(t);
-	let s = Vt(t, o), c = Ht(n), l = Ut(c), u = n.key("cameras"), d = qt(u), f = Jt(u, d.length), p = f.filter((e) => !e).length, m = Kt(c, l, p, a, o), { mean: h, meanSize: g } = Gt(c, l, s, o), _ = d.length, v = u.key("colour");
+function Ut(e) {
+	let t = new V(e, ""), n = t.key("extensions").key(x), r = Wt(n), i = Gt(t), a = qt(t, i), o = (e) => e.integer(0, i.length - 1);
+	Kt(t);
+	let s = Yt(t, o), c = Xt(n), l = Zt(c), u = n.key("cameras"), d = tn(u), f = nn(u, d.length), p = f.filter((e) => !e).length, m = en(c, l, p, a, o), { mean: h, meanSize: g } = $t(c, l, s, o), _ = d.length, v = u.key("colour");
 	if (v.exists && l !== 3) throw v.wrong("needs a plane of three channels");
 	let y = n.key("viewPlane"), b = y.key("triangles"), S = t.key("meshes").at(0).key("primitives").at(0), C = S.key("mode");
 	if (C.exists && C.integer(0, 6) !== 4) throw C.wrong("no triangles");
-	let w = S.key("attributes"), T = n.key("generator"), E = m.size[0] * m.size[1] * l * m.textures.length, D = g ? g[0] * g[1] : 0;
-	if (E + 4 * l * D > ee) throw c.wrong("too large when it is decoded");
+	let w = S.key("attributes"), T = n.key("generator"), E = m.size[0] * m.size[1] * l * m.textures.length, ee = g ? g[0] * g[1] : 0;
+	if (E + 4 * l * ee > te) throw c.wrong("too large when it is decoded");
 	return {
 		version: r,
-		generator: T.exists ? T.text(O) : "",
+		generator: T.exists ? T.text(D) : "",
 		channels: l,
 		mean: h,
 		meanSize: g,
@@ -1186,36 +1262,36 @@ function Ft(e) {
 		names: d,
 		heldOut: f,
 		reference: n.key("reference").integer(0, _ - 1),
-		intrinsics: a(u.key("intrinsics"), "SCALAR", [V], 5 * _),
-		poses: a(u.key("poses"), "SCALAR", [V], 12 * _),
-		sizes: a(u.key("sizes"), "SCALAR", [H], 2 * _),
-		colour: v.exists ? a(v, "SCALAR", [V], 6 * _) : null,
-		...Yt(y),
-		triangles: b.exists ? Bt(a(b, "SCALAR", [H], null)) : null,
-		settings: Xt(n.key("settings")),
-		scores: Xt(n.key("scores")),
+		intrinsics: a(u.key("intrinsics"), "SCALAR", [H], 5 * _),
+		poses: a(u.key("poses"), "SCALAR", [H], 12 * _),
+		sizes: a(u.key("sizes"), "SCALAR", [U], 2 * _),
+		colour: v.exists ? a(v, "SCALAR", [H], 6 * _) : null,
+		...rn(y),
+		triangles: b.exists ? Jt(a(b, "SCALAR", [U], null)) : null,
+		settings: an(n.key("settings")),
+		scores: an(n.key("scores")),
 		views: i,
-		position: U(a(w.key("POSITION"), "VEC3", [V], null), re),
-		uv: U(a(w.key("TEXCOORD_0"), "VEC2", [V], null), re),
-		indices: Bt(a(S.key("indices"), "SCALAR", [
+		position: W(a(w.key("POSITION"), "VEC3", [H], null), ie),
+		uv: W(a(w.key("TEXCOORD_0"), "VEC2", [H], null), ie),
+		indices: Jt(a(S.key("indices"), "SCALAR", [
 			5121,
 			5123,
-			H
+			U
 		], null)),
 		preview: s
 	};
 }
-function It(e) {
-	let t = e.key("version").text(O);
+function Wt(e) {
+	let t = e.key("version").text(D);
 	if (!/^1\.\d+$/.test(t)) throw new _("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(w) : []) {
-		let t = e.text(O);
+		let t = e.text(D);
 		if (!S.has(t)) throw new _("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Lt(e) {
+function Gt(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1231,7 +1307,7 @@ function Lt(e) {
 		return i;
 	});
 }
-function Rt(e) {
+function Kt(e) {
 	let t = e.key("nodes").items(w), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1246,7 +1322,7 @@ function Rt(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function zt(e, t) {
+function qt(e, t) {
 	let n = e.key("accessors").items(w);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
@@ -1257,14 +1333,14 @@ function zt(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Nt[r] ?? 1, u = o.key("count").integer(1, ae);
+		let l = Vt[r] ?? 1, u = o.key("count").integer(1, oe);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Mt[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Bt[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Mt[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Bt[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1275,42 +1351,42 @@ function zt(e, t) {
 		};
 	};
 }
-function U(e, t) {
+function W(e, t) {
 	if (e.count > t) throw v(e.where, `more than ${t}`);
 	return e;
 }
-function Bt(e) {
+function Jt(e) {
 	if (e.count % 3) throw v(e.where, "torn triangles");
-	return U(e, 3 * ie);
+	return W(e, 3 * ae);
 }
-function Vt(e, t) {
+function Yt(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Ht(e) {
+function Xt(e) {
 	let t = e.key("planes").items(w), [n] = t;
 	if (!n) throw e.key("planes").wrong("no plane");
-	if (t.length > 1) throw W(`${t.length} planes`, n.where);
+	if (t.length > 1) throw G(`${t.length} planes`, n.where);
 	return n;
 }
-function Ut(e) {
+function Zt(e) {
 	let t = e.key("channels").integer(1, 64);
-	if (t !== 1 && t !== 3) throw W(`${t} channels`, e.where);
+	if (t !== 1 && t !== 3) throw G(`${t} channels`, e.where);
 	return t;
 }
-function W(e, t) {
+function G(e, t) {
 	return new _("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Wt(e) {
+function Qt(e) {
 	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, T));
 	if (!t || !n) throw e.wrong("two numbers are needed");
 	if (t * n > E) throw e.wrong(`more than ${E} texels`);
 	return [t, n];
 }
-function G(e, t, n) {
-	let r = e.key("mimeType").text(O);
+function K(e, t, n) {
+	let r = e.key("mimeType").text(D);
 	if (!/^image\/(png|jpeg|webp|avif)$/.test(r)) throw e.key("mimeType").wrong("an unknown type");
 	let i = (n) => {
 		let r = e.key(n).numbers(t);
@@ -1328,7 +1404,7 @@ function G(e, t, n) {
 		where: e.where
 	};
 }
-function Gt(e, t, n, r) {
+function $t(e, t, n, r) {
 	let i = e.key("mean"), a = {
 		scale: [
 			1 / 255,
@@ -1353,15 +1429,15 @@ function Gt(e, t, n, r) {
 			meanSize: null
 		};
 	}
-	let o = Wt(i.key("size"));
+	let o = Qt(i.key("size"));
 	if (i.key("scale").exists || i.key("zero").exists) return {
-		mean: G(i, t, r),
+		mean: K(i, t, r),
 		meanSize: o
 	};
 	let s = Array(t).fill(0);
 	return {
 		mean: {
-			...G(new B({
+			...K(new V({
 				...i.object(),
 				scale: s,
 				zero: s
@@ -1371,14 +1447,14 @@ function Gt(e, t, n, r) {
 		meanSize: o
 	};
 }
-function Kt(e, t, n, r, i) {
+function en(e, t, n, r, i) {
 	let a = [], o = [], s = null;
 	for (let c of e.key("bases").items(64)) {
-		let e = Wt(c.key("size")), l = c.key("textures").items(D);
+		let e = Qt(c.key("size")), l = c.key("textures").items(ee);
 		if (l.length) {
-			if (s && (e[0] !== s[0] || e[1] !== s[1])) throw W("eigen textures of several sizes", c.where);
-			if (s = e, a.push(...l.map((e) => G(e, t, i))), a.length > 4096) throw c.wrong(`more than ${D} textures`);
-			o.push(r(c.key("weights"), "SCALAR", [V], n * l.length));
+			if (s && (e[0] !== s[0] || e[1] !== s[1])) throw G("eigen textures of several sizes", c.where);
+			if (s = e, a.push(...l.map((e) => K(e, t, i))), a.length > 4096) throw c.wrong(`more than ${ee} textures`);
+			o.push(r(c.key("weights"), "SCALAR", [H], n * l.length));
 		}
 	}
 	return {
@@ -1387,15 +1463,15 @@ function Kt(e, t, n, r, i) {
 		weights: o
 	};
 }
-function qt(e) {
-	let t = e.key("names").items(te).map((e) => e.text(O));
+function tn(e) {
+	let t = e.key("names").items(ne).map((e) => e.text(D));
 	if (!t.length) throw e.key("names").wrong("no cameras");
 	if (new Set(t).size !== t.length) throw e.key("names").wrong("a name stands twice");
 	let n = t.findIndex((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e));
 	if (n >= 0) throw e.key("names").at(n).wrong("control characters");
 	return t;
 }
-function Jt(e, t) {
+function nn(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1406,7 +1482,7 @@ function Jt(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Yt(e) {
+function rn(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1421,35 +1497,35 @@ function Yt(e) {
 		extent: [i, a]
 	};
 }
-function Xt(e) {
+function an(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/grid.ts
-function Zt(e) {
+function on(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Qt(e, n, r) ?? (n === r ? null : Qt(e, r, n));
+		let r = t / n, i = sn(e, n, r) ?? (n === r ? null : sn(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Qt(e, t, n) {
-	let [r, i] = [en(e, 0), en(e, 1)];
-	if (t === 1 && tn(i) > 0 || n === 1 && tn(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => K(i, e) - K(i, t));
+function sn(e, t, n) {
+	let [r, i] = [ln(e, 0), ln(e, 1)];
+	if (t === 1 && un(i) > 0 || n === 1 && un(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => q(i, e) - q(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => K(r, e) - K(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => q(r, e) - q(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return $t(n, t, (e, t) => K(r, o(t, e))) && $t(t, n, (e, t) => K(i, o(e, t))) ? {
+	return cn(n, t, (e, t) => q(r, o(t, e))) && cn(t, n, (e, t) => q(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function $t(e, t, n) {
+function cn(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -1459,33 +1535,33 @@ function $t(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function en(e, t) {
+function ln(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function tn(e) {
+function un(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var K = (e, t) => e[t] ?? 0, nn = 1e-6, q = 32, rn = class {
+var q = (e, t) => e[t] ?? 0, dn = 1e-6, J = 32, fn = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Zt(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = on(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(an(e), this.isLine ? 0 : an(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(pn(e), this.isLine ? 0 : pn(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => fn(e, t, this.places) : e === "bilinear" && this.grid ? mn(this.places, this.grid) : cn(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => xn(e, t, this.places) : e === "bilinear" && this.grid ? Cn(this.places, this.grid) : gn(this.places, this.triangles);
 	}
 };
-function an(e) {
+function pn(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function on(e) {
+function mn(e) {
 	let t = {
 		camera: [
 			0,
@@ -1504,58 +1580,58 @@ function on(e) {
 		t.camera[r] = e, t.weight[r] = n;
 	}), t;
 }
-var J = (e, t) => e[2 * t] ?? 0, Y = (e, t) => e[2 * t + 1] ?? 0;
-function sn(e, t, n, r, i, a) {
-	let [o, s] = [J(n, r), Y(n, r)], [c, l] = [J(n, i) - o, Y(n, i) - s], [u, d] = [J(n, a) - o, Y(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
+var Y = (e, t) => e[2 * t] ?? 0, X = (e, t) => e[2 * t + 1] ?? 0;
+function hn(e, t, n, r, i, a) {
+	let [o, s] = [Y(n, r), X(n, r)], [c, l] = [Y(n, i) - o, X(n, i) - s], [u, d] = [Y(n, a) - o, X(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
 		p,
 		m
 	];
 }
-function cn(e, t) {
+function gn(e, t) {
 	if (!t.length) {
-		let t = $(e, dn(e));
-		return (n, r) => Q(n, r, e, t);
+		let t = bn(e, yn(e));
+		return (n, r) => $(n, r, e, t);
 	}
-	let n = ln(e, t, 3), r = un(t);
+	let n = _n(e, t, 3), r = vn(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[Z(a) * q + Z(i)] ?? []) {
+		for (let r of n[Q(a) * J + Q(i)] ?? []) {
 			let [n, l, u] = [
-				X(t, r, 0),
-				X(t, r, 1),
-				X(t, r, 2)
-			], d = sn(i, a, e, n, l, u), f = Math.min(...d);
+				Z(t, r, 0),
+				Z(t, r, 1),
+				Z(t, r, 2)
+			], d = hn(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < 0 ? Q(i, a, e, r) : on(c.map((e, n) => [X(t, o, n), e]));
+		return s < 0 ? $(i, a, e, r) : mn(c.map((e, n) => [Z(t, o, n), e]));
 	};
 }
-var X = (e, t, n) => e[3 * t + n] ?? 0;
-function Z(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * q)));
+var Z = (e, t, n) => e[3 * t + n] ?? 0;
+function Q(e) {
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * J)));
 }
-function ln(e, t, n) {
+function _n(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
-		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => J(e, t)), s = a.map((t) => Y(e, t));
-		for (let e = Z(Math.min(...s)); e <= Z(Math.max(...s)); e++) for (let t = Z(Math.min(...o)); t <= Z(Math.max(...o)); t++) r[e * q + t]?.push(i);
+		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Y(e, t)), s = a.map((t) => X(e, t));
+		for (let e = Q(Math.min(...s)); e <= Q(Math.max(...s)); e++) for (let t = Q(Math.min(...o)); t <= Q(Math.max(...o)); t++) r[e * J + t]?.push(i);
 	}
 	return r;
 }
-function un(e) {
+function vn(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [X(e, n, r), X(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Z(e, n, r), Z(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -1564,14 +1640,14 @@ function un(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Q(e, t, n, r) {
+function $(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
 		0
 	];
 	for (let o = 0; o + 1 < r.length; o += 2) {
-		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [J(n, s), Y(n, s)], [d, f] = [J(n, c) - l, Y(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
+		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [Y(n, s), X(n, s)], [d, f] = [Y(n, c) - l, X(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
 		h < i && ([i, a] = [h, [
 			s,
 			c,
@@ -1579,33 +1655,33 @@ function Q(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return on([[o, 1 - c], [s, c]]);
+	return mn([[o, 1 - c], [s, c]]);
 }
-function dn(e) {
+function yn(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function $(e, t) {
+function bn(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
-	for (let n of t) r[0] = (r[0] ?? 0) + J(e, n) / t.length, r[1] = (r[1] ?? 0) + Y(e, n) / t.length;
+	for (let n of t) r[0] = (r[0] ?? 0) + Y(e, n) / t.length, r[1] = (r[1] ?? 0) + X(e, n) / t.length;
 	let [i, a, o] = [
 		0,
 		0,
 		0
 	];
 	for (let n of t) {
-		let [t, s] = [J(e, n) - (r[0] ?? 0), Y(e, n) - (r[1] ?? 0)];
+		let [t, s] = [Y(e, n) - (r[0] ?? 0), X(e, n) - (r[1] ?? 0)];
 		[i, a, o] = [
 			i + t * t,
 			a + t * s,
 			o + s * s
 		];
 	}
-	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => J(e, t) * Math.cos(s) + Y(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
+	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Y(e, t) * Math.cos(s) + X(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function fn(e, t, n) {
+function xn(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -1616,15 +1692,15 @@ function fn(e, t, n) {
 		Infinity
 	];
 	for (let l = 0; 2 * l < n.length; l++) {
-		let [u, d] = [J(n, l) - e, Y(n, l) - t], f = u * u + d * d;
+		let [u, d] = [Y(n, l) - e, X(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || pn(n, r, i, a) <= nn) return Q(e, t, n, $(n, [
+	if (a < 0 || Sn(n, r, i, a) <= dn) return $(e, t, n, bn(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = sn(e, t, n, r, i, a);
+	let [l, u, d] = hn(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -1640,15 +1716,15 @@ function fn(e, t, n) {
 		]
 	};
 }
-function pn(e, t, n, r) {
-	let [i, a] = [J(e, n) - J(e, t), Y(e, n) - Y(e, t)], [o, s] = [J(e, r) - J(e, t), Y(e, r) - Y(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
+function Sn(e, t, n, r) {
+	let [i, a] = [Y(e, n) - Y(e, t), X(e, n) - X(e, t)], [o, s] = [Y(e, r) - Y(e, t), X(e, r) - X(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function mn(e, t) {
+function Cn(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = $(e, dn(e));
-		return (n, r) => Q(n, r, e, t);
+		let t = bn(e, yn(e));
+		return (n, r) => $(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -1657,7 +1733,7 @@ function mn(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ln(e, o.flat(), 4), c = [];
+	let s = _n(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -1665,12 +1741,12 @@ function mn(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[Z(n) * q + Z(t)] ?? []) {
-			let s = o[a], c = s ? hn(t, n, e, s) : -Infinity;
+		for (let a of s[Q(n) * J + Q(t)] ?? []) {
+			let s = o[a], c = s ? wn(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < 0) return Q(t, n, e, l);
-		let [a, c] = gn(t, n, e, r);
+		if (!r || i < 0) return $(t, n, e, l);
+		let [a, c] = Tn(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -1682,25 +1758,25 @@ function mn(e, t) {
 		};
 	};
 }
-function hn(e, t, n, r) {
+function wn(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
-		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [J(n, o), Y(n, o)];
-		i = Math.min(i, (J(n, s) - c) * (t - l) - (Y(n, s) - l) * (e - c));
+		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Y(n, o), X(n, o)];
+		i = Math.min(i, (Y(n, s) - c) * (t - l) - (X(n, s) - l) * (e - c));
 	}
 	return i;
 }
-function gn(e, t, n, r) {
+function Tn(e, t, n, r) {
 	let [i, a, o, s] = [
-		J(n, r[0]),
 		Y(n, r[0]),
-		J(n, r[1]),
-		Y(n, r[1])
+		X(n, r[0]),
+		Y(n, r[1]),
+		X(n, r[1])
 	], [c, l, u, d] = [
-		J(n, r[2]),
 		Y(n, r[2]),
-		J(n, r[3]),
-		Y(n, r[3])
+		X(n, r[2]),
+		Y(n, r[3]),
+		X(n, r[3])
 	], [f, p, m, h, g, _] = [
 		e - i,
 		t - a,
@@ -1708,24 +1784,24 @@ function gn(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = _n(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [_n(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = En(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [En(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function _n(e) {
+function En(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var vn = class {
+var Dn = class {
 	parser;
 	options;
 	name = x;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Pt(e.json);
+		this.parser = e, this.options = t, this.ours = Ht(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Ft(this.parser.json));
+		this.ours && (this.scene = Ut(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -1740,20 +1816,20 @@ var vn = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = yn(e, this.parser), [r] = n;
+		let n = On(e, this.parser), [r] = n;
 		if (!r) throw v("/meshes/0", "no node shows it");
-		xn(r.geometry, t);
+		An(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw oe(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw se(`/bufferViews/${e}`);
 			return n;
 		}, a = await i(t.mean.view), [o, s, c, l] = await Promise.all([
-			F(a, t.mean, t.meanSize),
-			se(t, i),
-			ue(t, i),
-			de(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new rn(Float64Array.from(u.flatMap((e) => me(t, e.centre))), l, t.extent[1] === 0), f = fe(t, s, d.grid, this.fileBytes());
-		e.userData.eigenfield = new R({
+			I(a, t.mean, t.meanSize),
+			ce(t, i),
+			de(t, i),
+			fe(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new fn(Float64Array.from(u.flatMap((e) => A(t, e.centre))), l, t.extent[1] === 0), f = pe(t, s, d.grid, this.fileBytes());
+		e.userData.eigenfield = new z({
 			scene: t,
 			info: f,
 			meshes: n,
@@ -1769,17 +1845,17 @@ var vn = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function yn(e, t) {
+function On(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		bn(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		kn(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function bn(e) {
+function kn(e) {
 	return e.isMesh === !0;
 }
-function xn(e, t) {
+function An(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new _("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count < n.count) throw v(t.uv.where, "too few texture coordinates");
@@ -1790,32 +1866,32 @@ function xn(e, t) {
 	for (let e of i.array) if (e >= n.count) throw v(t.indices.where, `no vertex ${e}`);
 }
 // eigenfield-three/src/load.ts
-async function Sn(e, t = {}) {
+async function jn(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new St(), i = new AbortController(), a = () => {
+	let r = new At(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Tn(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Pn(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await Et(r);
-		if (!Pt(e.json)) return {
-			gltf: await wn(r, e, o),
+		let e = await Pt(r);
+		if (!Ht(e.json)) return {
+			gltf: await Nn(r, e, o),
 			field: null
 		};
-		let i = await Cn(r, e, t);
+		let i = await Mn(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof R ? a : null
+			field: a instanceof z ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), b(e);
 	}
 }
-async function Cn(e, t, n) {
+async function Mn(e, t, n) {
 	let r = new g(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -1825,12 +1901,12 @@ async function Cn(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new vn(e, {
+	return r.register((e) => new Dn(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function wn(e, t, n) {
+async function Nn(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -1840,25 +1916,25 @@ async function wn(e, t, n) {
 		throw new _("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Tn(e, t, n, r) {
+async function Pn(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? En(e) : await Dn(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Fn(e) : await In(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : On(t.received, e);
+			throw n.aborted ? e : Ln(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function En(e) {
+function Fn(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Dn(e, t) {
+async function In(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new _("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -1869,7 +1945,7 @@ async function Dn(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function On(e, t) {
+function Ln(e, t) {
 	return new _("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { R as EigenField, vn as EigenfieldPlugin, _ as SceneError, Ae as defaultMemory, Sn as loadEigenfield, ge as novelCamera, be as placeCamera };
+export { z as EigenField, Dn as EigenfieldPlugin, _ as SceneError, Ae as defaultMemory, jn as loadEigenfield, ge as novelCamera, be as placeCamera };

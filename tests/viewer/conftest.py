@@ -1,0 +1,57 @@
+"""Fixtures of the viewer's server: a capture, its scene, a stand-in build, and a server that runs."""
+
+from __future__ import annotations
+
+import pytest
+from captures import write_capture
+from http_client import Client, write_build
+
+from eigenfield.capture import open_capture
+from eigenfield.evaluation import match_photographs
+from eigenfield.format import file_bytes, outline
+from eigenfield.viewer import Photographs, Server, make_manifest, page, server
+
+
+@pytest.fixture(scope="session")
+def capture(tmp_path_factory):
+    return write_capture(tmp_path_factory.mktemp("capture") / "capture")
+
+
+@pytest.fixture(scope="session")
+def scene(capture, tmp_path_factory):
+    from eigenfield import encode
+
+    path = tmp_path_factory.mktemp("scene") / "scene.glb"
+    encode(open_capture(capture), capture / "proxy.ply", textures=3, atlas=64, hold_out="view_04.png").save(path)
+    return path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def build(tmp_path_factory):
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(page, "STATIC", write_build(tmp_path_factory.mktemp("build") / "static"))
+        yield
+
+
+@pytest.fixture(scope="session")
+def manifest(scene, capture):
+    loaded, opened = outline(scene), open_capture(capture)
+    return make_manifest(file_bytes(loaded), "scene", Photographs(loaded, opened, match_photographs(loaded, opened)))
+
+
+@pytest.fixture
+def running(manifest):
+    with Server(manifest) as started:
+        yield started
+
+
+@pytest.fixture
+def client(running):
+    with Client(running.port) as connected:
+        yield connected
+
+
+@pytest.fixture
+def impatient(monkeypatch):
+    monkeypatch.setattr(server, "REQUEST_SECONDS", 0.4)
+    monkeypatch.setattr(server, "LINGER_SECONDS", 0.2)

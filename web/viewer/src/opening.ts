@@ -1,0 +1,149 @@
+// Opening a scene, what arrives of it and when, and its end; a graphics context that is lost and comes back.
+
+import { Vector2, Vector3 } from "three";
+import type { GLTF } from "three/addons/loaders/GLTFLoader.js";
+import { type EigenField, loadEigenfield, SceneError } from "eigenfield-three";
+import type { Config } from "./config";
+import { createOrbitMode, type Surroundings } from "./orbit-mode";
+import { createPlaneMode } from "./plane-mode";
+import type { Message, Scene, Session } from "./session";
+import type { Source } from "./source";
+import type { Stage } from "./stage";
+import { extentOf, surroundingsOf } from "./surroundings";
+
+export interface Opening {
+  open(source: Source): Promise<void>;
+  /** The scene that is being opened is here, or will not come. */
+  done(): Promise<void>;
+}
+
+export interface Events {
+  changed(): void;
+  /** A scene is here: mesh and mean can be drawn. */
+  opened(): void;
+  /** A scene goes. */
+  closing(): void;
+}
+
+export function createOpening(session: Session, stage: Stage, config: Config, events: Events): Opening {
+  const { changed } = events;
+  let opening: AbortController | null = null;
+  let opened: Promise<void> = Promise.resolve();
+
+  const close = (): void => {
+    if (!session.scene) return;
+    events.closing();
+    session.scene.field?.dispose();
+    stage.clear();
+    Object.assign(session, { scene: null, captured: null, photographShown: false });
+  };
+  const put = (source: Source, gltf: GLTF, field: EigenField | null): void => {
+    close();
+    stage.put(gltf.scene, field !== null);
+    gltf.scene.updateWorldMatrix(true, true);
+    const around = field ? surroundingsOf(field) : plainSurroundings(gltf);
+    const scene: Scene = {
+      source, gltf, field, around,
+      plane: field?.info.facesPlane ? createPlaneMode(field) : null,
+      orbit: createOrbitMode(field?.mesh ?? gltf.scene, around),
+    };
+    if (field && config.metresPerUnit !== null && source.own) field.info.metresPerUnit = config.metresPerUnit;
+    Object.assign(session, { scene, status: "ready", mode: scene.plane ? "plane" : "orbit" });
+    Object.assign(session.options, { eigen: 0, count: Infinity, view: "picture" });
+    events.opened();
+    scene.plane?.step(10);
+    changed();
+  };
+  const follow = async (field: EigenField): Promise<void> => {
+    session.arriving = true;
+    field.addEventListener("texture", changed);
+    field.addEventListener("limited", changed);
+    field.addEventListener("error", ({ error }) => {
+      session.message = { text: error.message, code: error.code };
+      changed();
+    });
+    await field.complete.catch(() => undefined); // the event has told
+  };
+
+  const open = async (source: Source): Promise<void> => {
+    opening?.abort();
+    const mine = (opening = new AbortController());
+    const stale = (): boolean => opening !== mine;
+    Object.assign(session, { status: "loading", arriving: false, message: null });
+    session.progress = { loaded: 0, total: source.bytes };
+    changed();
+    try {
+      const { gltf, field } = await loadEigenfield(source.from, {
+        renderer: stage.renderer,
+        signal: mine.signal,
+        memory: config.memory ?? undefined,
+        onBytes: (loaded, total) => {
+          if (stale()) return;
+          session.progress = { loaded, total: total ?? source.bytes };
+          changed();
+        },
+      });
+      if (stale()) {
+        field?.dispose();
+        return;
+      }
+      put(source, gltf, field);
+      if (!field) return;
+      await follow(field);
+      if (stale()) return;
+      session.arriving = false;
+      changed();
+    } catch (error) {
+      if (stale()) return;
+      session.message = described(error);
+      session.status = "failed";
+      close();
+      changed();
+    }
+  };
+
+  stage.canvas.addEventListener("webglcontextlost", () => {
+    session.status = "lost";
+    const text = "The graphics system took its memory back. Waiting until it can draw again …";
+    session.message = { text, code: null };
+    changed();
+  });
+  stage.canvas.addEventListener("webglcontextrestored", () => {
+    const { scene, options } = session;
+    session.message = null;
+    session.status = scene ? "ready" : "empty";
+    stage.setBackground(options.background); // which the new context does not know
+    if (scene?.field) opened = ended(scene.field); // it brings its textures back itself
+    changed();
+  });
+
+  return {
+    open: (source) => (opened = open(source)),
+    done: async () => {
+      let before: unknown = null;
+      while (before !== opened) {
+        before = opened;
+        await opened;
+      }
+    },
+  };
+}
+
+/** The eigen textures are all here, or one of them never will be. */
+function ended(field: EigenField): Promise<void> {
+  return new Promise((resolve) => {
+    field.addEventListener("complete", () => resolve());
+    field.addEventListener("error", () => resolve());
+  });
+}
+
+function plainSurroundings(gltf: GLTF): Surroundings {
+  const { centre, radius } = extentOf(gltf.scene);
+  const tangents = new Vector2(0.4, 0.4);
+  return { up: new Vector3(0, 1, 0), centre, radius, tangents, focus: null, outside: () => false };
+}
+
+function described(error: unknown): Message {
+  if (error instanceof SceneError) return { text: error.message, code: error.code };
+  return { text: error instanceof Error ? error.message : String(error), code: null };
+}

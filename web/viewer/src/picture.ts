@@ -1,0 +1,51 @@
+// One frame: which camera sees it, with what weights, and what lies over it.
+
+import { placeCamera } from "eigenfield-three";
+import type { Captured } from "./captured";
+import { type Frame, WHOLE } from "./mode";
+import type { Detail } from "./pace";
+import type { Places } from "./places";
+import type { Session } from "./session";
+import type { Stage } from "./stage";
+
+export interface Picture {
+  draw(detail: Detail): void;
+  /** Where the captured picture lies in the canvas. */
+  frame(): Frame;
+}
+
+export function createPicture(session: Session, stage: Stage, places: Places, captured: Captured): Picture {
+  let frame = WHOLE;
+
+  const place = (): Frame => {
+    const field = session.scene?.field;
+    const view = session.captured === null ? undefined : field?.info.cameras[session.captured];
+    if (field && view) return placeCamera(field, stage.camera, view, stage.aspect());
+    return places.mode()?.place(stage.camera, stage.aspect()) ?? WHOLE;
+  };
+  return {
+    frame: () => frame,
+    draw: ({ scale, linear }) => {
+      stage.setScale(scale);
+      frame = place();
+      const picture = captured.picture();
+      const { scene, options } = session;
+      const field = scene?.field;
+      if (field) {
+        field.camera = session.captured;
+        field.exposure = session.captured;
+        field.count = options.count;
+        field.eigen = options.eigen;
+        field.mixing = options.mixing;
+        field.filter = linear ? "bilinear" : options.filter;
+        field.photograph = picture;
+        field.view = options.view === "error" && !picture ? "picture" : options.view;
+        // On the plane both ways mean the same; one set of weights needs no map and is the paper's to the last digit.
+        const onPlane = session.mode === "plane" && scene.plane?.at().dolly === 0;
+        field.weightMode = onPlane || !field.info.facesPlane ? "eye" : options.weights;
+      }
+      // Beside the frame the surface was seen by few cameras, and ends raggedly.
+      stage.draw(frame === WHOLE ? null : frame, session.photographShown ? picture : null);
+    },
+  };
+}
