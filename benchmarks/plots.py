@@ -39,7 +39,7 @@ def main() -> None:
         axes.plot(counts, values, color=colour, marker=marker, markersize=5, linewidth=1.8, label=label)
     first, last, rate = PAPER
     axes.plot([first, last], [rate, rate], color="#666666", linestyle="--", linewidth=1.2)
-    axes.annotate("the paper, GTX 1080: above this", (first, rate), xytext=(0, 4), textcoords="offset points",
+    axes.annotate("the paper, GTX 1080: above this", (first, rate), xytext=(0, -12), textcoords="offset points",
                   fontsize=8, color="#444444")  # fmt: skip
     axes.set_yscale("log")
     axes.set_xlabel("eigen textures")

@@ -1,6 +1,6 @@
 """What a frame costs in a browser against the number of eigen textures, and what the first picture needs.
 
-    python benchmarks/render_browser.py [DEMO.glb]
+    python benchmarks/render_browser.py [demo/scene.glb]
 
 Headless Chromium draws the scene of render.py at 1024x768 through the three.js plug-in (web/benchmarks), the viewpoint
 moving every frame; a frame lasts until a pixel of it can be read. Beside it, in the same page, the same mesh with one
