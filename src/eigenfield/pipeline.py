@@ -33,7 +33,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
 from eigenfield.proxy import prepare_proxy
 from eigenfield.rendering import delaunay_triangles
-from eigenfield.scene import Basis, Plane, Scene
+from eigenfield.scene import Basis, Plane, Scene, check_scale
 from eigenfield.texturing import (
     FILTERS,
     SIDE_LIMIT,
@@ -76,10 +76,7 @@ class Options:
     def __post_init__(self) -> None:
         if self.textures < 0:
             raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
-        if self.metres_per_unit is not None and not (0 < self.metres_per_unit < np.inf):
-            raise OptionError(
-                "metres", f"{self.metres_per_unit:g} metres in a unit were said", remedy="say a number above 0"
-            )
+        check_scale(self.metres_per_unit)
         if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
             raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
         if self.resampling not in FILTERS:

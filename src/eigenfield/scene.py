@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
+from eigenfield.errors import OptionError
 from eigenfield.mesh import Mesh
 from eigenfield.viewplane import ViewPlane
 
@@ -107,3 +109,9 @@ class Scene:
         from eigenfield.viewer import scene_html  # as above
 
         return scene_html(self)
+
+
+def check_scale(metres_per_unit: float | None) -> None:
+    """Raise OptionError `metres` unless the metres in one unit of the world are None or a positive, finite number."""
+    if metres_per_unit is not None and not 0 < metres_per_unit < math.inf:
+        raise OptionError("metres", f"{metres_per_unit:g} metres in a unit is no length", remedy="say a number above 0")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -220,6 +219,6 @@ def _check(kind: str, output: Path, given: set[str], options: dict[str, Any]) ->
         raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
     if kind == "mp4" and options["background"] is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
-    scale = options["metres_per_unit"]
-    if scale is not None and not (math.isfinite(scale) and scale > 0):
-        raise OptionError("metres-per-unit", f"{scale:g} metres in a unit", remedy="give a number above 0")
+    from eigenfield.scene import check_scale
+
+    check_scale(options["metres_per_unit"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 import webbrowser
 from collections.abc import Mapping
@@ -62,11 +61,11 @@ def command(
     The address goes to standard output. Nobody but this machine can open it, and nothing is fetched from elsewhere.
     Ctrl-C ends it, with exit code 0.
     """
-    if metres_per_unit is not None and not (math.isfinite(metres_per_unit) and metres_per_unit > 0):
-        raise OptionError("metres", f"--metres-per-unit {metres_per_unit:g} is no length", remedy="say one above 0")
     from eigenfield.format import file_bytes, outline
+    from eigenfield.scene import check_scale
     from eigenfield.viewer import Server, make_manifest
 
+    check_scale(metres_per_unit)
     options = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     try:
         loaded = outline(scene)
