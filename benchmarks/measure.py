@@ -1,4 +1,7 @@
-"""What the benchmarks share: a child process timed and weighed, and results that say where they come from."""
+"""What the benchmarks share: a child process timed and weighed, and results that say where they come from.
+
+results/NAME.json is {"runs": [...]}, the newest last, each with date, commit, machine and command beside its figures.
+"""
 
 from __future__ import annotations
 
@@ -8,10 +11,13 @@ import platform
 import subprocess
 import sys
 import time
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
+KEPT = 50  # runs of a benchmark; older ones are in the repository's history
+ORIGIN = ("date", "commit", "machine", "command")  # what every run says beside its figures
 
 
 def run(arguments: list[str]) -> dict[str, Any]:
@@ -69,9 +75,47 @@ def machine() -> dict[str, Any]:
 
 
 def store(name: str, figures: dict[str, Any]) -> Path:
-    """Write results/NAME.json: the figures, with command, commit and machine."""
+    """Append the figures to results/NAME.json, with date, commit, machine and command; the newest KEPT runs stay.
+
+    Where that file cannot be read (see `runs`) it stays as it is, the run goes to NAME.json.new and SystemExit says so.
+    """
     RESULTS.mkdir(exist_ok=True)
     path = RESULTS / f"{name}.json"
-    result = {"command": " ".join(["python", *sys.argv]), "commit": commit(), "machine": machine(), **figures}
-    path.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    date = datetime.now(UTC).isoformat(timespec="seconds")
+    command = " ".join(["python", *sys.argv])
+    run = {"date": date, "commit": commit(), "machine": machine(), "command": command, **figures}
+    new = path.with_suffix(".json.new")
+    try:
+        kept = runs(name) if path.exists() else []
+    except SystemExit as error:
+        _write(new, [run])
+        raise SystemExit(f"{error}; this run is kept as {new}") from error
+    _write(new, [*kept, run][-KEPT:])
+    new.replace(path)  # whole or not at all, should this be killed
     return path
+
+
+def _write(path: Path, runs: list[dict[str, Any]]) -> None:
+    path.write_text(json.dumps({"runs": runs}, indent=1) + "\n", encoding="utf-8")
+
+
+def runs(name: str) -> list[dict[str, Any]]:
+    """All runs in results/NAME.json, the oldest first, at least one. SystemExit names the file if it is none such."""
+    path = RESULTS / f"{name}.json"
+    try:
+        document = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise SystemExit(f"{path} cannot be read ({error}): take it from the repository again") from error
+    found = document.get("runs") if isinstance(document, dict) else None
+    if not isinstance(found, list) or not found:
+        raise SystemExit(f'{path} has no "runs": put what it holds into {{"runs": [...]}}, with its date')
+    for number, run in enumerate(found):
+        missing = [key for key in ORIGIN if not isinstance(run, dict) or key not in run]
+        if missing:
+            raise SystemExit(f"{path}: run {number} does not say its {', '.join(missing)}")
+    return found
+
+
+def latest(name: str) -> dict[str, Any]:
+    """The newest run in results/NAME.json."""
+    return runs(name)[-1]

@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
-
-from tables import result
+from measure import latest
 
 PICTURE = Path(__file__).parents[1] / "docs" / "frames.png"
 PAPER = (1, 40, 60)  # "over 60 fps up to 40" on a GTX 1080
@@ -24,7 +23,7 @@ def series(counts: dict[str, Any], fps: Any) -> tuple[list[int], list[float]]:
 
 
 def main() -> None:
-    software, opengl, browser = result("render"), result("render-opengl"), result("render-browser")
+    software, opengl, browser = latest("render"), latest("render-opengl"), latest("render-browser")
     lines = [
         ("software renderer, bicubic, 1024x768", "#1f6f8b", "o",
          series(software["relief"], lambda row: row["bicubic"]["fps"])),

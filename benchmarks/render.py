@@ -78,12 +78,12 @@ def scene_of(mesh: Mesh, cameras: list[Camera], count: int) -> Scene:
     )
 
 
-def frames(scene: Scene, filter: str) -> dict[str, Any]:
-    """Milliseconds a frame along a circle through the array, at WIDTH x HEIGHT."""
+def frames(scene: Scene, filter: str, count: int = FRAMES) -> dict[str, Any]:
+    """Milliseconds a frame along a circle of `count` frames through the array, at WIDTH x HEIGHT."""
     renderer = Renderer(scene)
     taken = []
-    for number in range(-WARM_UP, FRAMES):
-        angle = 2 * np.pi * number / FRAMES
+    for number in range(-WARM_UP, count):
+        angle = 2 * np.pi * number / count
         at = (0.7 * np.cos(angle), 0.7 * np.sin(angle))
         started = time.perf_counter()
         camera = novel_camera(scene, at).resized(WIDTH, HEIGHT)

@@ -5,23 +5,19 @@ python benchmarks/tables.py [--check]
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 from typing import Any
 
+from measure import latest
+
 README = Path(__file__).parents[1] / "README.md"
-RESULTS = Path(__file__).parent / "results"
 CAPTURES = ("tarot", "tarot-5x4", "cube", "demo")
 SCENES = (
     "tarot-all", "tarot", "tarot-blind", "tarot-5x4", "amethyst", "jellybeans", "shop", "boxes", "antinous", "fern",
     "cube", "fountain", "fox", "temple",
 )  # fmt: skip
 BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
-
-
-def result(name: str) -> dict[str, Any]:
-    return json.loads((RESULTS / f"{name}.json").read_text(encoding="utf-8"))
 
 
 def table(head: list[str], rows: list[list[str]]) -> str:
@@ -38,7 +34,7 @@ def origin(figures: dict[str, Any], name: str) -> str:
 
 
 def quality() -> str:
-    results = {name: result(f"quality-{name}") for name in CAPTURES}
+    results = {name: latest(f"quality-{name}") for name in CAPTURES}
     rows = []
     for name, figures in results.items():
         for label, case in figures["cases"].items():
@@ -74,7 +70,7 @@ def quality() -> str:
 
 def reconstruction() -> str:
     depth, fountain, temple, stereo, rig = (
-        result(f"proxy-{name}")
+        latest(f"proxy-{name}")
         for name in ("hci-antinous", "cameras-fountain", "cameras-temple", "cameras-stereo-chart", "cameras-caliscope")
     )
     truth = [
@@ -92,7 +88,7 @@ def reconstruction() -> str:
          f"median {rig['reprojection_median']:.2f} px, centres within {rig['position_percent_worst']:.2f} % of the"
          " extent", f"{rig['seconds']:.0f}"],
     ]  # fmt: skip
-    scenes = {name: result(f"proxy-scene-{name}") for name in SCENES}
+    scenes = {name: latest(f"proxy-scene-{name}") for name in SCENES}
     rows = []
     for figures in scenes.values():
         encoded, held = figures["encoded"], figures.get("held_out")
@@ -134,7 +130,7 @@ def decibels(figures: dict[str, Any] | None) -> str:
 
 
 def encoding() -> str:
-    figures = result("encode")
+    figures = latest("encode")
     whole, half = figures["encode"], figures["encode_every_second_row"]
     pca, av1 = figures["scikit_learn_pca"], figures["svt_av1_preset_6"]
     rows = [
@@ -154,7 +150,7 @@ def encoding() -> str:
 
 
 def drawing() -> str:
-    figures = result("render")
+    figures = latest("render")
     rows = [
         [count, *(f"{row[filter]['fps']:.0f} ({row[filter]['fps_best']:.0f})" for filter in ("bilinear", "bicubic")),
          f"{100 * row['share_of_bandwidth']:.0f} %"]
@@ -174,15 +170,15 @@ def drawing() -> str:
         " product on float32 textures.\n\n"
         + shaded()
         + origin(figures, "render")
-        + origin(result("render-opengl"), "render-opengl")
-        + origin(result("render-browser"), "render-browser")
+        + origin(latest("render-opengl"), "render-opengl")
+        + origin(latest("render-browser"), "render-browser")
         + "\n"
     )
 
 
 def shaded() -> str:
     """The shader on OpenGL and in a browser: frames a second, and times the cost of a plain texture."""
-    opengl, browser = result("render-opengl"), result("render-browser")
+    opengl, browser = latest("render-opengl"), latest("render-browser")
 
     def cell(entry: dict[str, Any] | None, fps: float | None) -> str:
         return "" if entry is None or fps is None else f"{number(fps)} ({entry['times_plain']:.1f})"

@@ -26,6 +26,7 @@ FLOORS = {
         "parallel",
         "progress",
         "metrics",
+        "flip",
     ],
     1: ["capture", "stereo"],
     2: ["calibrate", "proxy", "basis", "texturing"],

@@ -14,7 +14,7 @@ from scenes import tiny_scene
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, View
 from eigenfield.errors import CaptureError, EigenfieldError, OptionError, OutputError
-from eigenfield.evaluation import PSNR_CAP, Circle, evaluate, read_circles, reconstructions, stored_scores
+from eigenfield.evaluation import PSNR_CAP, Circle, evaluate, flip, read_circles, reconstructions, stored_scores
 from eigenfield.evaluation.plots import write_plots
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.format import load, save
@@ -90,7 +90,7 @@ def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
     assert "curve" not in figures
     assert figures["uv"]["ssim"] > 0.9  # drawing and projecting back each resample once
     assert set(figures["image"]["encoded"]) == {
-        "cameras", "psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "coverage", "worst"
+        "cameras", "psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "worst"
     }  # fmt: skip
     json.dumps(figures, allow_nan=False)
 
@@ -154,6 +154,41 @@ def test_circles_are_left_out_of_the_outside_figures(scene, tmp_path):
     some = evaluate(scene, capture, circles={scene.names[0]: circle})["image"]["encoded"]["outside"]
     assert some["worst"]["psnr"]["camera"] != scene.names[0]
     assert some["worst"]["psnr"]["value"] < 40
+
+
+def test_flip_is_measured_when_asked_for(scene, tmp_path):
+    capture = write_capture(scene, tmp_path / "c", lighter(2))
+    figures = evaluate(scene, capture, flip=True, circles={scene.names[2]: Circle(24, 20, 9)})
+    encoded, held = figures["image"]["encoded"], figures["image"]["held_out"]
+    assert held["flip"] == held["worst"]["flip"]["value"] == 0
+    worst = encoded["worst"]["flip"]  # the highest: lower is better
+    assert worst["camera"] == scene.names[2] and 0.01 < worst["value"] < 0.3
+    assert encoded["flip"] == pytest.approx(worst["value"] / 8, abs=1e-6)
+    assert encoded["outside"]["flip"] != encoded["flip"]
+    assert encoded["outside"]["worst"]["flip"]["camera"] == scene.names[2]
+    alone = {camera["name"]: camera["flip"] for camera in figures["cameras"]}
+    assert alone[scene.names[2]] == worst["value"] and sum(value > 0 for value in alone.values()) == 1
+    assert stored_scores(figures)["image"]["encoded"]["flip"] == encoded["flip"]
+    picture = drawn(scene, 2)
+    surface = Renderer(scene).draw(scene.cameras[2], camera_weights(scene, 2)).coverage > 0.999
+    assert worst["value"] == pytest.approx(flip(picture, lighter(2)(2, picture), surface), abs=1e-6)
+    plain = evaluate(scene, capture)
+    assert "flip" not in plain["image"]["encoded"] and "flip" not in plain["cameras"][0]
+    assert plain["image"]["encoded"] == {
+        key: value if key != "worst" else {name: at for name, at in value.items() if name != "flip"}
+        for key, value in encoded.items()
+        if key not in ("flip", "outside")
+    }
+
+
+def test_luma_of_the_whole_frame(scene, tmp_path):
+    def green(index, picture):
+        assert picture[..., 1].max() < 255
+        return picture + np.uint8([0, 1, 0])
+
+    part = evaluate(scene, write_capture(scene, tmp_path / "c", green))["image"]["held_out"]
+    assert part["psnr_luma_full"] == pytest.approx(20 * np.log10(255 / 0.7152), abs=1e-4)
+    assert part["psnr_full"] == pytest.approx(10 * np.log10(255**2 * 3), abs=1e-4)
 
 
 def test_a_circle_holds_the_pixels_whose_centre_it_holds():
@@ -419,9 +454,22 @@ def test_the_verb_from_end_to_end(scene, tmp_path):
     assert table.exit_code == 0, table.output
     for words in ("texture maps (UV)", "encoded (8)", "held out (1)", "view_02.png", "times smaller than"):
         assert words in table.stdout
+    assert "FLIP" not in table.stdout
     again = load(path).scores
     assert set(stored) - set(again) == {"curve"}
     assert all(again[key] == stored[key] for key in again if key != "ratio")  # the file has grown by its scores
+
+
+def test_the_table_of_the_verb_shows_flip(scene, tmp_path):
+    write_capture(scene, tmp_path / "c", lighter(2))
+    save(
+        dataclasses.replace(scene, names=tuple(f"{name}.png" for name in scene.names)), tmp_path / "s.glb", codec="png"
+    )
+    shown = run(tmp_path / "s.glb", tmp_path / "c", "--flip", "--png-maps", "none", "--quiet").stdout.splitlines()
+    end = next(line for line in shown if "PSNR" in line).index("FLIP") + 4
+    at = next(number for number, line in enumerate(shown) if line.startswith("encoded (8)"))
+    mean, worst = (float(line[end - 6 : end]) for line in shown[at : at + 2])
+    assert 0 < mean < worst < 0.3
 
 
 def test_the_verb_leaves_nothing_when_it_cannot(scene, tmp_path):

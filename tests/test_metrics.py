@@ -57,6 +57,53 @@ def test_a_constant_offset_of_flat_pictures_has_a_known_ssim():
     assert ssim(light, dark) == pytest.approx((2 * 100 * 110 + c1) / (100**2 + 110**2 + c1), abs=FLAT)
 
 
+def test_a_constant_offset_changes_the_luminance_term_of_ssim_only():
+    dark, _ = noise(40, 50)
+    dark = dark // 2
+    c1 = (0.01 * 255) ** 2
+    mean = np.stack([gaussian(dark[..., c].astype(float)) for c in range(3)], axis=-1)[5:-5, 5:-5]
+    known = (2 * mean * (mean + 20) + c1) / (mean**2 + (mean + 20) ** 2 + c1)
+    assert ssim(dark + np.uint8(20), dark) == pytest.approx(known.mean(), abs=1e-5)
+
+
+def test_noise_of_two_levels_on_a_flat_picture_has_a_known_ssim():
+    """Without structure to share, covariance is 0: SSIM is c2 / (σ² + c2), σ² lessened by what the mean takes of it."""
+    signs = np.random.default_rng(4).choice([-2, 2], (300, 300, 3))
+    flat = np.full(signs.shape, 100, np.uint8)
+    variance, c2 = 4 * (1 - np.square(window()).sum()), (0.03 * 255) ** 2
+    assert ssim((flat + signs).astype(np.uint8), flat) == pytest.approx(c2 / (variance + c2), abs=1e-3)
+
+
+def window():
+    """The 11 x 11 Gaussian of docs/measures.md."""
+    y, x = np.mgrid[-5:6, -5:6]
+    weights = np.exp(-(x**2 + y**2) / (2 * 1.5**2))
+    return weights / weights.sum()
+
+
+def gaussian(plane):
+    """Weighted means under `window`, the border mirrored with its edge pixel repeated, by plain sums."""
+    padded = np.pad(plane, 5, mode="symmetric")
+    return np.einsum("hwij,ij->hw", np.lib.stride_tricks.sliding_window_view(padded, (11, 11)), window())
+
+
+def test_masked_ssim_is_what_the_documentation_defines():
+    photograph, drawn = noise(31, 26, 3)
+    covered = np.random.default_rng(5).random((31, 26)) < 0.6
+    covered[:, 20:] = False
+    c1, c2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
+    values = []
+    for channel in range(3):
+        y = photograph[..., channel].astype(float)
+        x = np.where(covered, drawn[..., channel], y)
+        mx, my = gaussian(x), gaussian(y)
+        vx, vy, vxy = gaussian(x * x) - mx**2, gaussian(y * y) - my**2, gaussian(x * y) - mx * my
+        s = (2 * mx * my + c1) * (2 * vxy + c2) / ((mx**2 + my**2 + c1) * (vx + vy + c2))
+        values.append(s[covered].mean())
+    assert ssim(drawn, photograph, covered) == pytest.approx(np.mean(values), abs=5e-6)
+    assert abs(ssim(drawn, photograph) - np.mean(values)) > 0.01  # unlike the whole frame
+
+
 def test_luma_weighs_the_channels_by_bt709():
     black = np.zeros((8, 8, 3), np.uint8)
     for channel, weight in enumerate((0.2126, 0.7152, 0.0722)):

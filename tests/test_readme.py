@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import json
-import os
 import re
 import shlex
 import subprocess
 import sys
 import urllib.request
+from datetime import datetime
 from pathlib import Path
 
+import measure
 import pytest
 from captures import write_array, write_capture
 
@@ -104,10 +104,12 @@ def test_constraints_pin_what_is_required():
 def test_the_figures_are_those_of_the_results():
     """The tables between the marks are what benchmarks/tables.py makes of benchmarks/results."""
     done = subprocess.run(
-        [sys.executable, str(ROOT / "benchmarks" / "tables.py"), "--check"],
-        capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT / "benchmarks")},
-    )  # fmt: skip
+        [sys.executable, str(ROOT / "benchmarks" / "tables.py"), "--check"], capture_output=True, text=True
+    )
     assert done.returncode == 0, done.stdout + done.stderr
-    for path in (ROOT / "benchmarks" / "results").glob("*.json"):
-        result = json.loads(path.read_text(encoding="utf-8"))
-        assert {"command", "commit", "machine"} <= set(result), path
+    names = [path.stem for path in measure.RESULTS.glob("*.json")]
+    assert "encode" in names
+    for name in names:
+        runs = measure.runs(name)  # each with date, commit, machine and command, or this says which has not
+        dates = [datetime.fromisoformat(run["date"]) for run in runs]
+        assert dates == sorted(dates) and len(runs) <= measure.KEPT, name

@@ -67,7 +67,7 @@ def ssim(drawn: Picture, photograph: Picture, covered: NDArray[np.bool_] | None 
         covered[edge : height - edge, edge : width - edge] = True
     else:
         a = np.where(covered[..., None], a, b)
-    rows, columns = _extent(covered)
+    rows, columns = extent(covered)
     total, count = 0.0, int(covered.sum())
     if count == 0:
         return None
@@ -105,7 +105,7 @@ def _smoothed(picture: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.asarray(smooth, np.float32).reshape(picture.shape)
 
 
-def _extent(covered: NDArray[np.bool_]) -> tuple[slice, slice]:
+def extent(covered: NDArray[np.bool_]) -> tuple[slice, slice]:
     """Rows and columns of the smallest rectangle that holds all covered pixels."""
     spans = []
     for axis in (1, 0):

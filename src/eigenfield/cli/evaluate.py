@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +10,16 @@ import click
 
 from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
 
-COLUMNS = (  # key, heading, format
+Column = tuple[str, str, str]  # key, heading, format
+
+COLUMNS: tuple[Column, ...] = (
     ("psnr", "PSNR", "{:.2f}"),
     ("ssim", "SSIM", "{:.4f}"),
     ("psnr_luma", "PSNR luma", "{:.2f}"),
     ("psnr_full", "PSNR full", "{:.2f}"),
     ("ssim_full", "SSIM full", "{:.4f}"),
     ("coverage", "coverage", "{:.1%}"),
+    ("flip", "FLIP", "{:.4f}"),
 )
 LABEL = 22
 
@@ -26,7 +29,7 @@ LABEL = 22
 Examples:
   eigenfield evaluate scene.glb capture/
   eigenfield evaluate scene.glb photos/ --calibration refined.json --curve --plots plots/
-  eigenfield evaluate scene.glb capture/ --json > figures.json
+  eigenfield evaluate scene.glb capture/ --flip --json > figures.json
   eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json"""
 )
 @click.argument("scene", type=click.Path(path_type=Path))
@@ -78,6 +81,7 @@ Examples:
     show_default=True,
     help="Pack every texture map as PNG for the ratio to them, or 16 and scale up, or none.",
 )
+@click.option("--flip", is_flag=True, help="Measure FLIP too: what an eye sees of the difference (0 is best).")
 @common_options
 def command(
     scene: Path,
@@ -97,6 +101,7 @@ def command(
     weights: str,
     textures: int | None,
     png_maps: str,
+    flip: bool,
     quiet: bool,
 ) -> None:
     """Measure the file SCENE against the photographs of CAPTURE, matched by name.
@@ -121,7 +126,7 @@ def command(
     with progress_bars(quiet) as progress:
         figures = evaluate(
             loaded, light_field, path=scene, curve=curve, textures=textures, filter=drawing_filter, weights=weights,
-            circles=circles, png_maps=png_maps, progress=progress,
+            circles=circles, png_maps=png_maps, flip=flip, progress=progress,
         )  # fmt: skip
     if plots is not None:
         from eigenfield.evaluation.plots import write_plots
@@ -139,17 +144,19 @@ def command(
 def table(name: str, figures: Mapping[str, Any]) -> list[str]:
     """The figures as lines for a person."""
     lines = [f"{name}: {figures['textures']} eigen textures, drawn {figures['filter']}, {figures['seconds']:.0f} s", ""]
-    lines.append(" " * LABEL + "".join(f"{heading:>11}" for _, heading, _ in COLUMNS))
+    parts = [part for part in figures["image"].values() if part is not None]
+    columns = [column for column in COLUMNS if any(column[0] in part for part in parts)]
+    lines.append(" " * LABEL + "".join(f"{heading:>11}" for _, heading, _ in columns))
     uv = figures["uv"]
-    lines += _rows("texture maps (UV)", uv) if uv else [f"{'texture maps (UV)':{LABEL}}not measured"]
+    lines += _rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL}}not measured"]
     for key, label in (("encoded", "encoded"), ("held_out", "held out")):
         part = figures["image"][key]
         if part is None:
             lines.append(f"{label:{LABEL}}none")
             continue
-        lines += _rows(f"{label} ({part['cameras']})", part)
+        lines += _rows(f"{label} ({part['cameras']})", part, columns)
         if "outside" in part:
-            lines += _rows("  outside circles", part["outside"])
+            lines += _rows("  outside circles", part["outside"], columns)
     if figures["missing"]:
         lines += ["", f"{len(figures['missing'])} cameras have no photograph here: {_some(figures['missing'])}"]
     lines += _bytes(figures)
@@ -161,12 +168,12 @@ def table(name: str, figures: Mapping[str, Any]) -> list[str]:
     return lines
 
 
-def _rows(label: str, part: Mapping[str, Any]) -> list[str]:
-    """A line of means and a line of the worst cameras' values."""
+def _rows(label: str, part: Mapping[str, Any], columns: Sequence[Column]) -> list[str]:
+    """A line of means and a line of the worst cameras' values, named by the worst PSNR."""
     lows = {key: None if worst is None else worst["value"] for key, worst in part["worst"].items()}
     named = part["worst"].get("psnr")
-    mean = "".join(f"{_cell(part.get(key), form):>11}" for key, _, form in COLUMNS)
-    low = "".join(f"{_cell(lows.get(key), form):>11}" for key, _, form in COLUMNS)
+    mean = "".join(f"{_cell(part.get(key), form):>11}" for key, _, form in columns)
+    low = "".join(f"{_cell(lows.get(key), form):>11}" for key, _, form in columns)
     return [f"{label:{LABEL}}{mean}", f"{'  worst':{LABEL}}{low}   {'' if named is None else named['camera']}".rstrip()]
 
 

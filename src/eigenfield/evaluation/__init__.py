@@ -1,9 +1,10 @@
-"""How good a scene is: PSNR and SSIM in UV and image space, bytes by part, plots (docs/measures.md)."""
+"""How good a scene is: PSNR and SSIM in UV and image space, FLIP, bytes by part, plots (docs/measures.md)."""
 
 from eigenfield.evaluation.exclusion import Circle, read_circles
 from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
 from eigenfield.evaluation.session import match_photographs, with_scene_cameras
 from eigenfield.evaluation.uv import reconstructions
+from eigenfield.flip import flip, flip_map
 from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, ssim
 
 __all__ = [
@@ -11,6 +12,8 @@ __all__ = [
     "SCHEMA",
     "Circle",
     "evaluate",
+    "flip",
+    "flip_map",
     "match_photographs",
     "psnr",
     "psnr_luma",

@@ -31,6 +31,7 @@ def evaluate(
     weights: str = "delaunay",
     circles: Mapping[str, Circle] | None = None,
     png_maps: str = "all",
+    flip: bool = False,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Measure a scene against its photographs; docs/measures.md defines every figure. The result is ready for JSON.
@@ -39,7 +40,7 @@ def evaluate(
     the UV measure for every number of textures; "none": not. textures: use only the first so many. filter: "bicubic" or
     "bilinear", for drawing. weights: view weights of held-out cameras, "delaunay", "nearest3" or "bilinear". circles:
     by camera, left out of the figures under `outside` (see `read_circles`). png_maps: "all", "sample" (16 maps, scaled
-    up) or "none": the texture maps as PNG.
+    up) or "none": the texture maps as PNG. flip: measure FLIP too, which takes longer.
 
     Raises CaptureError `no-photographs` when no photograph has the name of a camera, `photograph-size`, and what
     reading photographs raises; OptionError `png-maps`, `textures`, `not-photographs`, `settings-unknown`.
@@ -47,7 +48,7 @@ def evaluate(
     started = time.monotonic()
     session = start_session(
         scene, capture, curve=curve, textures=textures, filter=filter, weights=weights, circles=circles,
-        png_maps=png_maps,
+        png_maps=png_maps, flip=flip,
     )  # fmt: skip
     indices = list(session.photographs)
     results = dict(
@@ -114,7 +115,7 @@ def _image(session: Session, results: Mapping[int, Measured], held_out: bool) ->
 
 def _camera(session: Session, index: int, result: Measured) -> dict[str, Any]:
     texture = result.texture
-    return {
+    figures = {
         "name": session.scene.names[index],
         "held_out": bool(session.scene.held_out[index]),
         "psnr": result.image["psnr"],
@@ -123,6 +124,7 @@ def _camera(session: Session, index: int, result: Measured) -> dict[str, Any]:
         "uv_psnr": None if texture is None else texture.psnr[-1],
         "uv_ssim": None if texture is None else texture.ssim[-1],
     }
+    return figures | ({"flip": result.image["flip"]} if "flip" in result.image else {})
 
 
 def _png_maps(session: Session, results: Mapping[int, Measured], mode: str) -> dict[str, Any] | None:

@@ -47,6 +47,7 @@ class Session:
     curved: indices of the cameras that are measured with all of `counts`, the others with the last alone.
     reference: the texture map and visibility that maps are aligned to, None without alignment.
     packed: indices of cameras whose filled maps are written as PNG.
+    flip: pictures are measured with FLIP too.
     """
 
     scene: Scene
@@ -63,6 +64,7 @@ class Session:
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
     circles: Mapping[str, Circle] | None
     packed: frozenset[int]
+    flip: bool
 
     def photograph(self, index: int) -> Photograph:
         """Camera `index`'s photograph; raises CaptureError `photograph-size` when it is not the camera's size."""
@@ -106,11 +108,11 @@ class Session:
         """All figures of one camera."""
         photograph = self.photograph(index)
         drawn, surface = self.draw(index)
-        figures = measure_picture(drawn, surface, photograph.pixels, photograph.mask)
+        figures = measure_picture(drawn, surface, photograph.pixels, photograph.mask, self.flip)
         outside = None
         if self.circles is not None:
             circle = self.circles.get(self.scene.names[index])
-            outside = measure_outside(drawn, surface, photograph.pixels, photograph.mask, circle)
+            outside = measure_outside(drawn, surface, photograph.pixels, photograph.mask, circle, self.flip)
         texture = None
         if self.atlas is not None and not self.scene.held_out[index]:
             values, seen = self.texture(index, photograph)
@@ -130,6 +132,7 @@ def start_session(
     weights: str = "delaunay",
     circles: Mapping[str, Circle] | None = None,
     png_maps: str = "none",
+    flip: bool = False,
 ) -> Session:
     """Check that scene and photographs belong together, and prepare what all cameras share. See `evaluate`."""
     if png_maps not in PNG_MAPS:
@@ -166,6 +169,7 @@ def start_session(
         reference=None,
         circles=circles,
         packed=frozenset(some[png_maps]),
+        flip=flip,
     )
     if align is None or not encoded:
         return session

@@ -1,0 +1,1 @@
+"""The whole evaluation, one idea a module; `benchmarks/report.py` runs it."""

@@ -1,0 +1,255 @@
+"""Views between the encoded cameras: held-out photographs beside what our scene and its peers draw in their place."""
+
+from __future__ import annotations
+
+import io
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
+from evidence.spread import spread_over_array
+from numpy.typing import NDArray
+from PIL import Image
+
+from eigenfield.capture import LightField
+from eigenfield.errors import OptionError
+from eigenfield.evaluation import Circle, match_photographs
+from eigenfield.evaluation.image import Figures, summary
+from eigenfield.flip import flip
+from eigenfield.format import parts
+from eigenfield.metrics import psnr, psnr_luma, ssim, to_codes
+from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
+from eigenfield.scene import Scene
+
+WHOLE = 0.999  # of a pixel's samples
+AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
+TITLES = {
+    "nearest": "photograph of the nearest encoded camera",
+    "blend": "photographs of the neighbours, blended without geometry",
+    "lumigraph": f"unstructured lumigraph, {BLENDED} photographs on the proxy",
+    **{mode: f"our scene, {mode} view weights" for mode in MODES},
+}
+WORDS = (
+    "Held-out views; mean over views, the worst beside it. All ways are measured over the same pixels, those that the "
+    "proxy covers from the held-out camera; psnr_full counts the whole frame, black where ours and the lumigraph have "
+    "nothing. The peers draw from the encoded cameras' photographs as decoded and need all of them. Where no "
+    "photograph sees the surface, the lumigraph's picture is filled smoothly, as our textures are (holes: their share)."
+)
+
+Way = Callable[[int], NDArray[Any]]
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """A scene and its photographs. views: index of a scene's camera to that of its photograph."""
+
+    scene: Scene
+    capture: LightField
+    views: Mapping[int, int]
+    renderer: Renderer
+
+
+@dataclass(frozen=True, eq=False)
+class Peers:
+    """What the peers draw from: the photographs of the encoded cameras, `shown` (n,) scene indices."""
+
+    shown: NDArray[np.int64]
+    lumigraph: Lumigraph
+
+
+def between(
+    scene: Scene,
+    light_field: LightField,
+    sample: int | None = None,
+    *,
+    file: Path | None = None,
+    circles: Mapping[str, Circle] | None = None,
+) -> dict[str, Any]:
+    """Figures of every way to draw the held-out views: rows under "methods", in the order of TITLES.
+
+    sample: measure so many held-out cameras, spread over the array; None: all. file: the scene's, for its bytes.
+    circles: of `read_circles`; then psnr_outside counts the covered pixels outside them.
+    """
+    stage, peers = start(scene, light_field)
+    chosen = _chosen(stage, sample)
+    rows, notes = _measured(stage, chosen, ways_of(stage, peers), circles)
+    if _blended_by(scene) != "bilinear":
+        notes.append("The encoded cameras are on no full grid: photographs are blended with Delaunay weights.")
+    return {
+        "cameras": len(chosen),
+        "held_out": int(scene.held_out.sum()),
+        "encoded": len(scene.encoded),
+        "methods": rows,
+        "holes": _holes(stage, peers, chosen),
+        "bytes": _bytes(stage, peers, file),
+        "words": " ".join((WORDS, *notes)),
+    }
+
+
+def weights_study(
+    scene: Scene, light_field: LightField, sample: int | None = None, circles: Mapping[str, Circle] | None = None
+) -> dict[str, Any]:
+    """The view weights of our scene on held-out views: a row for each of `rendering.MODES`, as `between` has them."""
+    stage = Stage(scene, light_field, match_photographs(scene, light_field), Renderer(scene))
+    chosen = _chosen(stage, sample)
+    rows, notes = _measured(stage, chosen, {mode: partial(_ours, stage, mode) for mode in MODES}, circles)
+    return {"cameras": len(chosen), "methods": rows, "words": " ".join(notes)}
+
+
+def start(scene: Scene, light_field: LightField) -> tuple[Stage, Peers]:
+    """Match the photographs, decode the encoded cameras', prepare both renderers."""
+    views = match_photographs(scene, light_field)
+    shown = np.array([index for index in scene.encoded if int(index) in views], np.int64)
+
+    def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+        picture = light_field.photograph(views[int(shown[index])])
+        return picture.pixels, picture.mask
+
+    lumigraph = make_lumigraph(scene.mesh, [scene.cameras[index] for index in shown], photograph)
+    return Stage(scene, light_field, views, Renderer(scene)), Peers(shown, lumigraph)
+
+
+def ways_of(stage: Stage, peers: Peers) -> dict[str, Way]:
+    """Key of TITLES to what draws a held-out camera, (H, W, 3), uint8 or 0..1; in no grid `bilinear` raises."""
+    ways: dict[str, Way] = {
+        "nearest": partial(_nearest, stage, peers),
+        "blend": partial(_blend, stage, peers),
+        "lumigraph": lambda index: draw_lumigraph(peers.lumigraph, stage.scene.cameras[index])[0],
+    }
+    return ways | {mode: partial(_ours, stage, mode) for mode in MODES}
+
+
+def covered_by_proxy(stage: Stage, index: int, mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:
+    """(H, W) the pixels that count for a camera: the proxy on all of a pixel's samples, and within the mask."""
+    weights = np.zeros(len(stage.scene.encoded))
+    covered = stage.renderer.draw(stage.scene.cameras[index], weights, textures=0).coverage > WHOLE
+    return covered if mask is None else covered & (mask > 0.5)
+
+
+def _ours(stage: Stage, mode: str, index: int) -> NDArray[np.float32]:
+    return stage.renderer.draw(stage.scene.cameras[index], camera_weights(stage.scene, index, mode)).image
+
+
+def _nearest(stage: Stage, peers: Peers, index: int) -> NDArray[np.uint8]:
+    centre = stage.scene.cameras[index].centre
+    near = int(np.argmin(np.linalg.norm(peers.lumigraph.centres - centre, axis=1)))
+    return _as_large(peers.lumigraph.photograph(near), stage, index)
+
+
+def _blend(stage: Stage, peers: Peers, index: int) -> NDArray[np.float32]:
+    """The four neighbours of a grid with bilinear weights; without one, those of the Delaunay triangle."""
+    scene = stage.scene
+    x, y = scene.view_plane.coordinates(scene.cameras[index].centre)[0]
+    weights = view_weights(scene, (float(x), float(y)), _blended_by(scene))[np.isin(scene.encoded, peers.shown)]
+    total = np.zeros((scene.cameras[index].height, scene.cameras[index].width, 3), np.float32)
+    for near in np.flatnonzero(weights):
+        photograph = _as_large(peers.lumigraph.photograph(int(near)), stage, index)
+        total += np.float32(weights[near] / weights.sum() / 255) * photograph
+    return total
+
+
+def _blended_by(scene: Scene) -> str:
+    try:
+        view_weights(scene, (0.0, 0.0), "bilinear")
+    except OptionError:
+        return "delaunay"
+    return "bilinear"
+
+
+def _as_large(photograph: NDArray[np.uint8], stage: Stage, index: int) -> NDArray[np.uint8]:
+    """Photographs of one capture may differ in size."""
+    camera = stage.scene.cameras[index]
+    if photograph.shape[:2] == (camera.height, camera.width):
+        return photograph
+    return np.asarray(cv2.resize(photograph, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.uint8)
+
+
+def _chosen(stage: Stage, sample: int | None) -> list[int]:
+    held = [int(index) for index in np.flatnonzero(stage.scene.held_out) if int(index) in stage.views]
+    if not held:
+        raise ValueError("the scene holds out no camera whose photograph is here")
+    return spread_over_array(stage.scene, held, len(held) if sample is None else sample)
+
+
+def _measured(
+    stage: Stage, chosen: Sequence[int], ways: Mapping[str, Way], circles: Mapping[str, Circle] | None
+) -> tuple[list[dict[str, Any]], list[str]]:
+    """A row for each way that this array allows, and a word on each that it does not."""
+    notes = []
+    usable: dict[str, Way] = {}
+    for key, draw in ways.items():
+        try:
+            draw(chosen[0])  # compiles, fills caches: not in the seconds
+        except OptionError as error:
+            notes.append(f"No {key} view weights: {error.message}.")
+        else:
+            usable[key] = draw
+    figures: dict[str, list[Figures]] = {key: [] for key in usable}
+    seconds: dict[str, list[float]] = {key: [] for key in usable}
+    for index in chosen:
+        photograph = stage.capture.photograph(stage.views[index])
+        covered = covered_by_proxy(stage, index, photograph.mask)
+        true = to_codes(photograph.pixels)
+        circle = None if circles is None else circles.get(stage.scene.names[index])
+        for key, draw in usable.items():
+            started = time.perf_counter()
+            drawn = to_codes(draw(index))
+            seconds[key].append(time.perf_counter() - started)
+            figures[key].append(_figures(drawn, true, covered))
+            if circles is not None:
+                beyond = covered if circle is None else covered & circle.outside(true.shape[1], true.shape[0])
+                figures[key][-1]["psnr_outside"] = psnr(drawn, true, beyond)
+    names = [stage.scene.names[index] for index in chosen]
+    rows = []
+    for key in usable:
+        row: dict[str, Any] = {"key": key, "title": TITLES[key], **summary(figures[key], names)}
+        rows.append({**row, "seconds": round(float(np.median(seconds[key])), 4)})
+    return rows, notes
+
+
+def _figures(drawn: NDArray[np.uint8], true: NDArray[np.uint8], covered: NDArray[np.bool_]) -> Figures:
+    return {
+        "psnr": psnr(drawn, true, covered),
+        "psnr_luma": psnr_luma(drawn, true, covered),
+        "psnr_full": psnr(drawn, true),
+        "ssim": ssim(drawn, true, covered),
+        "flip": flip(drawn, true, covered),
+        "coverage": float(covered.mean()),
+    }
+
+
+def _holes(stage: Stage, peers: Peers, chosen: Sequence[int]) -> float:
+    """The part of the proxy's pixels in the held-out views that no encoded photograph sees."""
+    surface, holes = 0, 0
+    for index in chosen:
+        _, on, unseen = draw_lumigraph(peers.lumigraph, stage.scene.cameras[index])
+        surface, holes = surface + int(on.sum()), holes + int(unseen.sum())
+    return holes / max(surface, 1)
+
+
+def _bytes(stage: Stage, peers: Peers, file: Path | None) -> dict[str, Any]:
+    """What has to be kept for each way: all encoded photographs as they lie on the disk, or as AVIF, and the proxy as
+    our file keeps it for the lumigraph; for ours the file."""
+    packed = spread_over_array(stage.scene, [int(index) for index in peers.shown], AVIF_SAMPLE)
+    places = [int(np.searchsorted(peers.shown, index)) for index in packed]
+    avif = sum(_avif(peers.lumigraph.photograph(place)) for place in places)
+    result: dict[str, Any] = {
+        "photographs": sum(stage.capture.bytes(stage.views[int(index)]) for index in peers.shown),
+        f"avif_{AVIF_QUALITY}": round(avif * len(peers.shown) / len(packed)),
+        "avif_counted": f"{len(packed)} of {len(peers.shown)}, scaled up" if len(packed) < len(peers.shown) else "all",
+    }
+    if file is not None:
+        result |= {"scene": file.stat().st_size, "mesh": parts(file)["mesh"]}
+    return result
+
+
+def _avif(photograph: NDArray[np.uint8]) -> int:
+    buffer = io.BytesIO()
+    Image.fromarray(photograph).save(buffer, "AVIF", quality=AVIF_QUALITY)
+    return len(buffer.getvalue())

@@ -1,0 +1,103 @@
+"""Our own rate-distortion curve: the same few settings for every capture."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from evidence import rates
+from evidence.codecs import evict
+from evidence.prepared import Prepared, drawn
+from numpy.typing import NDArray
+
+import eigenfield as ef
+from eigenfield.capture import LightField
+from eigenfield.format import parts
+from eigenfield.parallel import parallel_stream
+from eigenfield.rendering import Renderer
+
+Setting = tuple[float, int | None, int, int]
+
+# (density, triangles, textures, quality), from small files to large ones, the same for all captures; None: the whole
+# mesh, which on Tarot is 1.2 MB by itself
+POINTS: tuple[Setting, ...] = (
+    (0.75, 4000, 10, 35), (1.0, 10_000, 20, 45), (1.25, 20_000, 20, 55), (1.5, None, 40, 65),
+)  # fmt: skip
+QUICK_POINTS = (POINTS[0], POINTS[2])
+
+
+def ours(
+    prepared: Prepared,
+    light_field: LightField,
+    order: Sequence[int],
+    photographs: Sequence[NDArray[np.uint8]],
+    covered: Sequence[NDArray[np.bool_]],
+) -> dict[str, Any]:
+    """The curve: every byte of the real .glb counted, each camera drawn with its own weights.
+
+    order: views of the light field; photographs, covered: theirs.
+    """
+    points = []
+    names = [light_field.names[index] for index in order]
+    for density, triangles, textures, quality in QUICK_POINTS if prepared.quick else POINTS:
+        path = prepared.work / f"rate-{density:g}-{triangles}-{textures}-{quality}.glb"
+        started = time.perf_counter()
+        scene = ef.encode(light_field, prepared.mesh, textures=textures, density=density, triangles=triangles)
+        scene.save(path, quality=quality, overwrite=True)
+        seconds = time.perf_counter() - started
+        points.append(
+            {
+                "parameter": f"density {density:g}, {len(scene.mesh.faces)} triangles, N {scene.textures}, "
+                f"quality {quality}",
+                "file": path.name,
+                "bytes": path.stat().st_size,
+                "parts": dict(parts(path)),
+                "encode_seconds": round(seconds, 2),
+                "access_seconds": access(path, order[len(order) // 2]),
+                **_figures(path, order, photographs, covered, names),
+            }
+        )
+    return {"name": "eigenfield", "kind": "ours", "points": points}
+
+
+def _figures(
+    path: Path,
+    order: Sequence[int],
+    photographs: Sequence[NDArray[np.uint8]],
+    covered: Sequence[NDArray[np.bool_]],
+    names: Sequence[str],
+) -> dict[str, Any]:
+    scene = ef.load(path)
+    renderer = Renderer(scene)
+    return rates.point(
+        (picture for picture, _ in parallel_stream(lambda index: drawn(renderer, scene, index), order)),
+        photographs, covered, names,
+    )  # fmt: skip
+
+
+def access(path: Path, index: int) -> dict[str, float]:
+    """Seconds from a file out of the cache to the picture of one camera, and to that of the next one asked for."""
+    evict(path)
+    started = time.perf_counter()
+    scene = ef.load(path)
+    renderer = Renderer(scene)
+    drawn(renderer, scene, index)
+    first = time.perf_counter() - started
+    drawn(renderer, scene, (index + 1) % len(scene.cameras))
+    return {"first": round(first, 4), "next": round(time.perf_counter() - started - first, 4)}
+
+
+def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) -> list[NDArray[np.bool_]]:
+    """The covered pixels of each view: what the whole proxy covers, within the mask where there is one."""
+    scene = ef.load(prepared.work / "all.glb")
+    renderer, cameras = Renderer(scene), dict(zip(scene.names, range(len(scene.names)), strict=True))
+
+    def of_view(index: int) -> NDArray[np.bool_]:
+        mask = light_field.photograph(index).mask
+        covered = drawn(renderer, scene, cameras[light_field.names[index]])[1]
+        return covered if mask is None else covered & (mask > 0.5)
+
+    return list(parallel_stream(of_view, order))

@@ -1,0 +1,133 @@
+"""Pictures of the report: the paper's figure 6, and crops of equal size beside each other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+from evidence.between import TITLES, start, ways_of
+from evidence.losses import own_maps
+from evidence.prepared import Prepared, codes, drawn
+from numpy.typing import NDArray
+
+from eigenfield.evaluation.session import start_session
+from eigenfield.mesh import Mesh
+from eigenfield.metrics import psnr, to_codes
+from eigenfield.raster import rasterise_view
+from eigenfield.rendering import Renderer
+from eigenfield.scene import Scene
+
+Picture = NDArray[np.uint8]
+
+ERROR_GAIN = 5  # the paper's heat maps are drawn so
+WIDEST = 480  # pixels of a picture in the report
+CROP = 96  # pixels of a photograph
+ENLARGED = 2  # times, without a filter: pixels are what a crop shows
+WEBP = [cv2.IMWRITE_WEBP_QUALITY, 82]
+LOSSLESS = [cv2.IMWRITE_WEBP_QUALITY, 101]  # OpenCV's word for lossless
+
+
+def figure6(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, Any]]:
+    """For the reference camera and a corner one: photograph, proxy, drawn from the camera's own texture map (equation 2
+    fills what it does not see), drawn from the eigen textures, and that one's error, times ERROR_GAIN."""
+    session, renderer = start_session(scene, prepared.light_field), Renderer(scene)
+    rows = []
+    corner = int(scene.encoded[0])
+    for index in dict.fromkeys((scene.reference, corner)):
+        photograph = codes(prepared.light_field, session.photographs[index])
+        own_map = own_maps(session, [index])[index]
+        eigen, covered = drawn(renderer, scene, index)
+        shown = {
+            "photograph": photograph, "proxy": shaded(scene.mesh, scene, index), "own_map": own_map, "eigen": eigen,
+            "error": heat(eigen, photograph, covered),
+        }  # fmt: skip
+        name = f"{prepared.capture.name}-figure6-{index}"
+        rows.append(
+            {
+                "camera": scene.names[index],
+                **{key: write(picture, folder, f"{name}-{key}") for key, picture in shown.items()},
+                "psnr_own": psnr(own_map, photograph, covered), "psnr_eigen": psnr(eigen, photograph, covered),
+            }
+        )  # fmt: skip
+    return rows
+
+
+def between_cameras(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, Any]]:
+    """A held-out photograph, and what each way of `between` draws in its place: that nearest the array's centre."""
+    stage, peers = start(scene, prepared.light_field)
+    held = np.flatnonzero(scene.held_out)
+    places = scene.view_plane.coordinates([camera.centre for camera in scene.cameras])
+    index = int(held[np.argmin(np.linalg.norm(places[held], axis=1))])
+    photograph = codes(prepared.light_field, stage.views[index])
+    ways = ways_of(stage, peers)
+    shown = {"photograph": photograph} | {
+        TITLES[key]: to_codes(ways[key](index)) for key in ("nearest", "blend", "lumigraph", "delaunay")
+    }
+    return [
+        {
+            "label": label, "camera": scene.names[index],
+            "picture": write(picture, folder, f"{prepared.capture.name}-between-{number}"),
+        }
+        for number, (label, picture) in enumerate(shown.items())
+    ]  # fmt: skip
+
+
+def shaded(mesh: Mesh, scene: Scene, index: int) -> Picture:
+    """The bare proxy from camera `index`, lit from the camera: grey by the angle of each triangle."""
+    camera = scene.cameras[index]
+    face = rasterise_view(mesh, camera).face
+    corners = mesh.vertices[mesh.faces].astype(np.float64)
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    away = corners.mean(axis=1) - camera.centre
+    away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-12)
+    grey = (40 + 200 * np.abs((normal * away).sum(axis=1))).astype(np.uint8)
+    picture = np.zeros((camera.height, camera.width, 3), np.uint8)
+    seen = face >= 0
+    picture[seen] = grey[face[seen], None]
+    return picture
+
+
+def heat(a: Picture, b: Picture, covered: NDArray[np.bool_]) -> Picture:
+    """The mean error over the channels, times ERROR_GAIN, dark to bright; what no surface covers is black."""
+    error = cv2.absdiff(a, b).mean(axis=2) * ERROR_GAIN
+    picture = cv2.applyColorMap(error.clip(0, 255).astype(np.uint8), cv2.COLORMAP_INFERNO)[..., ::-1].copy()
+    picture[~covered] = 0
+    return picture
+
+
+def busiest(photographs: list[Picture], others: list[Picture], count: int = 2) -> list[tuple[int, int]]:
+    """Top-left corners of the CROP squares where `others` are farthest from the photographs, away from each other:
+    where a judgement by eye has something to see."""
+    error = sum(cv2.absdiff(a, b).astype(np.float32).mean(axis=2) for a, b in zip(photographs, others, strict=True))
+    side = min(CROP, *np.shape(error))
+    score = cv2.boxFilter(np.asarray(error), -1, (side, side), anchor=(0, 0), borderType=cv2.BORDER_ISOLATED)
+    score = score[: score.shape[0] - side + 1, : score.shape[1] - side + 1].copy()
+    corners = []
+    for _ in range(count):
+        row, column = (int(value) for value in np.unravel_index(np.argmax(score), score.shape))
+        corners.append((row, column))
+        score[max(0, row - side) : row + side, max(0, column - side) : column + side] = -1
+    return corners
+
+
+def crop(picture: Picture, corner: tuple[int, int]) -> Picture:
+    """The CROP square at `corner`, ENLARGED."""
+    row, column = corner
+    part = picture[row : row + CROP, column : column + CROP]
+    return np.repeat(np.repeat(part, ENLARGED, axis=0), ENLARGED, axis=1)
+
+
+def write(picture: Picture, folder: Path, name: str, exact: bool = False) -> str:
+    """Write FOLDER/pictures/NAME.webp, at most WIDEST wide unless exact; its path within the folder."""
+    if not exact and picture.shape[1] > WIDEST:
+        height = round(picture.shape[0] * WIDEST / picture.shape[1])
+        picture = cv2.resize(picture, (WIDEST, height), interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
+    place = folder / "pictures" / f"{name}.webp"
+    place.parent.mkdir(parents=True, exist_ok=True)
+    done, data = cv2.imencode(".webp", np.ascontiguousarray(picture[..., ::-1]), LOSSLESS if exact else WEBP)
+    assert done
+    place.write_bytes(data.tobytes())
+    return str(place.relative_to(folder))

@@ -1,0 +1,136 @@
+"""A capture made ready: its calibrated photographs, its proxy, the words that `eigenfield encode` needs for them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import measure
+import numpy as np
+from evidence.captures import Capture
+from numpy.typing import NDArray
+
+import eigenfield as ef
+from eigenfield.capture import LightField
+from eigenfield.demo import draw_demo_capture
+from eigenfield.evaluation import Circle, read_circles
+from eigenfield.mesh import Mesh
+from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
+from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.scene import Scene
+from eigenfield.viewplane import find_grid, fit_view_plane
+
+WHOLE = 0.999  # of a pixel's samples on the surface, as `evaluate` counts a covered pixel
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """capture: what was asked for. work: folder of its scenes. where: words of `encode` and `evaluate` that name
+    photographs and calibration. mesh_file: the proxy. hold_out: the rule. quick: fewer rates and counts."""
+
+    capture: Capture
+    work: Path
+    where: tuple[str, ...]
+    light_field: LightField
+    mesh_file: Path
+    hold_out: str
+    quick: bool = False
+
+    @property
+    def mesh(self) -> Mesh:
+        return read_mesh(self.mesh_file)
+
+    def circles(self) -> Mapping[str, Circle] | None:
+        """Circles to leave out, by camera, where the capture has some."""
+        file = self.capture.circles
+        return None if file is None else read_circles(file, self.light_field.names)
+
+
+def estimate(capture: Capture, work: Path) -> dict[str, Any]:
+    """Make what is missing, once for all steps: the demo's capture, cameras, proxy, an atlas on a proxy that has none;
+    says how, and what it took."""
+    work.mkdir(parents=True, exist_ok=True)
+    if capture.name == "demo" and not (capture.folder / "proxy.ply").exists():
+        draw_demo_capture(capture.folder)
+    figures: dict[str, Any] = {"reconstructed": capture.proxy is None}
+    if capture.proxy is not None:
+        where = _named(capture)
+        light_field = ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+        write_mesh(prepare_proxy(capture.proxy, light_field.cameras), work / "proxy.glb", overwrite=True)
+    else:
+        words = ["proxy", *_named(capture), "-o", str(work / "proxy.glb"), "--work", str(work / "stages")]
+        made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"])
+        figures |= {
+            "seconds": made["seconds"], "peak_mb": made["peak_anonymous_mb"],
+            "command": f"eigenfield {' '.join(words)}",
+        }  # fmt: skip
+    return figures
+
+
+def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
+    """What `estimate` left, opened."""
+    where = _named(capture)
+    cameras = work / "proxy.cameras" / "transforms.json"
+    if capture.calibration is None and cameras.exists():
+        where = [str(capture.folder), "--calibration", str(cameras)]
+    light_field = ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+    rule = capture.hold_out
+    if rule is None:
+        grid = find_grid(places(light_field))
+        rule = "odd" if grid is not None and min(grid.rows, grid.columns) > 2 else "every:2"
+    return Prepared(capture, work, tuple(where), light_field, work / "proxy.glb", rule, quick)
+
+
+def _named(capture: Capture) -> list[str]:
+    calibration = [] if capture.calibration is None else ["--calibration", str(capture.calibration)]
+    return [str(capture.folder), *calibration]
+
+
+def places(light_field: LightField) -> NDArray[np.float64]:
+    """(Nc, 2) view-plane coordinates."""
+    return fit_view_plane(light_field.cameras).coordinates([camera.centre for camera in light_field.cameras])
+
+
+def spread(count: int, some: int) -> list[int]:
+    """`some` of the numbers below `count`, evenly spread; all of them where there are no more."""
+    return list(range(count)) if count <= some else np.rint(np.linspace(0, count - 1, some)).astype(int).tolist()
+
+
+def spread_cameras(light_field: LightField, some: int) -> list[int]:
+    """About `some` cameras, spread over a grid's rows and columns alike, or over the order of the names."""
+    grid = find_grid(places(light_field))
+    if grid is None or grid.rows * grid.columns <= some:
+        return spread(len(light_field), some)
+    aspect = grid.columns / grid.rows
+    rows = spread(grid.rows, max(2, round(float(np.sqrt(some / aspect)))))
+    columns = spread(grid.columns, max(2, round(float(np.sqrt(some * aspect)))))
+    return sorted(int(index) for index in grid.index[np.ix_(rows, columns)].reshape(-1) if index >= 0)
+
+
+def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:
+    """(H, W, 3) uint8: a photograph as the measures and the peers see it, undistorted where it has a lens."""
+    return np.rint(light_field.photograph(index).pixels.clip(0, 1) * 255).astype(np.uint8)
+
+
+def drawn(renderer: Renderer, scene: Scene, index: int) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """What the scene draws from its camera `index`, 8-bit, and the covered pixels."""
+    picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter="bicubic")
+    return np.rint(picture.image.clip(0, 1) * 255).astype(np.uint8), picture.coverage > WHOLE
+
+
+def first_textures(scene: Scene, count: int) -> Scene:
+    """The scene with its first `count` eigen textures alone, as if it had been encoded so."""
+    planes = tuple(
+        replace(plane, bases=tuple(basis.truncated(count) for basis in plane.bases)) for plane in scene.planes
+    )
+    return replace(scene, planes=planes, settings={**scene.settings, "textures": count})
+
+
+def as_json(figures: Any) -> Any:
+    """What JSON can hold: NumPy's numbers become Python's, floats keep six decimals."""
+    return json.loads(
+        json.dumps(figures, default=lambda value: value.item()), parse_float=lambda text: round(float(text), 6)
+    )

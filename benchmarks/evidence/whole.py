@@ -1,0 +1,46 @@
+"""The whole way from photographs to figures: all cameras encoded, then some held out (docs/measures.md)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import measure
+from evidence.prepared import Prepared
+
+import eigenfield as ef
+from eigenfield.format import parts
+
+
+def whole(prepared: Prepared) -> dict[str, Any]:
+    """`eigenfield encode` with its defaults, as a process of its own, and what it made; then the same with cameras held
+    out. Cameras, mesh and its atlas are there before: what they took is in the step before this one."""
+    scene, everything = encoded(prepared, "all.glb", [])
+    held, some = encoded(prepared, "held.glb", ["--hold-out", prepared.hold_out])
+    settings = scene.settings
+    return {
+        "encode": everything["encode"], "bytes": everything["bytes"], "ratio": everything["ratio"],
+        "textures": scene.textures, "density": settings["density"], "atlas": settings["atlas"],
+        "encoded": everything["image"]["encoded"], "uv": everything["uv"],
+        "held_out": some["image"]["held_out"], "hold_out_rule": prepared.hold_out,
+        "held_scene": {
+            "bytes": some["bytes"]["total"], "textures": held.textures, "encode": some["encode"],
+            "encoded": some["image"]["encoded"], "held_out": some["image"]["held_out"],
+        },
+    }  # fmt: skip
+
+
+def encoded(prepared: Prepared, name: str, options: list[str]) -> tuple[ef.Scene, dict[str, Any]]:
+    """Encode into the work folder and evaluate; the figures, with seconds, memory and the command of `encode`."""
+    output = prepared.work / name
+    words = ["encode", *prepared.where, "--proxy", str(prepared.mesh_file), "-o", str(output), *options]
+    made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"])
+    scene = ef.load(output)
+    figures = ef.evaluate(
+        scene, prepared.light_field, path=output, circles=prepared.circles(), png_maps="sample", flip=True
+    )
+    figures["bytes"] = dict(parts(Path(output)))
+    figures["encode"] = {
+        "seconds": made["seconds"], "peak_mb": made["peak_anonymous_mb"], "command": f"eigenfield {' '.join(words)}",
+    }  # fmt: skip
+    return scene, figures

@@ -1,0 +1,129 @@
+"""The whole evaluation: every capture through every step, one page for reviewers, one file of figures.
+
+    [EIGENFIELD_DATA=captures] python benchmarks/report.py [CAPTURE...] [--quick] [--out report]
+
+CAPTURE: a name (demo, tarot, tarot-5x4, amethyst, ...; those of the shared captures that lie in EIGENFIELD_DATA) or a
+folder of photographs of your own; without any, all shared captures and the demo. Writes OUT/index.html (self-contained)
+and OUT/results.json. What is finished is kept in OUT/steps: after Ctrl-C the same command goes on. A figure is measured
+again when the code has changed, unless --keep. `--quick` takes three captures, fewer rates and no studies, within ten
+minutes on two cores; everything takes up to three hours. `pip install 'eigenfield[report]'` first: what a peer lacks
+here is left out, and the page says so.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import shlex
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import measure
+from evidence import captures, page
+from evidence.captures import Capture
+from evidence.paper import QUOTED
+from evidence.runner import Run, evaluate_capture
+
+
+def chosen(names: list[str], out: Path, quick: bool) -> tuple[list[Capture], list[str]]:
+    """The captures of a run, and in words what it leaves out."""
+    data = os.environ.get("EIGENFIELD_DATA")
+    known = {"demo": captures.demo(out)} | ({} if not data else captures.shared(Path(data)))
+    if names:
+        return [_named(name, known) for name in names], []
+    if not quick:
+        words = [] if data else ["the shared captures: EIGENFIELD_DATA names no folder that holds them"]
+        return list(known.values()), words
+    some = [known[name] for name in captures.QUICK if name in known] or [known["demo"]]
+    names_left = [name for name in known if name not in {one.name for one in some}]
+    words = [
+        "a quick run: two rates instead of four, four numbers of textures, no alignment, no x265, libaom, AVIF or JPEG"
+        " XL, no parameter studies"
+    ]
+    return some, words + ([f"captures: {', '.join(names_left)}"] if names_left else [])
+
+
+def _named(name: str, known: dict[str, Capture]) -> Capture:
+    if name in known:
+        return known[name]
+    if Path(name).is_dir():
+        return captures.of_folder(Path(name))
+    raise SystemExit(
+        f"{name} is neither a folder nor one of {', '.join(known)} (EIGENFIELD_DATA names the shared ones' folder)"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("captures", nargs="*", metavar="CAPTURE")
+    parser.add_argument("--quick", action="store_true", help="fewer captures and rates, within ten minutes")
+    parser.add_argument("--out", type=Path, default=Path("report"), metavar="DIR")
+    parser.add_argument("--keep", action="store_true", help="keep figures of another state of the code, marked as such")
+    parser.add_argument(
+        "--store", action="store_true", help="append the main figures to benchmarks/results/report.json"
+    )
+    arguments = parser.parse_args()
+    out = arguments.out.resolve()
+    out.mkdir(parents=True, exist_ok=True)
+    some, left_out = chosen(arguments.captures, out, arguments.quick)
+    started, begun = time.perf_counter(), datetime.datetime.now(datetime.UTC)
+    run = Run(out, arguments.quick, arguments.keep)
+    results: dict[str, Any] = {
+        "schema": "eigenfield.report/1", "command": shlex.join(["python", *sys.argv]), "quick": arguments.quick,
+        "started": begun.isoformat(timespec="seconds"), "commit": measure.commit(), "machine": measure.machine(),
+        "left_out": left_out, "paper": QUOTED, "captures": {},
+    }  # fmt: skip
+    for capture in some:
+        results["captures"][capture.name] = evaluate_capture(capture, run, lambda line: print(line, flush=True))
+        results["seconds"] = round(time.perf_counter() - started, 1)
+        _write(out, results)  # a page after each capture: a long run can be read while it goes on
+    if arguments.store:
+        print(f"stored as {measure.store('report', summary(results))}")
+    print(f"{out / 'index.html'}: {results['seconds']:.0f} s")
+    failed = [name for name, record in results["captures"].items() for step in _records(record) if "error" in step]
+    if failed:
+        raise SystemExit(f"some steps failed: {', '.join(dict.fromkeys(failed))}; the page says which")
+
+
+def _records(record: dict[str, Any]) -> list[dict[str, Any]]:
+    return [record["geometry"], *record["steps"].values()]
+
+
+def _write(out: Path, results: dict[str, Any]) -> None:
+    part = out / "results.json.part"
+    part.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
+    part.replace(out / "results.json")
+    page.write(results, out)
+
+
+def summary(results: dict[str, Any]) -> dict[str, Any]:
+    """The figures worth keeping from run to run: small enough for a history."""
+    kept = {}
+    for name, record in results["captures"].items():
+        steps = {key: step["figures"] for key, step in record["steps"].items() if "figures" in step}
+        whole, rates, losses, between = (steps.get(key) for key in ("scene", "rates", "losses", "between"))
+        kept[name] = {
+            "views": record.get("views"),
+            **({} if whole is None else {
+                "bytes": whole["bytes"]["total"], "encode_seconds": whole["encode"]["seconds"],
+                "encoded": _short(whole["encoded"]), "held_out": _short(whole["held_out"]), "ratio": whole["ratio"],
+                "textures": whole["textures"], "uv_ssim": None if whole["uv"] is None else whole["uv"]["ssim"],
+            }),
+            **({} if rates is None else {"bd": rates["bd"]}),
+            **({} if losses is None else {"losses": losses["rows"], "displacement": losses["displacement"]}),
+            **({} if between is None else {"between": {m["key"]: m["psnr"] for m in between["methods"]}}),
+        }  # fmt: skip
+    return {"quick": results["quick"], "seconds": results["seconds"], "captures": kept}
+
+
+def _short(image: dict[str, Any] | None) -> dict[str, Any] | None:
+    keys = ("cameras", "psnr", "ssim", "flip", "psnr_luma", "psnr_full", "coverage")
+    return None if image is None else {key: image[key] for key in keys if key in image}
+
+
+if __name__ == "__main__":
+    main()
