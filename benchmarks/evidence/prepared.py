@@ -99,17 +99,6 @@ def spread(count: int, some: int) -> list[int]:
     return list(range(count)) if count <= some else np.rint(np.linspace(0, count - 1, some)).astype(int).tolist()
 
 
-def spread_cameras(light_field: LightField, some: int) -> list[int]:
-    """About `some` cameras, spread over a grid's rows and columns alike, or over the order of the names."""
-    grid = find_grid(places(light_field))
-    if grid is None or grid.rows * grid.columns <= some:
-        return spread(len(light_field), some)
-    aspect = grid.columns / grid.rows
-    rows = spread(grid.rows, max(2, round(float(np.sqrt(some / aspect)))))
-    columns = spread(grid.columns, max(2, round(float(np.sqrt(some * aspect)))))
-    return sorted(int(index) for index in grid.index[np.ix_(rows, columns)].reshape(-1) if index >= 0)
-
-
 def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:
     """(H, W, 3) uint8: a photograph as the measures and the peers see it, undistorted where it has a lens."""
     return np.rint(light_field.photograph(index).pixels.clip(0, 1) * 255).astype(np.uint8)

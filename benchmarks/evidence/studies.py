@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 from evidence.between import weights_study
-from evidence.prepared import Prepared, codes, places, spread_cameras
+from evidence.prepared import Prepared, codes, places
+from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
 import eigenfield as ef
@@ -59,7 +60,7 @@ def _row(scene: Scene, light_field: LightField, size: int | None, filter: str = 
     held = set(np.flatnonzero(scene.held_out).tolist())
     row: list[Any] = [None if size is None else round(size / 1e3)]
     for indices in (scene.encoded.tolist(), sorted(held)):
-        chosen = [indices[i] for i in spread_cameras(light_field.subset(indices), SAMPLE)] if indices else []
+        chosen = spread_over_array(scene, indices, SAMPLE) if indices else []
 
         def of_camera(index: int) -> tuple[float, float]:
             image = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter=filter).image

@@ -157,7 +157,7 @@ def _ladders(source: Source) -> Html:
         "Each loss is switched off when those to its left are gone already: the gain in dB, and the share of the "
         "file's squared error that goes with it; the largest share is shaded. What stays: the PSNR and share that are "
         "left. Shifts: the gain when each picture, before quantisation, is moved towards its photograph by optical "
-        "flow, and the share of its own error: a lower bound for wrong geometry and cameras."
+        "flow, and the share of its own error; only what goes beyond the control below speaks of shifted surfaces."
     )
     return table(columns, rows, caption="All captures", note=note)
 
