@@ -105,24 +105,55 @@ def summary(results: dict[str, Any]) -> dict[str, Any]:
     kept = {}
     for name, record in results["captures"].items():
         steps = {key: step["figures"] for key, step in record["steps"].items() if "figures" in step}
-        whole, rates, losses, between = (steps.get(key) for key in ("scene", "rates", "losses", "between"))
-        kept[name] = {
-            "views": record.get("views"),
-            **({} if whole is None else {
-                "bytes": whole["bytes"]["total"], "encode_seconds": whole["encode"]["seconds"],
-                "encoded": _short(whole["encoded"]), "held_out": _short(whole["held_out"]), "ratio": whole["ratio"],
-                "textures": whole["textures"], "uv_ssim": None if whole["uv"] is None else whole["uv"]["ssim"],
-            }),
-            **({} if rates is None else {"bd": rates["bd"]}),
-            **({} if losses is None else {"losses": losses["rows"], "displacement": losses["displacement"]}),
-            **({} if between is None else {"between": {m["key"]: m["psnr"] for m in between["methods"]}}),
-        }  # fmt: skip
-    return {"quick": results["quick"], "seconds": results["seconds"], "captures": kept}
+        kept[name] = {"title": record["title"], "views": record.get("views"), "hold_out": record.get("hold_out")}
+        for key, of_step in KEPT.items():
+            if key in steps:
+                kept[name] |= of_step(steps[key])
+    commits = sorted({step["commit"] for record in results["captures"].values() for step in _records(record)})
+    return {"quick": results["quick"], "seconds": results["seconds"], "commits": commits, "captures": kept}
+
+
+def _whole(figures: dict[str, Any]) -> dict[str, Any]:
+    return {
+        "bytes": figures["bytes"], "encode_seconds": figures["encode"]["seconds"], "ratio": figures["ratio"],
+        "textures": figures["textures"], "uv_ssim": None if figures["uv"] is None else figures["uv"]["ssim"],
+        "encoded": _short(figures["encoded"]), "held_out": _short(figures["held_out"]),
+        "encoded_beside_held_out": _short(figures["held_scene"]["encoded"]),
+    }  # fmt: skip
+
+
+def _paper(figures: dict[str, Any]) -> dict[str, Any]:
+    last = {way: [point for point in figures["curve"] if way in point] for way in ("plain", "aligned")}
+    at = {
+        way: {str(point["textures"]): round(point[way]["uv_ssim"], 4) for point in points}
+        for way, points in last.items()
+    }
+    return {"uv_curve": at, "table": figures["table"], "fps": figures["fps"]}
+
+
+def _rates(figures: dict[str, Any]) -> dict[str, Any]:
+    keys = ("bytes", "psnr", "psnr_luma", "ssim", "encode_seconds")
+    curves = {
+        curve["name"]: [{key: point[key] for key in keys} for point in curve["points"]] for curve in figures["curves"]
+    }
+    return {"bd": figures["bd"], "curves": curves, "ceiling": figures["ceiling"], "coded_views": figures["views"]}
+
+
+def _losses(figures: dict[str, Any]) -> dict[str, Any]:
+    return {"losses": figures["rows"], "displacement": figures["displacement"], "truth": figures.get("truth")}
+
+
+def _between(figures: dict[str, Any]) -> dict[str, Any]:
+    keys = ("psnr", "psnr_luma", "ssim", "flip", "seconds")
+    return {"between": {m["key"]: {key: m.get(key) for key in keys} for m in figures["methods"]}}
 
 
 def _short(image: dict[str, Any] | None) -> dict[str, Any] | None:
     keys = ("cameras", "psnr", "ssim", "flip", "psnr_luma", "psnr_full", "coverage")
     return None if image is None else {key: image[key] for key in keys if key in image}
+
+
+KEPT = {"scene": _whole, "paper": _paper, "rates": _rates, "losses": _losses, "between": _between}
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""The README's figures, made from benchmarks/results; `--check` fails where the README says otherwise.
+"""The figures of the README and of docs/evaluation.md, made from benchmarks/results; `--check` fails where they differ.
 
 python benchmarks/tables.py [--check]
 """
@@ -9,6 +9,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import evaluation_tables
+from evaluation_tables import table
 from measure import latest
 
 README = Path(__file__).parents[1] / "README.md"
@@ -17,12 +19,8 @@ SCENES = (
     "tarot-all", "tarot", "tarot-blind", "tarot-5x4", "amethyst", "jellybeans", "shop", "boxes", "antinous", "fern",
     "cube", "fountain", "fox", "temple",
 )  # fmt: skip
+EVALUATION = README.parent / "docs" / "evaluation.md"
 BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
-
-
-def table(head: list[str], rows: list[list[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
 def origin(figures: dict[str, Any], name: str) -> str:
@@ -100,11 +98,6 @@ def reconstruction() -> str:
         ])  # fmt: skip
     head = ["`eigenfield encode`", "MB", "coverage", "encoded dB", "SSIM", "held out dB", "SSIM", "seconds", "peak MB"]
     uncoded = scenes["tarot"]["uncoded"]["held_out"]
-    peers = scenes["tarot-5x4"]["peers"]
-    named = {
-        "nearest_photograph": "the nearest camera's photograph", "blended_photographs": "its neighbours' blended",
-        "nearest_weights_on_the_mesh": "the nearest camera's weights on the mesh", "eigenfield": "the blended weights",
-    }  # fmt: skip
     return (
         "### From bare photographs\n\nCameras and geometry from photographs alone, beside the truth:\n\n"
         + table(["", "", "seconds"], truth)
@@ -113,11 +106,7 @@ def reconstruction() -> str:
         " others have names at most. Figures as above:\n\n"
         + table(head, rows)
         + f"\n`--blind`: held-out photographs only find their own camera. Before coding, Tarot's held-out views have"
-        f" {decibels(uncoded)} dB. In place of a held-out photograph of `tarot_5x4_1024`, over the whole frame, "
-        + ", ".join(f"{words} {peers[key]['psnr']:.1f} dB" for key, words in named.items())
-        + ".\n\n"
-        + origin(scenes["tarot"], "proxy-scene-tarot")
-        + "\n"
+        f" {decibels(uncoded)} dB.\n\n" + origin(scenes["tarot"], "proxy-scene-tarot") + "\n"
     )
 
 
@@ -217,20 +206,23 @@ def driver(name: str) -> str:
     return "SwiftShader" if "SwiftShader" in name else name
 
 
-def section() -> str:
-    return f"{BEGIN}\n## Figures\n\n{quality()}{reconstruction()}{encoding()}{drawing()}{END}"
+def between_marks(text: str, made: str) -> str:
+    """`text` with what is between the marks replaced."""
+    start, stop = text.index(BEGIN), text.index(END)
+    return f"{text[:start]}{BEGIN}\n{made}{text[stop:]}"
 
 
 def main() -> None:
-    text = README.read_text(encoding="utf-8")
-    start = text.index(BEGIN)
-    stop = text.index(END) + len(END) if END in text else start + len(BEGIN)
-    made = text[:start] + section() + text[stop:]
-    if "--check" in sys.argv:
-        if made != text:
-            raise SystemExit("README.md and benchmarks/results differ: run python benchmarks/tables.py")
-        return
-    README.write_text(made, encoding="utf-8")
+    made = {
+        README: f"## Figures\n\n{quality()}{reconstruction()}{evaluation_tables.brief()}{encoding()}{drawing()}",
+        EVALUATION: evaluation_tables.page(),
+    }
+    for path, figures in made.items():
+        text = path.read_text(encoding="utf-8")
+        new = between_marks(text, figures)
+        if "--check" in sys.argv and new != text:
+            raise SystemExit(f"{path.name} and benchmarks/results differ: run python benchmarks/tables.py")
+        path.write_text(new, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -31,13 +31,14 @@ def run(capsys, monkeypatch):
     def call(*arguments):
         monkeypatch.setattr(sys, "argv", ["eigenfield", *map(str, arguments)])
         code = 0
-        before = signal.getsignal(signal.SIGTERM)
+        before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
         try:
             main()
         except SystemExit as stop:
             code = stop.code or 0
         finally:
-            signal.signal(signal.SIGTERM, before)
+            for number, handler in before.items():
+                signal.signal(number, handler)
         captured = capsys.readouterr()
         return code, captured.out, captured.err
 
@@ -262,3 +263,25 @@ def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
             from eigenfield import load
 
             load(output)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
+def test_a_signal_that_comes_out_as_another_error_still_ends_with_130(tmp_path):
+    """Within the import of a C module, a KeyboardInterrupt comes out as that module's ImportError."""
+    program = """
+import os, signal, sys, time
+import eigenfield.cli as cli
+
+def interrupted_import(*arguments, **options):
+    try:
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+    except KeyboardInterrupt:
+        raise ImportError("numpy.core.multiarray failed to import")
+
+cli.group.invoke = interrupted_import
+sys.argv = ["eigenfield", "info", "x.glb"]
+cli.main()
+"""
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 130 and "interrupted" in done.stderr, done.stderr

@@ -8,7 +8,7 @@ import logging
 import os
 import signal
 import sys
-from types import FrameType
+from typing import NoReturn
 
 import click
 
@@ -63,8 +63,18 @@ def group() -> None:
     """Light fields as eigen textures: photographs from a camera array in, one small .glb out."""
 
 
-def _terminated(number: int, frame: FrameType | None) -> None:
+_signals: list[int] = []  # those that asked this process to stop
+
+
+def _stop(number: int, frame: object) -> NoReturn:
+    _signals.append(number)
     raise KeyboardInterrupt
+
+
+def _interrupted() -> NoReturn:
+    click.echo("eigenfield: interrupted", err=True)
+    sys.stdout.flush()
+    os._exit(130)  # everything is cleaned up; threads in the middle of a kernel or a codec are not waited for
 
 
 def main() -> None:
@@ -72,7 +82,9 @@ def main() -> None:
     traceback and exits with 1."""
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
-        signal.signal(signal.SIGTERM, _terminated)  # clean up as for Ctrl-C
+        signal.signal(signal.SIGTERM, _stop)  # clean up as for Ctrl-C
+        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:  # in the background it may be ignored
+            signal.signal(signal.SIGINT, _stop)
     context: dict[str, object] = {}
     try:
         with group.make_context("eigenfield", sys.argv[1:]) as root:
@@ -89,9 +101,11 @@ def main() -> None:
         click.echo(f"eigenfield: {error}", err=True)
         sys.exit(2)
     except (KeyboardInterrupt, click.Abort):
-        click.echo("eigenfield: interrupted", err=True)
-        sys.stdout.flush()
-        os._exit(130)  # everything is cleaned up; threads in the middle of a kernel or a codec are not waited for
+        _interrupted()
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(141)
+    except Exception:
+        if not _signals:
+            raise
+        _interrupted()  # raised within a C module's import, a KeyboardInterrupt comes out as that module's ImportError
