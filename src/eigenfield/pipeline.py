@@ -225,7 +225,7 @@ def _decompose(
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
     gram = gram_matrix(maps, mean, progress)
-    warn_of_disagreement(maps, mean, gram, names)
+    warn_of_disagreement(maps, mean, gram, names, aligned=options.align is not None)
     decomposition = spectrum(gram)
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:

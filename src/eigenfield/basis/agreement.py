@@ -21,12 +21,13 @@ FEWEST_SEEN = 50  # texels of a camera from which it is judged
 
 
 def warn_of_disagreement(
-    maps: TextureMaps, mean: Mean, gram: NDArray[np.float64], names: Sequence[str]
+    maps: TextureMaps, mean: Mean, gram: NDArray[np.float64], names: Sequence[str], aligned: bool = False
 ) -> NDArray[np.float64]:
     """Log a warning for each camera whose photograph is far from the mean texture, and one if all of them are.
 
     gram: (Nc, Nc) of `basis.gram_matrix`; its diagonal holds the squared deviations from the mean. Returns (Nc,) the
-    root mean square deviations in grey levels, NaN for a camera that sees next to nothing.
+    root mean square deviations in grey levels, NaN for a camera that sees next to nothing. aligned: the maps were
+    aligned, which may have failed for one.
     """
     seen = np.array([int(np.count_nonzero(row)) for row in maps.seen])
     squares = np.diag(gram)
@@ -38,11 +39,14 @@ def warn_of_disagreement(
     typical = float(np.nanmedian(error))
     spread = NORMAL * float(np.nanmedian(np.abs(error - typical)))
     beyond = max(STRANGE[0] * spread, STRANGE[1] * typical, STRANGE[2])
+    why = (
+        "an alignment that failed, another scene, or a wrong camera" if aligned else "another scene, or a wrong camera"
+    )
     for index in np.flatnonzero(error > typical + beyond).tolist():
         log.warning(
             "%s does not show what the others do: it differs by %.0f grey levels from the mean texture (they by %.0f); "
-            "another scene, or a wrong camera? take it out of the capture, or leave it out with --hold-out",
-            names[index], error[index], typical,
+            "%s? take it out of the capture, or leave it out with --hold-out",
+            names[index], error[index], typical, why,
         )  # fmt: skip
     shared = _shared(mean, float(squares.sum()))
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
