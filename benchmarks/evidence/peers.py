@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import datetime
+import hashlib
+import json
 import tempfile
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from evidence import codecs, colour, ours, pictures, rates, stills
-from evidence.prepared import Prepared, codes, drawn, places
+from evidence.codecs import VideoCodec
+from evidence.prepared import Prepared, as_json, codes, drawn, places
+from evidence.stills import StillCodec
 from numpy.typing import NDArray
 
 import eigenfield as ef
@@ -18,63 +24,108 @@ from eigenfield.parallel import parallel_map
 from eigenfield.rendering import Renderer
 from eigenfield.viewplane import find_grid
 
-QUICK_VIDEO = ("svt-av1-2", "svt-av1-6")
+QUICK = ("svt-av1-2", "svt-av1-6")
+SHOWN = "svt-av1-2"  # whose middle view is kept, for the crops
 LARGE = 150  # views: of a capture with more a quarter is enough to compare codecs, unless it is studied
 KEYS = ("psnr", "psnr_luma", "ssim")
+CODE = ("codecs.py", "stills.py", "colour.py", "rates.py")  # what the peers' figures depend on, photographs apart
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """The photographs that are coded, in coding order. covered: their pixels that the proxy covers."""
+
+    light_field: LightField
+    order: list[int]
+    names: list[str]
+    photographs: list[NDArray[np.uint8]]
+    covered: list[NDArray[np.bool_]]
+
+    @property
+    def middle(self) -> int:
+        return (len(self.order) - 1) // 2
 
 
 def peers(prepared: Prepared, folder: Path) -> dict[str, Any]:
     """All curves, Bjøntegaard's rates of ours against each peer, the ceiling of 4:2:0 without a codec, and crops."""
     light_field = _part(prepared)
     order = codecs.order(light_field.cameras)
-    names = [light_field.names[index] for index in order]
-    photographs = parallel_map(lambda index: codes(light_field, index), order)
-    covered = ours.surfaces(prepared, light_field, order)
-    curves, left_out = [ours.ours(prepared, light_field, order, photographs, covered)], []
-    crops: list[dict[str, Any]] = []
-    with tempfile.TemporaryDirectory() as place:
-        for codec in codecs.VIDEO:
-            why = "left out of the quick run" if _skipped(codec.name, prepared) else codecs.missing(codec)
-            if why is not None:
-                left_out.append(f"{codec.label}: {why}")
-                continue
-            points = [
-                codecs.measure_video(codec, crf, photographs, names, covered, Path(place))
-                for crf in _some(codec.rates, prepared)
-            ]
-            curves.append(
-                {"name": codec.label, "key": codec.name, "kind": "video", "chroma": codec.chroma, "points": points}
-            )
-            if codec.name == "svt-av1-2":
-                crops = _crops(
-                    prepared, names, order, photographs, curves[0]["points"], (codec, points), Path(place), folder
-                )
-        for still in stills.STILLS:
-            why = "left out of the quick run" if _skipped(still.name, prepared) else stills.missing(still)
-            if why is not None:
-                left_out.append(f"{still.label}: {why}")
-                continue
-            points = [
-                stills.measure_stills(still, rate, photographs, names, covered, Path(place))
-                for rate in _some(still.rates, prepared)
-            ]
-            curves.append({"name": still.label, "key": still.name, "kind": "still", "chroma": "444", "points": points})
-    mine = curves[0]["points"]
+    views = Views(
+        light_field, order, [light_field.names[index] for index in order],
+        parallel_map(lambda index: codes(light_field, index), order), ours.surfaces(prepared, light_field, order),
+    )  # fmt: skip
+    mine = ours.ours(prepared, light_field, order, views.photographs, views.covered)
+    others, left_out = [], []
+    key = _key(views, prepared.quick)
+    for codec in (*codecs.VIDEO, *stills.STILLS):
+        missing = codecs.missing(codec) if isinstance(codec, VideoCodec) else stills.missing(codec)
+        why = "left out of the quick run" if prepared.quick and codec.name not in QUICK else missing
+        if why is None:
+            others.append(_curve(codec, views, prepared.work / "peers", key, prepared.quick))
+        else:
+            left_out.append(f"{codec.label}: {why}")
     return {
         "order": "serpentine",
         "views": len(order),
         "of": len(prepared.light_field),
-        "coverage": float(np.mean([one.mean() for one in covered])),
-        "ceiling": _ceiling(photographs, names, covered),
-        "curves": curves,
+        "coverage": float(np.mean([one.mean() for one in views.covered])),
+        "ceiling": _ceiling(views.photographs, views.names, views.covered),
+        "curves": [mine, *others],
         "bd": {
-            curve["name"]: {key: rates.bd_rate(curve["points"], mine, key) for key in KEYS}
-            | {f"{key}_gain": rates.bd_quality(curve["points"], mine, key) for key in ("psnr", "psnr_luma")}
-            for curve in curves[1:]
+            curve["name"]: {key: rates.bd_rate(curve["points"], mine["points"], key) for key in KEYS}
+            | {f"{key}_gain": rates.bd_quality(curve["points"], mine["points"], key) for key in ("psnr", "psnr_luma")}
+            for curve in others
         },
         "left_out": left_out,
-        "crops": crops,
+        "crops": _crops(prepared, views, mine["points"], others, folder),
+    }
+
+
+def _key(views: Views, quick: bool) -> str:
+    """What a peer's curve depends on: photographs, covered pixels and the code that measures it, not our own."""
+    digest = hashlib.sha256(str(quick).encode())
+    for name in CODE:
+        digest.update((Path(__file__).parent / name).read_bytes())
+    for photograph, covered in zip(views.photographs, views.covered, strict=True):
+        digest.update(photograph.tobytes() + np.packbits(covered).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def _curve(codec: VideoCodec | StillCodec, views: Views, kept: Path, key: str, quick: bool) -> dict[str, Any]:
+    """A peer's curve, measured once for the same photographs: our own file may change much oftener."""
+    path = kept / f"{codec.name}-{key}.json"
+    if path.exists():
+        try:
+            curve: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+            return curve
+        except ValueError:  # cut off
+            pass
+    kept.mkdir(parents=True, exist_ok=True)
+    points = []
+    with tempfile.TemporaryDirectory() as folder:
+        for rate in codec.rates[1::2] if quick else codec.rates:
+            points.append(_point(codec, rate, views, Path(folder)))
+            if codec.name == SHOWN and isinstance(codec, VideoCodec):
+                film = Path(folder) / f"{codec.name}-{rate}.{codec.container}"
+                size = views.photographs[views.middle].shape
+                picture = codecs.access(film, codec, views.middle, (size[0], size[1]))[1]
+                points[-1]["middle"] = pictures.write_exact(picture, kept / f"{codec.name}-{rate}-{key}.webp").name
+    video = isinstance(codec, VideoCodec)
+    curve = {
+        "name": codec.label, "key": codec.name, "kind": "video" if video else "still",
+        "chroma": codec.chroma if isinstance(codec, VideoCodec) else "444", "points": points,
+        "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }  # fmt: skip
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(as_json(curve)), encoding="utf-8")
+    part.replace(path)
+    return curve
+
+
+def _point(codec: VideoCodec | StillCodec, rate: float, views: Views, folder: Path) -> dict[str, Any]:
+    if isinstance(codec, VideoCodec):
+        return codecs.measure_video(codec, int(rate), views.photographs, views.names, views.covered, folder)
+    return stills.measure_stills(codec, rate, views.photographs, views.names, views.covered, folder)
 
 
 def _part(prepared: Prepared) -> LightField:
@@ -84,14 +135,6 @@ def _part(prepared: Prepared) -> LightField:
     if len(light_field) <= LARGE or prepared.capture.studied or grid is None:
         return light_field
     return light_field.subset(sorted(grid.index[::2, ::2].reshape(-1).tolist()))
-
-
-def _skipped(name: str, prepared: Prepared) -> bool:
-    return prepared.quick and name not in QUICK_VIDEO
-
-
-def _some(values: Sequence[Any], prepared: Prepared) -> Sequence[Any]:
-    return values[1::2] if prepared.quick else values
 
 
 def _ceiling(
@@ -107,34 +150,25 @@ def _ceiling(
 
 
 def _crops(
-    prepared: Prepared,
-    names: Sequence[str],
-    order: Sequence[int],
-    photographs: Sequence[NDArray[np.uint8]],
-    mine: Sequence[dict[str, Any]],
-    video: tuple[codecs.VideoCodec, Sequence[dict[str, Any]]],
-    place: Path,
-    folder: Path,
+    prepared: Prepared, views: Views, mine: list[dict[str, Any]], others: list[dict[str, Any]], folder: Path
 ) -> list[dict[str, Any]]:
     """The middle view's two hardest crops, as photograph, as ours and as the video nearest to ours in bytes."""
-    codec, points = video
-    pairs = [(abs(np.log(a["bytes"] / b["bytes"])), a, b) for a in mine for b in points]
-    _, own, theirs = min(pairs, key=lambda pair: pair[0])
-    middle = len(order) // 2
+    film = next((curve for curve in others if curve["key"] == SHOWN), None)
+    if film is None:
+        return []
+    pairs = [(abs(np.log(own["bytes"] / other["bytes"])), own, other) for own in mine for other in film["points"]]
+    _, own, other = min(pairs, key=lambda pair: pair[0])
+    photograph = views.photographs[views.middle]
     scene = ef.load(prepared.work / own["file"])
-    sizes = [(picture.shape[0], picture.shape[1]) for picture in photographs]
-    film = codecs.access(place / f"{codec.name}-{theirs['parameter']}.{codec.container}", codec, middle, sizes[middle])[
-        1
-    ]
     shown = {
-        "photograph": (photographs[middle], None),
-        f"eigenfield, {own['parameter']}": (drawn(Renderer(scene), scene, order[middle])[0], own),
-        f"{codec.label}, crf {theirs['parameter']}": (film, theirs),
-    }  # fmt: skip
-    corners = pictures.busiest([photographs[middle]] * 2, [picture for picture, point in shown.values() if point])
+        "photograph": (photograph, None),
+        f"eigenfield, {own['parameter']}": (drawn(Renderer(scene), scene, views.order[views.middle])[0], own),
+        f"{film['name']}, crf {other['parameter']}": (pictures.read(prepared.work / "peers" / other["middle"]), other),
+    }
+    corners = pictures.busiest([photograph] * 2, [picture for picture, point in shown.values() if point])
     return [
         {
-            "label": label, "camera": names[middle],
+            "label": label, "camera": views.names[views.middle],
             "bytes": None if point is None else point["bytes"], "psnr": None if point is None else point["psnr"],
             "picture": pictures.write(
                 np.concatenate([pictures.crop(picture, corner) for corner in corners], axis=1), folder,

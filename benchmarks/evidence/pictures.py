@@ -122,12 +122,30 @@ def crop(picture: Picture, corner: tuple[int, int]) -> Picture:
 
 def write(picture: Picture, folder: Path, name: str, exact: bool = False) -> str:
     """Write FOLDER/pictures/NAME.webp, at most WIDEST wide unless exact; its path within the folder."""
-    if not exact and picture.shape[1] > WIDEST:
-        height = round(picture.shape[0] * WIDEST / picture.shape[1])
-        picture = cv2.resize(picture, (WIDEST, height), interpolation=cv2.INTER_AREA)  # type: ignore[assignment]
     place = folder / "pictures" / f"{name}.webp"
+    if exact:
+        return str(write_exact(picture, place).relative_to(folder))
+    if picture.shape[1] > WIDEST:
+        height = round(picture.shape[0] * WIDEST / picture.shape[1])
+        picture = np.asarray(cv2.resize(picture, (WIDEST, height), interpolation=cv2.INTER_AREA), np.uint8)
+    return str(_write(picture, place, WEBP).relative_to(folder))
+
+
+def write_exact(picture: Picture, place: Path) -> Path:
+    """Write every pixel as it is."""
+    return _write(picture, place, LOSSLESS)
+
+
+def read(place: Path) -> Picture:
+    """What `write_exact` wrote."""
+    found = cv2.imdecode(np.frombuffer(place.read_bytes(), np.uint8), cv2.IMREAD_COLOR)
+    assert found is not None, place
+    return np.ascontiguousarray(found[..., ::-1], np.uint8)
+
+
+def _write(picture: Picture, place: Path, how: list[int]) -> Path:
     place.parent.mkdir(parents=True, exist_ok=True)
-    done, data = cv2.imencode(".webp", np.ascontiguousarray(picture[..., ::-1]), LOSSLESS if exact else WEBP)
+    done, data = cv2.imencode(".webp", np.ascontiguousarray(picture[..., ::-1]), how)
     assert done
     place.write_bytes(data.tobytes())
-    return str(place.relative_to(folder))
+    return place
