@@ -47,9 +47,7 @@ Step = Callable[[Prepared, Path], dict[str, Any]]
 
 
 def _losses(prepared: Prepared, folder: Path) -> dict[str, Any]:
-    figures = losses(
-        prepared.work / "all.glb", prepared.light_field, circles=prepared.circles(), alone=prepared.capture.studied
-    )
+    figures = losses(prepared.work / "all.glb", prepared.light_field, alone=prepared.capture.studied)
     if prepared.capture.name == "demo" and not prepared.quick:
         figures["truth"] = true_geometry(prepared.capture.folder, work=prepared.work / "truth")
     return figures
