@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.evaluation import Circle, match_photographs
+from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.format.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
@@ -85,7 +85,6 @@ def losses(
     light_field: LightField,
     *,
     cameras: Sequence[int] | None = None,
-    circles: Mapping[str, Circle] | None = None,
     codec: str = "avif",
     quality: int | None = None,
     alone: bool = True,
@@ -93,14 +92,14 @@ def losses(
     """The ladder of losses under "rows", each loss switched off alone under "alone", shifts under "displacement".
 
     scene_file: as it was saved; how it was encoded is read from it, and it is encoded again in memory, uncoded.
-    cameras: indices of encoded cameras, by default SAMPLE spread over the array. circles: of `read_circles`, pixels to
-    leave out. codec, quality: as the file was saved with, for `alone`.
+    cameras: indices of encoded cameras, by default SAMPLE spread over the array. codec, quality: as the file
+    was saved with, for `alone`.
     """
     scene = ef.load(scene_file)
     capture = as_encoded(scene, light_field)
     chosen = spread_over_array(scene, scene.encoded.tolist(), SAMPLE) if cameras is None else list(cameras)
     session = start_session(scene, capture)
-    views, drawn = _from_file(session, chosen, circles)
+    views, drawn = _from_file(session, chosen)
     uncoded = encode_again(scene, capture)
     rungs = {"file": views.measure(drawn)}
     rungs["codec"] = views.measure(_draw(start_session(rounded_to_codes(uncoded), capture), chosen))
@@ -269,15 +268,12 @@ def _whole(gutter: Spreader, values: NDArray[np.float32]) -> NDArray[np.float32]
     return picture
 
 
-def _from_file(session: Session, chosen: Sequence[int], circles: Mapping[str, Circle] | None) -> tuple[Views, Pictures]:
+def _from_file(session: Session, chosen: Sequence[int]) -> tuple[Views, Pictures]:
     photographs, covered, drawn = {}, {}, {}
     for index in chosen:
         photograph = session.photograph(index)
         image, surface = session.draw(index)
         counted = covered_pixels(surface, photograph.mask)
-        circle = None if circles is None else circles.get(session.scene.names[index])
-        if circle is not None:
-            counted = counted & circle.outside(counted.shape[1], counted.shape[0])
         photographs[index], covered[index] = to_codes(photograph.pixels), counted
         drawn[index] = to_codes(image)
     return Views(photographs, covered), drawn
