@@ -5,7 +5,7 @@
 CAPTURE: a name (demo, tarot, tarot-5x4, amethyst, ...; those of the shared captures that lie in EIGENFIELD_DATA) or a
 folder of photographs of your own; without any, all shared captures and the demo. Writes OUT/index.html (self-contained)
 and OUT/results.json. What is finished is kept in OUT/steps: after Ctrl-C the same command goes on. A figure is measured
-again when the code has changed, unless --keep. `--quick` takes three captures, fewer rates and no studies, within ten
+again when the code has changed, unless --keep. `--quick` takes two captures, fewer rates and no studies, within ten
 minutes on two cores; everything takes up to three hours. `pip install 'eigenfield[report]'` first: what a peer lacks
 here is left out, and the page says so.
 """
