@@ -114,38 +114,35 @@ def summary(results: dict[str, Any]) -> dict[str, Any]:
 
 
 def _whole(figures: dict[str, Any]) -> dict[str, Any]:
+    held = figures["held_scene"]
     return {
-        "bytes": figures["bytes"], "encode_seconds": figures["encode"]["seconds"], "ratio": figures["ratio"],
-        "textures": figures["textures"], "uv_ssim": None if figures["uv"] is None else figures["uv"]["ssim"],
-        "encoded": _short(figures["encoded"]), "held_out": _short(figures["held_out"]),
-        "encoded_beside_held_out": _short(figures["held_scene"]["encoded"]),
+        "bytes": figures["bytes"], "encode_seconds": figures["encode"]["seconds"], "textures": figures["textures"],
+        "encoded": _short(figures["encoded"]), "held_out": _short(held["held_out"]),
+        "encoded_beside_held_out": _short(held["encoded"]),
     }  # fmt: skip
 
 
 def _paper(figures: dict[str, Any]) -> dict[str, Any]:
-    last = {way: [point for point in figures["curve"] if way in point] for way in ("plain", "aligned")}
-    at = {
-        way: {str(point["textures"]): round(point[way]["uv_ssim"], 4) for point in points}
-        for way, points in last.items()
-    }
-    return {"uv_curve": at, "table": figures["table"], "fps": figures["fps"]}
+    at: dict[str, dict[str, float]] = {}
+    for way in ("plain", "aligned"):
+        points = [point for point in figures["curve"] if way in point]
+        at[way] = {str(point["textures"]): round(point[way]["uv_ssim"], 4) for point in points}
+    return {"uv_curve": at, "table": {"rows": figures["table"]["rows"]}}
 
 
 def _rates(figures: dict[str, Any]) -> dict[str, Any]:
-    keys = ("bytes", "psnr", "psnr_luma", "ssim", "encode_seconds")
-    curves = {
-        curve["name"]: [{key: point[key] for key in keys} for point in curve["points"]] for curve in figures["curves"]
-    }
-    return {"bd": figures["bd"], "curves": curves, "ceiling": figures["ceiling"], "coded_views": figures["views"]}
+    return {"bd": {peer: {key: rates[key] for key in ("psnr", "psnr_luma")} for peer, rates in figures["bd"].items()}}
 
 
 def _losses(figures: dict[str, Any]) -> dict[str, Any]:
-    return {"losses": figures["rows"], "displacement": figures["displacement"], "truth": figures.get("truth")}
+    rows = [{key: row[key] for key in ("key", "psnr", "gain", "share") if key in row} for row in figures["rows"]]
+    truth = figures.get("truth")
+    cost = None if truth is None else {part: {"cost": truth[part]["cost"]} for part in ("encoded", "held_out")}
+    return {"losses": rows, "truth": cost}
 
 
 def _between(figures: dict[str, Any]) -> dict[str, Any]:
-    keys = ("psnr", "psnr_luma", "ssim", "flip", "seconds")
-    return {"between": {m["key"]: {key: m.get(key) for key in keys} for m in figures["methods"]}}
+    return {"between": {m["key"]: {key: m[key] for key in ("psnr", "psnr_luma", "ssim")} for m in figures["methods"]}}
 
 
 def _short(image: dict[str, Any] | None) -> dict[str, Any] | None:

@@ -46,7 +46,7 @@ def joined(first: Mesh, second: Mesh) -> Mesh:
 
 def test_with_exact_geometry_both_ways_on_the_proxy_beat_those_without_it(capture):
     _, light_field, scene, file = capture
-    result = between(scene, light_field, file=file)
+    result = between(*start(scene, light_field), file=file)
     rows = {row["key"]: row for row in result["methods"]}
     assert list(rows) == ["nearest", "blend", "lumigraph", "delaunay", "nearest3", "bilinear"]
     assert result["cameras"] == result["held_out"] == 16 and result["encoded"] == 9
@@ -62,13 +62,13 @@ def test_with_exact_geometry_both_ways_on_the_proxy_beat_those_without_it(captur
 
 def test_all_ways_are_measured_over_the_same_pixels(capture):
     _, light_field, scene, _ = capture
-    rows = between(scene, light_field, 2)["methods"]
+    rows = between(*start(scene, light_field), 2)["methods"]
     assert len({row["coverage"] for row in rows}) == 1 and 0.9 < rows[0]["coverage"] <= 1
 
 
 def test_the_study_of_view_weights_gives_the_same_figures(capture):
     _, light_field, scene, _ = capture
-    rows = {row["key"]: row for row in between(scene, light_field, 4)["methods"]}
+    rows = {row["key"]: row for row in between(*start(scene, light_field), 4)["methods"]}
     study = weights_study(scene, light_field, 4)
     assert {row["key"] for row in study["methods"]} == {"delaunay", "nearest3", "bilinear"}
     for row in study["methods"]:
@@ -90,7 +90,7 @@ def test_pixels_outside_circles_are_counted_apart(capture):
 def test_off_a_grid_bilinear_weights_are_left_out_with_a_word(capture):
     folder, light_field, _, _ = capture
     scene = ef.encode(light_field, folder / "proxy.ply", textures=2, hold_out="every:4", density=0.8)
-    result = between(scene, light_field, 2)
+    result = between(*start(scene, light_field), 2)
     assert "bilinear" not in [row["key"] for row in result["methods"]]
     assert "No bilinear view weights" in result["words"] and "Delaunay" in result["words"]
 
@@ -191,7 +191,7 @@ def test_a_sample_is_spread_over_the_array():
 def test_psnr_of_ours_agrees_with_evaluate(capture):
     """The project's own measure of held-out views, an independent route to the same figure."""
     _, light_field, scene, _ = capture
-    ours = next(row for row in between(scene, light_field)["methods"] if row["key"] == "delaunay")
+    ours = next(row for row in between(*start(scene, light_field))["methods"] if row["key"] == "delaunay")
     theirs = ef.evaluate(scene, light_field, png_maps="none")["image"]["held_out"]
     for key in ("psnr", "psnr_luma", "psnr_full", "ssim"):
         assert ours[key] == pytest.approx(theirs[key], abs=1e-6)
@@ -201,4 +201,4 @@ def test_without_held_out_photographs_there_is_nothing_to_measure(capture):
     _, light_field, scene, _ = capture
     kept = light_field.subset(np.flatnonzero(~scene.held_out).tolist())
     with pytest.raises(ValueError, match="holds out no camera"):
-        between(scene, kept)
+        between(*start(scene, kept))

@@ -70,7 +70,7 @@ def capture(name, seed, picture):
             "encode": {"seconds": 128.4, "peak_mb": 1685, "command": f"eigenfield encode {name} --density 1"},
             "bytes": {"total": 980_000, "mean": 90_000, "textures": 800_000, "weights": 20_000, "mesh": 65_000,
             "other": 5_000},
-            "textures": 15, "density": 1.0, "atlas": [1024, 1024], "encoded": image(top, 289), "held_out": None,
+            "textures": 15, "density": 1.0, "atlas": [1024, 1024], "encoded": image(top, 289),
             "hold_out_rule": "views with an odd row or an odd column",
             "held_scene": {"bytes": 940_000, "encoded": image(top, 81), "held_out": image(top - 0.7, 208)},
             "uv": {"ssim": 0.97, "psnr": 36.2}, "ratio": {"photographs": 9.9, "raw": 231.6, "texture_maps_png": 418.0},

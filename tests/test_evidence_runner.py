@@ -12,7 +12,9 @@ import pytest
 import report
 from captures import write_capture
 from evidence import captures, runner
-from evidence.runner import Run, fingerprint, wanted
+from evidence.code import meaning
+from evidence.runner import Run, fingerprint
+from evidence.steps import wanted
 
 from eigenfield.errors import CaptureError
 
@@ -61,6 +63,21 @@ def test_figures_of_other_code_stand_only_if_asked_for(tmp_path, capture):
     assert step(tmp_path, capture, lambda: {"value": 2})["figures"] == {"value": 2}
 
 
+def test_a_step_whose_files_are_gone_is_done_again(tmp_path, capture):
+    made = tmp_path / "all.glb"
+
+    def step_of(value):
+        def work():
+            made.touch()
+            return {"value": value}
+
+        return runner._step("scene", tmp_path / "steps", Run(tmp_path), capture, work, print, [made])["figures"]
+
+    assert step_of(1) == step_of(2) == {"value": 1}
+    made.unlink()
+    assert step_of(3) == {"value": 3}
+
+
 def test_an_error_is_told_and_not_kept(tmp_path, capture, capsys):
     def mendable():
         raise CaptureError("some-code", "it is broken", remedy="mend it")
@@ -96,6 +113,15 @@ def test_names_folders_and_what_is_left_out(tmp_path, monkeypatch, capture):
 
 def test_the_fingerprint_is_that_of_the_code():
     assert fingerprint() == fingerprint() and len(fingerprint()) == 16
+
+
+def test_comments_and_layout_mean_nothing(tmp_path):
+    texts = ("x = f(1,2)", "# why\nx = f(\n    1, 2\n)  # so\n", "x = f(1, 3)")
+    meanings = []
+    for number, text in enumerate(texts):
+        (tmp_path / f"{number}.py").write_text(text)
+        meanings.append(meaning(tmp_path / f"{number}.py"))
+    assert meanings[0] == meanings[1] != meanings[2]
 
 
 @pytest.mark.slow

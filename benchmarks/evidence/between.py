@@ -20,14 +20,13 @@ from PIL import Image
 from eigenfield.capture import LightField
 from eigenfield.errors import OptionError
 from eigenfield.evaluation import Circle, match_photographs
-from eigenfield.evaluation.image import Figures, summary
-from eigenfield.flip import flip
+from eigenfield.evaluation.image import Figures, measure_picture, summary
+from eigenfield.evaluation.session import WHOLE
 from eigenfield.format import parts
-from eigenfield.metrics import psnr, psnr_luma, ssim, to_codes
+from eigenfield.metrics import psnr, to_codes
 from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
 from eigenfield.scene import Scene
 
-WHOLE = 0.999  # of a pixel's samples
 AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
 TITLES = {
     "nearest": "photograph of the nearest encoded camera",
@@ -64,8 +63,8 @@ class Peers:
 
 
 def between(
-    scene: Scene,
-    light_field: LightField,
+    stage: Stage,
+    peers: Peers,
     sample: int | None = None,
     *,
     file: Path | None = None,
@@ -73,10 +72,10 @@ def between(
 ) -> dict[str, Any]:
     """Figures of every way to draw the held-out views: rows under "methods", in the order of TITLES.
 
-    sample: measure so many held-out cameras, spread over the array; None: all. file: the scene's, for its bytes.
-    circles: of `read_circles`; then psnr_outside counts the covered pixels outside them.
+    stage, peers: of `start`. sample: measure so many held-out cameras, spread over the array; None: all. file: the
+    scene's, for its bytes. circles: of `read_circles`; then psnr_outside counts the covered pixels outside them.
     """
-    stage, peers = start(scene, light_field)
+    scene = stage.scene
     chosen = _chosen(stage, sample)
     rows, notes = _measured(stage, chosen, ways_of(stage, peers), circles)
     if _blended_by(scene) != "bilinear":
@@ -201,7 +200,7 @@ def _measured(
             started = time.perf_counter()
             drawn = to_codes(draw(index))
             seconds[key].append(time.perf_counter() - started)
-            figures[key].append(_figures(drawn, true, covered))
+            figures[key].append(measure_picture(drawn, covered, true, with_flip=True))
             if circles is not None:
                 beyond = covered if circle is None else covered & circle.outside(true.shape[1], true.shape[0])
                 figures[key][-1]["psnr_outside"] = psnr(drawn, true, beyond)
@@ -211,17 +210,6 @@ def _measured(
         row: dict[str, Any] = {"key": key, "title": TITLES[key], **summary(figures[key], names)}
         rows.append({**row, "seconds": round(float(np.median(seconds[key])), 4)})
     return rows, notes
-
-
-def _figures(drawn: NDArray[np.uint8], true: NDArray[np.uint8], covered: NDArray[np.bool_]) -> Figures:
-    return {
-        "psnr": psnr(drawn, true, covered),
-        "psnr_luma": psnr_luma(drawn, true, covered),
-        "psnr_full": psnr(drawn, true),
-        "ssim": ssim(drawn, true, covered),
-        "flip": flip(drawn, true, covered),
-        "coverage": float(covered.mean()),
-    }
 
 
 def _holes(stage: Stage, peers: Peers, chosen: Sequence[int]) -> float:

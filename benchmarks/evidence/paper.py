@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import render
 from evidence.pictures import figure6
-from evidence.prepared import Prepared, first_textures, spread
+from evidence.prepared import Prepared, first_textures
 
 import eigenfield as ef
-from eigenfield.evaluation.session import start_session
+from eigenfield.evaluation.session import Session, evenly, start_session
 from eigenfield.evaluation.uv import MapFigures, measure_map, png_size
 from eigenfield.format import encode_scene
 from eigenfield.format.quantise import basis_scale, mean_codes, texture_codes
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Scene
-from eigenfield.texturing import make_atlas
 
 COUNTS = (0, 1, 2, 3, 5, 7, 10, 15, 20, 25, 30, 40)  # the paper draws up to 40
 QUICK_COUNTS = (0, 3, 7, 15)
@@ -43,13 +41,16 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
     mean and textures as 8-bit PNG, weights as float32, no mesh, since the texture maps need that too.
     """
     light_field = prepared.light_field
-    scenes = {"plain": _encode(prepared, None)} | ({} if prepared.quick else {"aligned": _encode(prepared, "dis")})
-    plain = scenes["plain"]
+    ways = {"plain": None} if prepared.quick else {"plain": None, "aligned": "dis"}
+    sessions = {
+        way: start_session(_encode(prepared, align), light_field, curve="sample") for way, align in ways.items()
+    }
+    plain = sessions["plain"].scene
     counts = [count for count in (QUICK_COUNTS if prepared.quick else COUNTS) if count <= plain.textures]
-    found = {way: _measured(scene, prepared, counts) for way, scene in scenes.items()}
-    maps = _map_bytes(plain, prepared)
-    for way, scene in scenes.items():
-        for point, size in zip(found[way], _png_bytes(scene, counts), strict=True):
+    found = {way: _measured(session, counts) for way, session in sessions.items()}
+    maps = _map_bytes(sessions["plain"])
+    for way, session in sessions.items():
+        for point, size in zip(found[way], _png_bytes(session, counts), strict=True):
             point |= {"bytes": size, "saving": 1 - size / maps}
     return {
         "curve": [
@@ -61,7 +62,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
             "raw_bytes": sum(3 * camera.width * camera.height for camera in light_field.cameras),
             "maps_png_bytes": maps,
             "rows": [
-                row for way, points in found.items() for row in _rows(scenes[way], counts, points, maps, way)
+                row for way, points in found.items() for row in _rows(sessions[way].scene, counts, points, maps, way)
             ],
         },
         "fps": _frames(plain),
@@ -75,23 +76,21 @@ def _encode(prepared: Prepared, align: str | None) -> Scene:
     return ef.encode(prepared.light_field, prepared.mesh, textures=most, align=align)
 
 
-def _map_bytes(scene: Scene, prepared: Prepared) -> int:
+def _map_bytes(session: Session) -> int:
     """Bytes of all cameras' filled texture maps as PNG, from MAPS of them."""
-    session = start_session(scene, prepared.light_field)
-    atlas, plane = session.atlas, scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
     assert atlas is not None
 
     def of_camera(row: int) -> int:
         values, seen = session.texture(int(scene.encoded[row]), session.photograph(int(scene.encoded[row])))
         return measure_map(plane, row, atlas, values, seen, (0,), png=True).png or 0
 
-    return round(float(np.mean(parallel_map(of_camera, spread(len(scene.encoded), MAPS)))) * len(scene.encoded))
+    return round(float(np.mean(parallel_map(of_camera, evenly(range(len(scene.encoded)), MAPS)))) * len(scene.encoded))
 
 
-def _measured(scene: Scene, prepared: Prepared, counts: list[int]) -> list[dict[str, Any]]:
+def _measured(session: Session, counts: list[int]) -> list[dict[str, Any]]:
     """The UV measure for each number of textures."""
-    session = replace(start_session(scene, prepared.light_field, curve="sample"), counts=tuple(counts))
-    atlas, plane = session.atlas, scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
     assert atlas is not None
 
     def of_camera(index: int) -> MapFigures:
@@ -108,11 +107,11 @@ def _measured(scene: Scene, prepared: Prepared, counts: list[int]) -> list[dict[
     ]
 
 
-def _png_bytes(scene: Scene, counts: list[int]) -> list[int]:
+def _png_bytes(session: Session, counts: list[int]) -> list[int]:
     """Bytes for the first n textures, for each n: PNG pictures, black outside the charts, and float32 weights."""
-    plane = scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
+    assert atlas is not None
     basis = plane.bases[0]
-    atlas = make_atlas(scene.mesh, plane.mean.shape[1], plane.mean.shape[0])
     scale, zero = basis_scale(basis, True)
     sizes = parallel_map(lambda k: png_size(atlas, texture_codes(basis, k, scale, zero)), range(counts[-1]))
     mean, sums = png_size(atlas, mean_codes(plane.mean)[0]), np.cumsum([0, *sizes])

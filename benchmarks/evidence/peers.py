@@ -13,16 +13,17 @@ from typing import Any
 
 import numpy as np
 from evidence import codecs, colour, ours, pictures, rates, stills
+from evidence.code import meaning
 from evidence.codecs import VideoCodec
-from evidence.prepared import Prepared, as_json, codes, drawn, places
+from evidence.prepared import Prepared, as_json, codes, drawn, every, grid_of
 from evidence.stills import StillCodec
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
+from eigenfield.evaluation.session import evenly
 from eigenfield.parallel import parallel_map
 from eigenfield.rendering import Renderer
-from eigenfield.viewplane import find_grid
 
 QUICK = ("svt-av1-2", "svt-av1-6")
 SHOWN = "svt-av1-2"  # whose middle view is kept, for the crops
@@ -85,7 +86,7 @@ def _key(views: Views, quick: bool) -> str:
     """What a peer's curve depends on: photographs, covered pixels and the code that measures it, not our own."""
     digest = hashlib.sha256(str(quick).encode())
     for name in CODE:
-        digest.update((Path(__file__).parent / name).read_bytes())
+        digest.update(meaning(Path(__file__).with_name(name)))
     for photograph, covered in zip(views.photographs, views.covered, strict=True):
         digest.update(photograph.tobytes() + np.packbits(covered).tobytes())
     return digest.hexdigest()[:16]
@@ -131,17 +132,16 @@ def _point(codec: VideoCodec | StillCodec, rate: float, views: Views, folder: Pa
 def _part(prepared: Prepared) -> LightField:
     """The photographs that are coded: all, or of a large capture that is not studied every second row and column."""
     light_field = prepared.light_field
-    grid = find_grid(places(light_field))
-    if len(light_field) <= LARGE or prepared.capture.studied or grid is None:
+    if len(light_field) <= LARGE or prepared.capture.studied or grid_of(light_field) is None:
         return light_field
-    return light_field.subset(sorted(grid.index[::2, ::2].reshape(-1).tolist()))
+    return every(light_field, 2)
 
 
 def _ceiling(
     photographs: Sequence[NDArray[np.uint8]], names: Sequence[str], covered: Sequence[NDArray[np.bool_]]
 ) -> dict[str, Any]:
     """What the way to 10 bit 4:2:0 and back leaves without any codec, from up to 16 views."""
-    some = np.unique(np.rint(np.linspace(0, len(photographs) - 1, 16)).astype(int))
+    some = evenly(range(len(photographs)), 16)
     there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
     point = rates.point(
         there_and_back, [photographs[i] for i in some], [covered[i] for i in some], [names[i] for i in some]

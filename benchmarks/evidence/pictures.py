@@ -7,7 +7,7 @@ from typing import Any
 
 import cv2
 import numpy as np
-from evidence.between import TITLES, start, ways_of
+from evidence.between import TITLES, Peers, Stage, ways_of
 from evidence.losses import own_maps
 from evidence.prepared import Prepared, codes, drawn
 from numpy.typing import NDArray
@@ -54,9 +54,9 @@ def figure6(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, An
     return rows
 
 
-def between_cameras(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, Any]]:
+def between_cameras(stage: Stage, peers: Peers, prepared: Prepared, folder: Path) -> list[dict[str, Any]]:
     """A held-out photograph, and what each way of `between` draws in its place: that nearest the array's centre."""
-    stage, peers = start(scene, prepared.light_field)
+    scene = stage.scene
     held = np.flatnonzero(scene.held_out)
     places = scene.view_plane.coordinates([camera.centre for camera in scene.cameras])
     index = int(held[np.argmin(np.linalg.norm(places[held], axis=1))])

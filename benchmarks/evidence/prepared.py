@@ -17,13 +17,13 @@ import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.demo import draw_demo_capture
 from eigenfield.evaluation import Circle, read_circles
+from eigenfield.evaluation.session import WHOLE
 from eigenfield.mesh import Mesh
+from eigenfield.metrics import to_codes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.scene import Scene
-from eigenfield.viewplane import find_grid, fit_view_plane
-
-WHOLE = 0.999  # of a pixel's samples on the surface, as `evaluate` counts a covered pixel
+from eigenfield.viewplane import Grid, find_grid, fit_view_plane
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,9 +57,8 @@ def estimate(capture: Capture, work: Path) -> dict[str, Any]:
         draw_demo_capture(capture.folder)
     figures: dict[str, Any] = {"reconstructed": capture.proxy is None}
     if capture.proxy is not None:
-        where = _named(capture)
-        light_field = ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
-        write_mesh(prepare_proxy(capture.proxy, light_field.cameras), work / "proxy.glb", overwrite=True)
+        cameras = _opened(_named(capture)).cameras
+        write_mesh(prepare_proxy(capture.proxy, cameras), work / "proxy.glb", overwrite=True)
     else:
         words = ["proxy", *_named(capture), "-o", str(work / "proxy.glb"), "--work", str(work / "stages")]
         made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"])
@@ -76,10 +75,10 @@ def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
     cameras = work / "proxy.cameras" / "transforms.json"
     if capture.calibration is None and cameras.exists():
         where = [str(capture.folder), "--calibration", str(cameras)]
-    light_field = ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+    light_field = _opened(where)
     rule = capture.hold_out
     if rule is None:
-        grid = find_grid(places(light_field))
+        grid = grid_of(light_field)
         rule = "odd" if grid is not None and min(grid.rows, grid.columns) > 2 else "every:2"
     return Prepared(capture, work, tuple(where), light_field, work / "proxy.glb", rule, quick)
 
@@ -89,25 +88,33 @@ def _named(capture: Capture) -> list[str]:
     return [str(capture.folder), *calibration]
 
 
-def places(light_field: LightField) -> NDArray[np.float64]:
-    """(Nc, 2) view-plane coordinates."""
-    return fit_view_plane(light_field.cameras).coordinates([camera.centre for camera in light_field.cameras])
+def _opened(where: list[str]) -> LightField:
+    return ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
 
 
-def spread(count: int, some: int) -> list[int]:
-    """`some` of the numbers below `count`, evenly spread; all of them where there are no more."""
-    return list(range(count)) if count <= some else np.rint(np.linspace(0, count - 1, some)).astype(int).tolist()
+def grid_of(light_field: LightField) -> Grid | None:
+    """The grid on which the cameras stand, None where they stand on none."""
+    cameras = light_field.cameras
+    return find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
+
+
+def every(light_field: LightField, step: int) -> LightField:
+    """Every step-th row and column of a grid of cameras. Raises ValueError off a grid."""
+    grid = grid_of(light_field)
+    if grid is None:
+        raise ValueError("the cameras are on no grid")
+    return light_field.subset(sorted(grid.index[::step, ::step].reshape(-1).tolist()))
 
 
 def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:
     """(H, W, 3) uint8: a photograph as the measures and the peers see it, undistorted where it has a lens."""
-    return np.rint(light_field.photograph(index).pixels.clip(0, 1) * 255).astype(np.uint8)
+    return to_codes(light_field.photograph(index).pixels)
 
 
 def drawn(renderer: Renderer, scene: Scene, index: int) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """What the scene draws from its camera `index`, 8-bit, and the covered pixels."""
     picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter="bicubic")
-    return np.rint(picture.image.clip(0, 1) * 255).astype(np.uint8), picture.coverage > WHOLE
+    return to_codes(picture.image), picture.coverage > WHOLE
 
 
 def first_textures(scene: Scene, count: int) -> Scene:

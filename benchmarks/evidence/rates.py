@@ -36,7 +36,7 @@ def point(
 
     def of_view(task: tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.bool_]]) -> Figures:
         picture, photograph, counted = task
-        return measure_picture(picture, counted, photograph)  # type: ignore[arg-type]  # it takes codes as they are
+        return measure_picture(picture, counted, photograph)
 
     views = list(parallel_stream(of_view, zip(decoded, photographs, covered, strict=True)))
     return dict(summary(views, names))

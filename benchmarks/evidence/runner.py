@@ -9,28 +9,21 @@ import json
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import measure
-from evidence import between as held_out
-from evidence import pictures
 from evidence.captures import Capture
-from evidence.losses import losses
-from evidence.paper import paper
-from evidence.peers import peers
-from evidence.prepared import Prepared, as_json, estimate, prepare
-from evidence.studies import studies
-from evidence.truth import true_geometry
-from evidence.whole import whole
+from evidence.code import meaning
+from evidence.prepared import as_json, estimate, prepare
+from evidence.steps import STEPS, wanted
 
-import eigenfield as ef
 from eigenfield.errors import EigenfieldError
 
 BENCHMARKS = Path(__file__).parents[1]
-SAMPLE = 25  # held-out cameras that are drawn in every way
 
 
 @dataclass(frozen=True)
@@ -43,41 +36,6 @@ class Run:
     command: str = ""
 
 
-Step = Callable[[Prepared, Path], dict[str, Any]]
-
-
-def _losses(prepared: Prepared, folder: Path) -> dict[str, Any]:
-    figures = losses(prepared.work / "all.glb", prepared.light_field, alone=prepared.capture.studied)
-    if prepared.capture.name == "demo" and not prepared.quick:
-        figures["truth"] = true_geometry(prepared.capture.folder, work=prepared.work / "truth")
-    return figures
-
-
-def _between(prepared: Prepared, folder: Path) -> dict[str, Any]:
-    file = prepared.work / "held.glb"
-    scene = ef.load(file)
-    figures = held_out.between(scene, prepared.light_field, SAMPLE, file=file, circles=prepared.circles())
-    shown = pictures.between_cameras(scene, prepared, folder)
-    return {**figures, "rule": prepared.hold_out, "pictures": shown}
-
-
-STEPS: dict[str, Step] = {
-    "scene": lambda prepared, folder: whole(prepared),
-    "paper": paper,
-    "losses": _losses,
-    "rates": peers,
-    "between": _between,
-    "studies": lambda prepared, folder: studies(prepared),
-}
-
-
-def wanted(capture: Capture, quick: bool) -> list[str]:
-    """The steps of one capture, in order."""
-    left_out = {"studies"} if quick or not capture.studied else set()
-    left_out |= set() if capture.compression else {"rates"}
-    return [name for name in STEPS if name not in left_out]
-
-
 def evaluate_capture(capture: Capture, run: Run, say: Callable[[str], None]) -> dict[str, Any]:
     """Every step of a capture that is not there yet, and the record of all of them."""
     work, kept = run.out / "work" / capture.name, run.out / "steps" / capture.name
@@ -86,7 +44,8 @@ def evaluate_capture(capture: Capture, run: Run, say: Callable[[str], None]) -> 
         "compression": capture.compression,
         "steps": {},
     }  # fmt: skip
-    geometry = _step("geometry", kept, run, capture, lambda: estimate(capture, work), say)
+    made = [work / "proxy.glb"]
+    geometry = _step("geometry", kept, run, capture, lambda: estimate(capture, work), say, made)
     record["geometry"] = geometry
     if "error" in geometry:
         return record
@@ -95,21 +54,29 @@ def evaluate_capture(capture: Capture, run: Run, say: Callable[[str], None]) -> 
     record |= {"views": len(prepared.light_field), "size": [first.width, first.height], "hold_out": prepared.hold_out}
     for name in wanted(capture, run.quick):
         step = STEPS[name]
-        record["steps"][name] = _step(name, kept, run, capture, lambda step=step: step(prepared, run.out), say)  # type: ignore[misc]
+        made = [work / "all.glb", work / "held.glb"] if name == "scene" else []
+        record["steps"][name] = _step(name, kept, run, capture, partial(step, prepared, run.out), say, made)
         if name == "scene" and "error" in record["steps"][name]:
             break  # the others draw its files
     return record
 
 
 def _step(
-    name: str, kept: Path, run: Run, capture: Capture, work: Callable[[], dict[str, Any]], say: Callable[[str], None]
+    name: str,
+    kept: Path,
+    run: Run,
+    capture: Capture,
+    work: Callable[[], dict[str, Any]],
+    say: Callable[[str], None],
+    made: Sequence[Path] = (),
 ) -> dict[str, Any]:
-    """What a step left before, if the code is the same (or `keep`); else do it, and keep it. An error that its user can
-    mend, or a bug, becomes the step's record and does not end the run."""
+    """What a step left before, if the code is the same (or `keep`) and the files it `made` are there; else do it, and
+    keep it. An error that its user can mend, or a bug, becomes the step's record and does not end the run."""
     path = kept / f"{name}.json"
     print_of_code = fingerprint()
     before = _kept(path)
-    if before is not None and before["quick"] == run.quick and (run.keep or before["code"] == print_of_code):
+    current = before is not None and before["quick"] == run.quick and (run.keep or before["code"] == print_of_code)
+    if before is not None and current and all(file.exists() for file in made):
         return before
     started = time.perf_counter()
     record: dict[str, Any] = {
@@ -160,5 +127,5 @@ def fingerprint() -> str:
     shown_only = {"charts.py", "markup.py", "runner.py", "captures.py"}
     digest = hashlib.sha256(sys.version.encode())
     for file in sorted(one for place in places for one in place if one.name not in shown_only):
-        digest.update(str(file.relative_to(BENCHMARKS.parent)).encode() + file.read_bytes())
+        digest.update(str(file.relative_to(BENCHMARKS.parent)).encode() + meaning(file))
     return digest.hexdigest()[:16]

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from evidence.between import weights_study
-from evidence.prepared import Prepared, codes, places
+from evidence.prepared import Prepared, codes, grid_of
 from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.format import encode_scene
+from eigenfield.format.write import QUALITY
 from eigenfield.metrics import psnr, ssim
 from eigenfield.parallel import parallel_map
+from eigenfield.pipeline import DEFAULT_DENSITY
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.scene import Scene
-from eigenfield.viewplane import find_grid
 
 DENSITIES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 QUALITIES = (25, 40, 55, 70, 85)
@@ -28,17 +30,34 @@ HEAD = ["kB", "encoded dB", "SSIM", "held out dB", "SSIM"]
 
 def studies(prepared: Prepared) -> dict[str, Any]:
     """Tables for the page: title, columns, rows, and in words what was kept fixed."""
-    base = _encode(prepared)
-    tables = [
-        _densities(prepared), _filters(prepared, base), _alignment(prepared, base), _codecs(prepared, base),
-        _weights(prepared, base),
-    ]  # fmt: skip
+    base = _base(prepared)
+    tables = [of(prepared, base) for of in (_densities, _filters, _alignment, _codecs, _weights)]
     cameras = _cameras(prepared)
     return {
         "title": f"{prepared.capture.title}: {TEXTURES} textures, density 1.5, {prepared.hold_out} held out, unless"
         f" said; means over {SAMPLE} cameras of each kind, spread over the array, over the whole frame",
         "tables": tables if cameras is None else [*tables, cameras],
     }
+
+
+@dataclass(frozen=True, eq=False)
+class Base:
+    """The scene from which one parameter at a time departs: as it was encoded, as its file gives it back, its row."""
+
+    scene: Scene
+    kept: Scene
+    row: list[Any]
+
+
+def _base(prepared: Prepared) -> Base:
+    scene = _encode(prepared)
+    kept, size = _decoded(scene, prepared)
+    return Base(scene, kept, _row(kept, prepared.light_field, size))
+
+
+def _measured(scene: Scene, prepared: Prepared, codec: str = "avif", quality: int | None = None) -> list[Any]:
+    kept, size = _decoded(scene, prepared, codec, quality)
+    return _row(kept, prepared.light_field, size)
 
 
 def _encode(prepared: Prepared, **options: Any) -> Scene:
@@ -57,9 +76,8 @@ def _decoded(scene: Scene, prepared: Prepared, codec: str = "avif", quality: int
 def _row(scene: Scene, light_field: LightField, size: int | None, filter: str = "bicubic") -> list[Any]:
     """The columns of HEAD: the bytes, then both kinds of cameras."""
     renderer = Renderer(scene)
-    held = set(np.flatnonzero(scene.held_out).tolist())
     row: list[Any] = [None if size is None else round(size / 1e3)]
-    for indices in (scene.encoded.tolist(), sorted(held)):
+    for indices in (scene.encoded.tolist(), np.flatnonzero(scene.held_out).tolist()):
         chosen = spread_over_array(scene, indices, SAMPLE) if indices else []
 
         def of_camera(index: int) -> tuple[float, float]:
@@ -76,11 +94,12 @@ def _row(scene: Scene, light_field: LightField, size: int | None, filter: str = 
     return row
 
 
-def _densities(prepared: Prepared) -> dict[str, Any]:
+def _densities(prepared: Prepared, base: Base) -> dict[str, Any]:
     rows = []
     for density in DENSITIES:
-        scene, size = _decoded(_encode(prepared, density=density), prepared)
-        rows.append([f"{density:g}", scene.settings["atlas"][0], *_row(scene, prepared.light_field, size)])
+        scene = base.scene if density == DEFAULT_DENSITY else _encode(prepared, density=density)
+        row = base.row if scene is base.scene else _measured(scene, prepared)
+        rows.append([f"{density:g}", scene.settings["atlas"][0], *row])
     return {
         "title": "Atlas density", "columns": ["asked for", "side", *HEAD], "rows": rows,
         "words": "Texels per photograph pixel along one axis; the side is at most 4096, the texels at most twice the"
@@ -88,20 +107,17 @@ def _densities(prepared: Prepared) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _filters(prepared: Prepared, base: Scene) -> dict[str, Any]:
+def _filters(prepared: Prepared, base: Base) -> dict[str, Any]:
     rows = []
     for resampling in ("bilinear", "bicubic", "lanczos"):
-        scene = base if resampling == "bicubic" else _encode(prepared, resampling=resampling)
+        scene = base.scene if resampling == "bicubic" else _encode(prepared, resampling=resampling)
         kept, size = _decoded(scene, prepared)
         rows += [[resampling, way, *_row(kept, prepared.light_field, size, way)] for way in ("bilinear", "bicubic")]
     return {"title": "Filters", "columns": ["photograph to atlas", "drawing", *HEAD], "rows": rows, "words": ""}
 
 
-def _alignment(prepared: Prepared, base: Scene) -> dict[str, Any]:
-    rows = []
-    for word, scene in (("none", base), ("dis", _encode(prepared, align="dis"))):
-        kept, size = _decoded(scene, prepared)
-        rows.append([word, *_row(kept, prepared.light_field, size)])
+def _alignment(prepared: Prepared, base: Base) -> dict[str, Any]:
+    rows = [["none", *base.row], ["dis", *_measured(_encode(prepared, align="dis"), prepared)]]
     return {
         "title": "Alignment by optical flow", "columns": ["", *HEAD], "rows": rows,
         "words": "The paper aligns the texture maps to a central camera; the flow is not kept, so the drawing has it no"
@@ -109,18 +125,17 @@ def _alignment(prepared: Prepared, base: Scene) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _codecs(prepared: Prepared, base: Scene) -> dict[str, Any]:
-    rows = [["none", "", *_row(base, prepared.light_field, None)]]
-    ways: list[tuple[str, int | None]] = [("png", None), ("webp", None), *(("avif", quality) for quality in QUALITIES)]
-    for codec, quality in ways:
-        kept, size = _decoded(base, prepared, codec, quality)
-        rows.append([codec, "" if quality is None else quality, *_row(kept, prepared.light_field, size)])
+def _codecs(prepared: Prepared, base: Base) -> dict[str, Any]:
+    rows: list[list[Any]] = [["none", "", *_row(base.scene, prepared.light_field, None)]]
+    rows += [[codec, "", *_measured(base.scene, prepared, codec)] for codec in ("png", "webp")]
+    for quality in QUALITIES:
+        row = base.row if quality == QUALITY else _measured(base.scene, prepared, "avif", quality)
+        rows.append(["avif", quality, *row])
     return {"title": "Codec and quality", "columns": ["codec", "quality", *HEAD], "rows": rows, "words": ""}
 
 
-def _weights(prepared: Prepared, base: Scene) -> dict[str, Any]:
-    kept, _ = _decoded(base, prepared)
-    found = weights_study(kept, prepared.light_field, SAMPLE, prepared.circles())
+def _weights(prepared: Prepared, base: Base) -> dict[str, Any]:
+    found = weights_study(base.kept, prepared.light_field, SAMPLE, prepared.circles())
     rows = [[one["title"], round(one["psnr"], 2), round(one["ssim"], 4)] for one in found["methods"]]
     return {
         "title": "View weights of held-out cameras", "columns": ["", "dB", "SSIM"], "rows": rows,
@@ -131,7 +146,7 @@ def _weights(prepared: Prepared, base: Scene) -> dict[str, Any]:
 def _cameras(prepared: Prepared) -> dict[str, Any] | None:
     """Fewer and fewer cameras of a grid, always measured at the same ones that no case has seen."""
     light_field = prepared.light_field
-    grid = find_grid(places(light_field))
+    grid = grid_of(light_field)
     if grid is None or min(grid.rows, grid.columns) < 9:
         return None
     between = grid.index[1::2, 1::2]
@@ -148,7 +163,7 @@ def _cameras(prepared: Prepared) -> dict[str, Any] | None:
         some = light_field.subset(sorted({*encoded.reshape(-1).tolist(), *test.tolist()}))
         held = ",".join(light_field.names[index] for index in test)
         scene = ef.encode(some, prepared.mesh, textures=TEXTURES, hold_out=held)
-        kept, size = _decoded(scene, prepared)
+        kept, size = _decoded(scene, prepared)  # its photographs are in another order than the capture's
         rows.append([name, encoded.size, scene.textures, *_row(kept, some, size)])
     return {
         "title": "Number of cameras", "columns": ["encoded", "", "N", *HEAD], "rows": rows,

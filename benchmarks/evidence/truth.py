@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from evidence.losses import Pictures, Views, shifts
+from evidence.prepared import every
 from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
@@ -16,7 +17,6 @@ from eigenfield.capture import LightField
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.metrics import to_codes
 from eigenfield.scene import Scene
-from eigenfield.viewplane import find_grid, fit_view_plane
 
 SAMPLE = 16  # cameras of each kind
 WORDS = (
@@ -36,9 +36,7 @@ def true_geometry(
     folder: as `draw_demo_capture` writes it: images, transforms.json and proxy.ply. step: take every step-th row and
     column. work: a folder that keeps the stages of the reconstruction.
     """
-    exact = ef.open_capture(folder)
-    chosen = every(exact, step)
-    exact = exact.subset(chosen)
+    exact = every(ef.open_capture(folder), step)
     bare = ef.open_photographs(folder)
     bare = bare.subset([bare.names.index(name) for name in exact.names])
     made = ef.reconstruct(bare, work=work)
@@ -74,15 +72,6 @@ def compare(scenes: dict[str, tuple[Scene, LightField]], names: Sequence[str]) -
         result[kind] = {**views.measure(pictures), "displacement": shifts(views, pictures)}
     result["cost"] = result["true"]["psnr_of_mse"] - result["estimated"]["psnr_of_mse"]
     return result
-
-
-def every(capture: LightField, step: int) -> list[int]:
-    """Indices of every step-th row and column of a grid of cameras, in rising order. Raises ValueError off a grid."""
-    cameras = capture.cameras
-    grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
-    if grid is None:
-        raise ValueError("the cameras are on no grid")
-    return sorted(int(index) for index in grid.index[::step, ::step].ravel())
 
 
 def _photograph(session: Session, name: str) -> NDArray[np.uint8]:

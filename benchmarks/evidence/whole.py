@@ -22,7 +22,7 @@ def whole(prepared: Prepared) -> dict[str, Any]:
         "encode": everything["encode"], "bytes": everything["bytes"], "ratio": everything["ratio"],
         "textures": scene.textures, "density": settings["density"], "atlas": settings["atlas"],
         "encoded": everything["image"]["encoded"], "uv": everything["uv"],
-        "held_out": some["image"]["held_out"], "hold_out_rule": prepared.hold_out,
+        "hold_out_rule": prepared.hold_out,
         "held_scene": {
             "bytes": some["bytes"]["total"], "textures": held.textures, "encode": some["encode"],
             "encoded": some["image"]["encoded"], "held_out": some["image"]["held_out"],

@@ -26,6 +26,11 @@ FIGURES = (
     ("psnr", "PSNR", 2), ("psnr_luma", "luma PSNR", 2), ("ssim", "SSIM", 4), ("flip", "FLIP", 4),
     ("psnr_full", "PSNR", 2), ("psnr_luma_full", "luma PSNR", 2), ("ssim_full", "SSIM", 4),
 )  # fmt: skip
+PARTS: dict[str, tuple[str, ...]] = {  # figures of a scene: label, and where they lie
+    "all encoded": ("encoded",),
+    "encoded, some held out": ("held_scene", "encoded"),
+    "held out": ("held_scene", "held_out"),
+}
 LOSSES = {
     "codec": "codec", "quantisation": "quantisation", "truncation": "PCA", "resampling": "resampling",
     "left": "what stays",
@@ -55,7 +60,7 @@ def _tables(source: Source) -> Html:
     means, lowest, outside = [], [], []
     for name in source.captures:
         scene = source.figures(name, "scene") or {}
-        for label, path in _parts(scene).items():
+        for label, path in PARTS.items():
             image = dig(scene, *path)
             if not isinstance(image, dict):
                 continue
@@ -82,18 +87,9 @@ def _tables(source: Source) -> Html:
     )
 
 
-def _parts(scene: Tree) -> dict[str, tuple[str, ...]]:
-    """Which figures a scene has: label and where they lie."""
-    whole: dict[str, tuple[str, ...]] = {"all encoded": ("encoded",)}
-    if isinstance(dig(scene, "held_scene", "held_out"), dict):
-        return whole | {"encoded, some held out": ("held_scene", "encoded"), "held out": ("held_scene", "held_out")}
-    return whole | {"held out": ("held_out",)}
-
-
 def _bytes_of(scene: Tree, path: tuple[str, ...]) -> Any:
     if path[0] == "held_scene":
-        size = dig(scene, "held_scene", "bytes")
-        return dig(size, "total") if isinstance(size, dict) else size
+        return dig(scene, "held_scene", "bytes")
     return dig(scene, "bytes", "total")
 
 
@@ -124,13 +120,10 @@ def losses(source: Source) -> Html:
     return join([_ladders(source), by_capture(source, "losses", "losses", _capture)])
 
 
-def geometry(figures: Tree) -> Tree | None:
-    """Figures of pictures moved towards their photographs, under either of the names that the step gives them."""
-    for key in ("displacement", "geometry"):
-        found = figures.get(key)
-        if isinstance(found, dict):
-            return found
-    return None
+def _displacement(figures: Tree) -> Tree | None:
+    """Figures of pictures moved towards their photographs."""
+    found = figures.get("displacement")
+    return found if isinstance(found, dict) else None
 
 
 def _ladders(source: Source) -> Html:
@@ -149,7 +142,7 @@ def _ladders(source: Source) -> Html:
                 capture_link(source, "losses", "losses", name),
                 number(dig(steps.get("file"), "psnr")),
                 *cells,
-                _moved(geometry(figures)),
+                _moved(_displacement(figures)),
             ]
         )
     columns = ["capture", "PSNR of the file, dB", *LOSSES.values(), "shifts alone, overlapping the others"]
@@ -186,7 +179,7 @@ def _capture(source: Source, name: str, figures: Tree) -> Html:
     cameras = figures.get("cameras")
     over = f", over {cameras} cameras" if cameras is not None else ""
     parts = [_ladder(listing(figures, "rows"), f"One loss after the other switched off{over}")]
-    parts.append(_shift_table(geometry(figures)))
+    parts.append(_shift_table(_displacement(figures)))
     parts.append(_truth(figures.get("truth")))
     alone = _ladder(listing(figures, "alone"), "One loss switched off, all others on")
     words = figures.get("words")

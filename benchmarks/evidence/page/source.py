@@ -174,11 +174,9 @@ def scene_bytes(source: Source, name: str) -> Any:
 
 
 def held_out(scene: Tree | None) -> Tree | None:
-    """Figures over held-out cameras, of whichever scene held any out."""
-    for where in (dig(scene, "held_scene", "held_out"), dig(scene, "held_out")):
-        if isinstance(where, dict):
-            return where
-    return None
+    """Figures over held-out cameras."""
+    found = dig(scene, "held_scene", "held_out")
+    return found if isinstance(found, dict) else None
 
 
 def is_headline_peer(name: str) -> bool:
@@ -188,7 +186,7 @@ def is_headline_peer(name: str) -> bool:
 
 def label_of(curve: Tree) -> str:
     """What a person calls a curve or a method."""
-    return str(next((curve[k] for k in ("label", "title", "name", "key") if curve.get(k)), "?"))
+    return str(curve.get("title") or curve.get("name") or "?")
 
 
 def peer_rates(source: Source, name: str) -> dict[str, Tree]:

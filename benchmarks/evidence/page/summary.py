@@ -112,8 +112,8 @@ def _files(source: Source) -> Html:
         shares = [
             _of_total(dig(scene, "bytes", part), total) for part in ("mean", "textures", "weights", "mesh", "other")
         ]
-        made = dig(scene, "reconstruct") or source.figures(name, GEOMETRY) or {}
-        given = made.get("reconstructed", scene.get("reconstructed")) is False
+        made = source.figures(name, GEOMETRY) or {}
+        given = made.get("reconstructed") is False
         rows.append(
             [
                 capture_link(source, "image", "scene", name),

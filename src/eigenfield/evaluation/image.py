@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eigenfield.evaluation.exclusion import Circle
 from eigenfield.flip import flip
-from eigenfield.metrics import psnr, psnr_luma, ssim, to_codes
+from eigenfield.metrics import Picture, psnr, psnr_luma, ssim, to_codes
 
 Figures = dict[str, float | None]
 KEYS = ("psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "flip")
@@ -18,16 +18,16 @@ WORST_IS_HIGHEST = frozenset({"flip"})
 
 
 def measure_picture(
-    drawn: NDArray[np.float32],
+    drawn: Picture,
     surface: NDArray[np.bool_],
-    photograph: NDArray[np.float32],
+    photograph: Picture,
     mask: NDArray[np.float32] | None = None,
     with_flip: bool = False,
 ) -> Figures:
     """All of KEYS for one camera, `flip` only when asked for.
 
-    drawn, photograph: (H, W, 3), 0..1. surface: (H, W), where the proxy puts surface. mask: (H, W), what of the
-    photograph counts; the full figures are of the whole frame all the same. None where no pixel is covered.
+    drawn, photograph: (H, W, 3), 0..1 or uint8. surface: (H, W), where the proxy puts surface. mask: (H, W), what of
+    the photograph counts; the full figures are of the whole frame all the same. None where no pixel is covered.
     """
     a, b = to_codes(drawn), to_codes(photograph)
     covered = covered_pixels(surface, mask)

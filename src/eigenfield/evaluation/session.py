@@ -152,7 +152,7 @@ def start_session(
         log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])
         encoded = []
     height, width = scene.planes[0].mean.shape[:2]
-    some = {"all": encoded, "sample": _spread(encoded, SAMPLE), "none": []}
+    some = {"all": encoded, "sample": evenly(encoded, SAMPLE), "none": []}
     count = _count(scene, textures)
     session = Session(
         scene=scene,
@@ -263,7 +263,7 @@ def _count(scene: Scene, textures: int | None) -> int:
     return textures
 
 
-def _spread(indices: Sequence[int], count: int) -> list[int]:
+def evenly(indices: Sequence[int], count: int) -> list[int]:
     """`count` of the indices, evenly spread; all of them where there are no more."""
     if len(indices) <= count:
         return list(indices)
