@@ -22,19 +22,29 @@ from eigenfield.viewplane import ViewPlane
 class Basis:
     """N eigen textures and what each encoded camera takes of them.
 
-    textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 codes as a file keeps them.
+    textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
     scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
     weights: (Ne, N) float32, the paper's ω(c, j), a row for each encoded camera in the order of `Scene.names`.
+    grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
+    corner: row and column of the grid at which the textures begin; they are zero elsewhere.
     """
 
     textures: NDArray[Any]
     scale: NDArray[np.float32]
     zero: NDArray[np.float32]
     weights: NDArray[np.float32]
+    grid: tuple[int, int] | None = None
+    corner: tuple[int, int] = (0, 0)
 
     @property
     def count(self) -> int:
         return int(self.textures.shape[0])
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(rows, columns) of the whole atlas at this basis's density."""
+        rows, columns = self.textures.shape[1:3]
+        return self.grid or (int(rows), int(columns))
 
     def values(self, first: int = 0, last: int | None = None) -> NDArray[np.float32]:
         """(n, H, W, C) float32: the textures [first, last) as numbers."""
@@ -44,12 +54,13 @@ class Basis:
 
     def truncated(self, count: int) -> Basis:
         """The first `count` components."""
-        return Basis(self.textures[:count], self.scale[:count], self.zero[:count], self.weights[:, :count])
+        parts = (self.textures[:count], self.scale[:count], self.zero[:count], self.weights[:, :count])
+        return Basis(*parts, self.grid, self.corner)
 
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """Channels that share a mean and bases.
+    """Channels that share a mean and bases, which may have densities of their own.
 
     mean: (H, W, C) float32 in 0..1 (other attributes: any range).
     bases: summed onto the mean one after the other.
@@ -58,13 +69,18 @@ class Plane:
     mean: NDArray[np.float32]
     bases: tuple[Basis, ...]
 
+    @property
+    def sizes(self) -> list[tuple[int, int]]:
+        """(rows, columns) of the mean's atlas, then of each basis's."""
+        return [(int(self.mean.shape[0]), int(self.mean.shape[1])), *(basis.size for basis in self.bases)]
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:
     """Everything needed to draw any viewpoint on the view plane.
 
     mesh: the proxy, with UVs.
-    planes: one plane of three channels (R, G, B) from photographs; any channels from other attributes.
+    planes: one plane of three channels (R, G, B), or planes that `to_rgb` joins; any channels from other attributes.
     names, cameras: every capture camera, encoded or held out.
     held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
     reference: index into `cameras` of the one nearest the centre, or the one asked for.
@@ -73,6 +89,8 @@ class Scene:
     generator: name and version of the program that made it.
     colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset, so
         its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
+    to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what is
+        drawn.
     """
 
     mesh: Mesh
@@ -87,6 +105,18 @@ class Scene:
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
     colours: NDArray[np.float32] | None = None
+    to_rgb: NDArray[np.float32] | None = None
+
+    @property
+    def atlas(self) -> tuple[int, int]:
+        """(rows, columns) of the texture that is composed and drawn: the most that any mean or basis has."""
+        sizes = [size for plane in self.planes for size in plane.sizes]
+        return max(rows for rows, _ in sizes), max(columns for _, columns in sizes)
+
+    @property
+    def channels(self) -> int:
+        """Channels of a drawn picture."""
+        return 3 if self.to_rgb is not None else sum(int(plane.mean.shape[2]) for plane in self.planes)
 
     @property
     def encoded(self) -> NDArray[np.int64]:
