@@ -27,7 +27,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_map, pieces, threads
 from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
 from eigenfield.rendering.kernels import TILE
-from eigenfield.rendering.tiles import compose, empty_layers, tile_plane
+from eigenfield.rendering.tiles import compose, empty_layers, tile
 from eigenfield.scene import Basis, Plane, Scene
 from eigenfield.viewplane import fit_view_plane
 
@@ -130,7 +130,7 @@ def composition(scene: Scene) -> dict[str, Any]:
     plane = scene.planes[0]
     basis = plane.bases[0]
     omega = view_weights(scene, (0.31, -0.17)) @ basis.weights
-    tiled = tile_plane(plane, np.ones((SIDE // TILE, SIDE // TILE), bool))
+    tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE, SIDE // TILE), bool), 3)
     layers, tiles = empty_layers(SIDE, SIDE, 3), np.arange(len(tiled.places))
     ours = best(lambda: compose(tiled, omega, tiles, layers))
     values = basis.values().reshape(basis.count, -1)

@@ -99,3 +99,37 @@ def bilinear(texture, uv):
     upper = (1 - fx) * texture[top, left] + fx * texture[top, left + 1]
     lower = (1 - fx) * texture[top + 1, left] + fx * texture[top + 1, left + 1]
     return (1 - fy) * upper + fy * lower
+
+
+def finer(texture, size):
+    """(h, w, C) made `size` = (H, W) by Catmull and Rom's cubic, texel centres on texel centres, borders repeated."""
+    for axis, fine in enumerate(size):
+        coarse = texture.shape[axis]
+        x = (np.arange(fine) + 0.5) / fine * coarse - 0.5
+        base = np.floor(x).astype(int)
+        total = 0
+        for tap in range(-1, 3):
+            d = np.abs(x - (base + tap))
+            weight = np.where(d < 1, 1.5 * d**3 - 2.5 * d**2 + 1, -0.5 * d**3 + 2.5 * d**2 - 4 * d + 2)
+            shape = [1, 1, 1]
+            shape[axis] = fine
+            total = total + weight.reshape(shape) * np.take(texture, np.clip(base + tap, 0, coarse - 1), axis)
+        texture = total
+    return texture
+
+
+def composite(scene, mix):
+    """(H, W, D): what is drawn for view weights mix (Ne,): each plane's mean and sums made as fine as the finest,
+    channels side by side, then joined by `to_rgb`."""
+    channels = []
+    for plane in scene.planes:
+        total = finer(plane.mean.astype(float), scene.atlas)
+        for basis in plane.bases:
+            sum_ = np.zeros((*basis.size, plane.mean.shape[2]))
+            (row, column), (height, width) = basis.corner, basis.textures.shape[1:3]
+            inside = sum_[row : row + height, column : column + width]
+            inside += np.tensordot(mix @ basis.weights, basis.values().astype(float), 1)
+            total += finer(sum_, scene.atlas)
+        channels.append(total)
+    stacked = np.concatenate(channels, axis=2)
+    return stacked if scene.to_rgb is None else stacked @ scene.to_rgb.T.astype(float)

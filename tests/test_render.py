@@ -12,7 +12,7 @@ from scenes import tiny_scene
 
 import eigenfield as ef
 from eigenfield.camera import Camera
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.errors import OptionError
 from eigenfield.mesh import Mesh
 from eigenfield.parallel import set_threads
 from eigenfield.raster import rasterise_view
@@ -198,18 +198,6 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
     drawn = Renderer(apart).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
     expected = Renderer(scene).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
     np.testing.assert_allclose(drawn.image, expected.image, atol=1e-6)
-
-
-def test_layouts_that_cannot_be_drawn_yet_are_refused():
-    scene = tiny_scene()
-    (plane,) = scene.planes
-    coarse = replace(plane.bases[0], textures=plane.bases[0].textures[:, ::2, ::2])
-    with pytest.raises(FormatError) as caught:
-        Renderer(replace(scene, planes=(Plane(plane.mean, (coarse,)),)))
-    assert caught.value.code == "unsupported-layout"
-    small = Plane(plane.mean[::2, ::2], (coarse,))
-    with pytest.raises(FormatError):
-        Renderer(replace(scene, planes=(plane, small)))
 
 
 def test_tiles_out_of_sight_are_not_needed():

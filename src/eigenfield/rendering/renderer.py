@@ -7,15 +7,17 @@ import threading
 import weakref
 from collections import deque
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eigenfield.camera import Camera
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.errors import OptionError
 from eigenfield.mesh import Mesh
 from eigenfield.rendering.colours import camera_colour, undo_colour
+from eigenfield.rendering.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.drawing import (
     Frame,
     Surface,
@@ -28,7 +30,7 @@ from eigenfield.rendering.drawing import (
 )
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.tiles import compose, empty_layers, fill_layers, read_layers, tile_plane
+from eigenfield.rendering.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import camera_weights, view_weights
 from eigenfield.scene import Scene
 
@@ -36,30 +38,24 @@ BLACK = (0.0, 0.0, 0.0)
 SPARE_FRAMES = 4  # sets of buffers kept for the next picture
 
 
-class Renderer:
-    """Draws a scene; prepared once, then callable from any number of threads at a time.
+@dataclass(frozen=True, eq=False)
+class Buffers:
+    """What one picture in the making needs: see `Frame`, `make_buffers` and `empty_layers`."""
 
-    Raises FormatError `unsupported-layout` for scenes whose planes or bases differ in size.
-    """
+    frame: Frame
+    sums: list[NDArray[np.float32]]
+    layers: NDArray[np.float32]
+
+
+class Renderer:
+    """Draws a scene; prepared once, then callable from any number of threads at a time."""
 
     def __init__(self, scene: Scene) -> None:
-        sizes = {plane.mean.shape[:2] for plane in scene.planes}
-        if len(sizes) != 1:
-            raise FormatError(
-                "unsupported-layout",
-                "planes of different sizes cannot be drawn yet",
-                where="planes",
-                remedy="encode with one size",
-            )
-        height, width = sizes.pop()
-        self._depths = [int(plane.mean.shape[2]) for plane in scene.planes]
-        self.channels = sum(self._depths)
-        self._surface = make_surface(scene.mesh, height, width)
+        self.channels = scene.channels
+        self._surface = make_surface(scene.mesh, *scene.atlas)
         self._detail = median_footprint(self._surface, scene.cameras[scene.reference])
-        self._planes = tuple(tile_plane(plane, self._surface.used) for plane in scene.planes)
-        self._number = np.full(self._surface.used.shape, -1, np.int64)
-        self._number[self._surface.used] = np.arange(self._surface.used.sum())
-        self._spare: deque[tuple[Frame, list[NDArray[np.float32]]]] = deque(maxlen=SPARE_FRAMES)
+        self._composite = make_composite(scene, self._surface.used)
+        self._spare: deque[Buffers] = deque(maxlen=SPARE_FRAMES)
 
     def draw(
         self,
@@ -105,10 +101,9 @@ class Renderer:
 
     def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
         """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
-        layers = self._empty_layers()
-        self._compose(weights, textures, self._surface.used, layers)
-        parts = [read_layers(part, *self._surface.size, n) for part, n in zip(layers, self._depths, strict=True)]
-        return np.concatenate(parts, axis=2)
+        layers = empty_layers(*self._surface.size, self.channels)
+        compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
+        return read_layers(layers, *self._surface.size, self.channels)
 
     def _draw(
         self,
@@ -126,40 +121,27 @@ class Renderer:
         behind = background_of(background, self.channels)
         k = sample_count(self._surface, camera, samples, self._detail)
         height, width = camera.height, camera.width
-        frame, layers = self._take((height * k, width * k))
+        buffers = self._take((height * k, width * k))
+        frame = buffers.frame
         cover(self._surface, camera.resized(width * k, height * k) if k > 1 else camera, frame)
-        self._compose(weights, textures, frame.needed != 0, layers)
+        compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
+        image = np.empty((height, width, self.channels), dtype)
         coverage = np.empty((height, width), np.float32)
-        images, at = [], 0
-        for part, depth in zip(layers, self._depths, strict=True):
-            image = np.empty((height, width, depth), dtype)
-            shade(self._surface, frame, part, filter, behind[at : at + depth], k, image, coverage)
-            images.append(image)
-            at += depth
-        self._spare.append((frame, layers))
-        return images[0] if len(images) == 1 else np.concatenate(images, axis=2), coverage
+        shade(self._surface, frame, buffers.layers, filter, behind, k, image, coverage)
+        self._spare.append(buffers)
+        return image, coverage
 
-    def _compose(
-        self, weights: ArrayLike, textures: int | None, needed: NDArray[np.bool_], layers: list[NDArray[np.float32]]
-    ) -> None:
-        tiles = self._number[needed & self._surface.used]
-        for plane, part in zip(self._planes, layers, strict=True):
-            omega = np.asarray(weights, np.float64) @ plane.weights if plane.weights.size else np.zeros(0)
-            compose(plane, omega[:textures], tiles, part)
-
-    def _empty_layers(self) -> list[NDArray[np.float32]]:
-        return [empty_layers(*self._surface.size, depth) for depth in self._depths]
-
-    def _take(self, shape: tuple[int, int]) -> tuple[Frame, list[NDArray[np.float32]]]:
+    def _take(self, shape: tuple[int, int]) -> Buffers:
         """Buffers for a picture of `shape`: spare ones of that size, or new ones."""
         for _ in range(len(self._spare)):
             try:
                 spare = self._spare.pop()
             except IndexError:  # another thread was faster
                 break
-            if spare[0].size == shape:
+            if spare.frame.size == shape:
                 return spare
-        return Frame(self._surface, *shape), self._empty_layers()
+        layers = empty_layers(*self._surface.size, self.channels)
+        return Buffers(Frame(self._surface, *shape), make_buffers(self._composite), layers)
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:

@@ -12,74 +12,82 @@ in blocks of 16 texels 5.1; and written out as (H, W, 4) 10.6, as tiles 6.2: the
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import FormatError
 from eigenfield.parallel import parallel_map, pieces
 from eigenfield.rendering.kernels import AREA, DEPTH, LANES, TILE, compose_tiles
-from eigenfield.scene import Plane
+from eigenfield.scene import Basis
 
 AT_ONCE = 64  # tiles that a thread composes at a time
 
 
 @dataclass(frozen=True, eq=False)
-class TiledPlane:
-    """A plane's mean and bases by tile.
+class Tiled:
+    """A mean and components of one size, by tile.
 
-    mean: (tiles, C, AREA) float32. codes: (tiles, C, G, AREA / LANES, 4, LANES), uint8 as stored or float32: the
-    components of all bases one after the other, in groups of four, the last filled up with zeros.
-    scale, zero: (N, C) float64. weights: (Ne, N) float64. places: (tiles,) the tiles' numbers in the atlas.
+    mean: (tiles, C, AREA) float32. codes: (tiles, C, G, AREA / LANES, 4, LANES), uint8 or uint16 as stored, or float32:
+    the components of all bases one after the other, in groups of four, the last filled up with zeros.
+    scale, zero: (N, C) float64. places: (tiles,) the tiles' numbers in the atlas.
     """
 
     mean: NDArray[np.float32]
     codes: NDArray[Any]
     scale: NDArray[np.float64]
     zero: NDArray[np.float64]
-    weights: NDArray[np.float64]
     places: NDArray[np.int64]
 
 
-def tile_plane(plane: Plane, used: NDArray[np.bool_]) -> TiledPlane:
-    """Lay out a plane's textures; `used` (tile rows, tile columns) are the tiles kept.
+def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray[np.bool_], channels: int) -> Tiled:
+    """Lay out bases that share their size, grid and corner, and a mean (H, W, C) of that size, None for zeros.
 
-    Raises FormatError `unsupported-layout` if a basis has another size or other channels than the mean.
+    used: (tile rows, tile columns) of the grid, the tiles kept.
     """
-    height, width, channels = plane.mean.shape
-    for number, basis in enumerate(plane.bases):
-        if basis.textures.shape[1:] != (height, width, channels):
-            theirs = "x".join(str(n) for n in basis.textures.shape[1:])
-            raise FormatError(
-                "unsupported-layout",
-                f"eigen textures of {theirs} on a mean of {height}x{width}x{channels} cannot be drawn yet",
-                where=f"basis {number}",
-                remedy="encode with mean and eigen textures of one size",
-            )
+    size, corner = (bases[0].size, bases[0].corner) if bases else (mean_size(mean), (0, 0))
     places = np.flatnonzero(used)
-    textures = [texture for basis in plane.bases for texture in basis.textures]
-    coded = all(texture.dtype == np.uint8 for texture in textures)
+    textures = [texture for basis in bases for texture in basis.textures]
+    kinds = {texture.dtype for texture in textures} | {np.dtype(np.uint8)}
     shape = (len(places), channels, -(-len(textures) // 4), AREA // LANES, 4, LANES)
-    codes = np.zeros(shape, np.uint8 if coded else np.float32)
+    codes = np.zeros(shape, np.result_type(*kinds) if all(kind.kind == "u" for kind in kinds) else np.float32)
 
     def place(j: int) -> None:
-        cut = cut_tiles(textures[j], channels)[places]
+        cut = cut_tiles(_in_grid(textures[j], size, corner), channels)[places]
         codes[:, :, j // 4, :, j % 4, :] = cut.reshape(len(places), channels, AREA // LANES, LANES)
 
     parallel_map(place, range(len(textures)))
     none = np.zeros((0, channels))
-    return TiledPlane(
-        np.ascontiguousarray(cut_tiles(plane.mean, channels)[places], dtype=np.float32),
+    start = np.zeros((len(places), channels, AREA), np.float32) if mean is None else cut_tiles(mean, channels)[places]
+    return Tiled(
+        np.ascontiguousarray(start, dtype=np.float32),
         codes,
-        np.concatenate([none, *(basis.scale.astype(np.float64) for basis in plane.bases)]),
-        np.concatenate([none, *(basis.zero.astype(np.float64) for basis in plane.bases)]),
-        np.concatenate([basis.weights.astype(np.float64) for basis in plane.bases], axis=1)
-        if plane.bases
-        else np.zeros((0, 0)),
+        np.concatenate([none, *(basis.scale.astype(np.float64) for basis in bases)]),
+        np.concatenate([none, *(basis.zero.astype(np.float64) for basis in bases)]),
         places,
     )
+
+
+def mean_size(mean: NDArray[np.float32] | None) -> tuple[int, int]:
+    assert mean is not None, "neither a mean nor components"
+    return int(mean.shape[0]), int(mean.shape[1])
+
+
+def tile_shape(size: tuple[int, int]) -> tuple[int, int]:
+    """Tile rows and columns of an atlas of `size`."""
+    return -(-size[0] // TILE), -(-size[1] // TILE)
+
+
+def _in_grid(texture: NDArray[Any], size: tuple[int, int], corner: tuple[int, int]) -> NDArray[Any]:
+    """A texture at its place in the grid; what lies outside is cleared after summing, whatever stands here."""
+    if texture.shape[:2] == size:
+        return texture
+    whole = np.zeros((*size, texture.shape[2]), texture.dtype)
+    row, column = corner
+    whole[row : row + texture.shape[0], column : column + texture.shape[1]] = texture
+    return whole
 
 
 def cut_tiles(texture: NDArray[Any], channels: int) -> NDArray[Any]:
@@ -113,9 +121,7 @@ def read_layers(layers: NDArray[np.float32], height: int, width: int, channels: 
     return np.ascontiguousarray(whole[:height, :width, :channels])
 
 
-def compose(
-    plane: TiledPlane, omega: NDArray[np.float64], tiles: NDArray[np.int64], layers: NDArray[np.float32]
-) -> None:
+def compose(plane: Tiled, omega: NDArray[np.float64], tiles: NDArray[np.int64], layers: NDArray[np.float32]) -> None:
     """Equation 8: mean + sum of omega (n,) times the first n components, for `tiles` (indices into `places`), into
     layers (L, tiles of the atlas, AREA, 4)."""
     count, channels = len(omega), plane.mean.shape[1]

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.errors import OptionError
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
-from eigenfield.rendering.kernels import TILE
+from eigenfield.rendering.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.shots import refuse_attributes
-from eigenfield.rendering.tiles import compose, empty_layers, read_layers, tile_plane
+from eigenfield.rendering.tiles import empty_layers, read_layers, tile_shape
 from eigenfield.scene import Scene
 from eigenfield.texturing import png_bytes
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
@@ -32,8 +32,7 @@ def write_maps(
     cut to 0..1. `eigenfield.json` says which file is whose.
 
     Texels that no camera saw are what the file holds there. A harmonised scene's maps are in the common exposure.
-    textures: how many eigen textures to sum. Raises OutputError, OptionError (`textures`, `not-a-picture`) and
-    FormatError `unsupported-layout`.
+    textures: how many eigen textures to sum. Raises OutputError, OptionError (`textures`, `not-a-picture`).
     """
     if textures is not None and textures < 0:
         raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
@@ -44,30 +43,21 @@ def write_maps(
     with atomic_folder(folder, overwrite) as part:
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
             put(part / file, data)
-        height, width = scene.planes[0].mean.shape[:2]
+        height, width = scene.atlas
         write_listing(part, "maps", {"size": [width, height], "maps": dict(zip(names, files, strict=True))})
 
 
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
     """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
-    refuse_attributes(sum(plane.mean.shape[2] for plane in scene.planes))
-    sizes = {plane.mean.shape[:2] for plane in scene.planes}
-    if len(sizes) != 1:
-        raise FormatError(
-            "unsupported-layout", "planes of different sizes make no one map", where="planes", remedy="encode with one"
-        )
-    height, width = sizes.pop()
-    every = np.ones((-(-height // TILE), -(-width // TILE)), np.bool_)
-    planes = [tile_plane(plane, every) for plane in scene.planes]
+    refuse_attributes(scene.channels)
+    every = np.ones(tile_shape(scene.atlas), np.bool_)
+    composite = make_composite(scene, every)
 
     def make(row: int, textures: int | None) -> NDArray[np.float32]:
-        parts = []
-        for plane, tiled in zip(scene.planes, planes, strict=True):
-            channels = plane.mean.shape[2]
-            layers = empty_layers(height, width, channels)
-            omega = tiled.weights[row][:textures] if tiled.weights.size else np.zeros(0)
-            compose(tiled, omega, np.arange(every.size), layers)
-            parts.append(read_layers(layers, height, width, channels))
-        return np.concatenate(parts, axis=2)
+        layers = empty_layers(*scene.atlas, scene.channels)
+        mix = np.zeros(len(scene.encoded))
+        mix[row] = 1
+        compose_scene(composite, mix, textures, every, make_buffers(composite), layers)
+        return read_layers(layers, *scene.atlas, scene.channels)
 
     return make
