@@ -30,13 +30,21 @@ FLOORS = {
     ],
     1: ["capture", "stereo"],
     2: ["calibrate", "proxy", "basis", "texturing"],
-    3: ["rendering", "format", "pipeline", "holdout", "reconstruction"],
+    3: ["rendering", "format", "fitting", "pipeline", "holdout", "reconstruction"],
     4: ["evaluation", "demo", "viewer"],
     5: ["cli", "__init__"],
     6: ["__main__"],
 }
 FLOOR = {room: floor for floor, rooms in FLOORS.items() for room in rooms}
-SAME_FLOOR = {("basis", "texturing"), ("pipeline", "rendering"), ("pipeline", "holdout"), ("reconstruction", "holdout")}
+SAME_FLOOR = {
+    ("basis", "texturing"),
+    ("fitting", "rendering"),
+    ("fitting", "format"),
+    ("pipeline", "fitting"),
+    ("pipeline", "rendering"),
+    ("pipeline", "holdout"),
+    ("reconstruction", "holdout"),
+}
 EXCEPTIONS = {("scene.py", "format"), ("scene.py", "viewer")}  # Scene.save, and how a notebook shows a scene
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -28,6 +28,7 @@ from eigenfield.basis import (
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import CaptureError, OptionError
+from eigenfield.fitting import FIT_QUALITY, fit_planes, fitted_textures, open_shots
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
@@ -54,6 +55,7 @@ from eigenfield.viewplane import fit_view_plane
 log = logging.getLogger("eigenfield.encode")
 
 DEFAULT_TEXTURES = 15
+FITS = ("none", "photographs")
 DEFAULT_DENSITY = 1.5
 ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
 
@@ -62,7 +64,7 @@ ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a 
 class Options:
     """What `encode` was asked for; each is described there."""
 
-    textures: int = DEFAULT_TEXTURES
+    textures: int | None = None
     uv_ssim: float | None = None
     density: float = DEFAULT_DENSITY
     atlas: int | tuple[int, int] | None = None
@@ -72,9 +74,12 @@ class Options:
     resampling: str = "bicubic"
     harmonise: str | None = None
     metres_per_unit: float | None = None
+    fit: str = "none"
+    quality: int | None = None
 
     def __post_init__(self) -> None:
-        if self.textures < 0:
+        self._check_fit()
+        if self.textures is not None and self.textures < 0:
             raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
         check_scale(self.metres_per_unit)
         if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
@@ -92,6 +97,18 @@ class Options:
                 raise OptionError(
                     "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
                 )
+
+    def _check_fit(self) -> None:
+        if self.fit not in FITS:
+            raise OptionError("fit", f"no fit is called {self.fit}", remedy=f"use one of {', '.join(FITS)}")
+        if self.quality is not None and not 0 <= self.quality <= 100:
+            raise OptionError("quality", f"a quality of {self.quality}", remedy="use 0 to 100")
+        asked = {"align": self.align, "uv-ssim": self.uv_ssim, "harmonise": self.harmonise}
+        maps = [name for name, value in asked.items() if value is not None]
+        if self.fit != "none" and maps:
+            raise OptionError(
+                "fit", f"--{maps[0]} is about texture maps, and a fit makes none", remedy="leave it out, or --fit none"
+            )
 
 
 def check_options(capture: LightField | PhotoSet, options: Options) -> None:
@@ -112,7 +129,7 @@ def encode(
     capture: LightField,
     proxy: str | os.PathLike[str] | Mesh,
     *,
-    textures: int = DEFAULT_TEXTURES,
+    textures: int | None = None,
     uv_ssim: float | None = None,
     density: float = DEFAULT_DENSITY,
     atlas: int | tuple[int, int] | None = None,
@@ -123,30 +140,38 @@ def encode(
     resampling: str = "bicubic",
     harmonise: str | None = None,
     metres_per_unit: float | None = None,
+    fit: str = "none",
+    quality: int | None = None,
     keep_maps: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Scene:
     """Encode a light field on a proxy mesh (the paper's sections 3.2 and 3.3).
 
-    textures: N, at most one less than there are encoded cameras. uv_ssim: instead, the smallest N whose UV measure
-    reaches this. density: atlas texels per photograph pixel along one axis, in the camera nearest the centre; the side
-    is at most 4096, and the texels at most twice the photographs' pixels. atlas: its side, or (width, height),
-    outright. triangles: simplify the proxy to this many; without it only a mesh that needs an atlas and has over
-    30,000. align: "dis" or "tvl1", optical-flow alignment to the
-    reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
+    textures: N, at most one less than there are encoded cameras; None: 15, of a fit by the number of cameras.
+    uv_ssim: instead, the smallest N whose UV measure reaches this. density: atlas texels per photograph pixel along
+    one axis, in the camera nearest the centre; the side is at most 4096, and the texels at most twice the
+    photographs' pixels. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many;
+    without it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to
+    the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
     scene keeps them for drawing its captured cameras. metres_per_unit: metres in one unit of the cameras' world, by
-    which a headset shows the scene in its real size; without it what the capture's format says, if it does. keep_maps:
-    folder for the filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x
-    cameras x texels).
+    which a headset shows the scene in its real size; without it what the capture's format says, if it does. fit:
+    "none" is the paper's way; "photographs" fits means, textures and weights, luma apart from chroma, until the drawn
+    pictures match the photographs, to textures as they are coded at `quality` (0 to 100): `align`, `uv_ssim`,
+    `harmonise`, `resampling` and `keep_maps` are about texture maps, which it does not make. keep_maps: folder for
+    the filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x cameras x
+    texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
     options = Options(
-        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit
-    )
+        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
+        quality,
+    )  # fmt: skip
+    if fit != "none" and keep_maps is not None:
+        raise OptionError("fit", "a fit makes no texture maps to keep", remedy="leave --keep-maps out, or --fit none")
     names = [view.name for view in capture.views]
     cameras = [view.camera.rounded() for view in capture.views]
     plane = fit_view_plane(cameras)
@@ -158,7 +183,6 @@ def encode(
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     width, height = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
-    layout = make_atlas(mesh, width, height)
     shown = capture.subset(encoded.tolist())
 
     def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
@@ -167,22 +191,28 @@ def encode(
 
     used = [cameras[i] for i in encoded]
     place = None if work is None else Path(work)
-    with texture_maps(layout, used, photograph, resampling=resampling, work=place, progress=progress) as maps:
-        fitted = None if harmonise is None else harmonise_maps(maps, harmonise, progress)
-        shown_names = [names[i] for i in encoded]
-        scene_basis, mean, spreader = _decompose(
-            maps, shown_names, options, int(np.searchsorted(encoded, centre)), place, progress
-        )
-        if keep_maps is not None:
-            write_maps(maps, mean.values, spreader, shown_names, Path(keep_maps), progress=progress)
+    fitted, to_rgb = None, None
+    if options.fit != "none":
+        planes, to_rgb, reached = _fit(used, photograph, mesh, (height, width), options, place, progress)
+        own: dict[str, Any] = {"fit": options.fit, "fitted": reached}
+    else:
+        layout = make_atlas(mesh, width, height)
+        with texture_maps(layout, used, photograph, resampling=resampling, work=place, progress=progress) as maps:
+            fitted = None if harmonise is None else harmonise_maps(maps, harmonise, progress)
+            shown_names = [names[i] for i in encoded]
+            scene_basis, mean, spreader = _decompose(
+                maps, shown_names, options, int(np.searchsorted(encoded, centre)), place, progress
+            )
+            if keep_maps is not None:
+                write_maps(maps, mean.values, spreader, shown_names, Path(keep_maps), progress=progress)
+        planes = (Plane(spreader(mean.values), (scene_basis,)),)
+        own = {"uvSsim": uv_ssim, "align": align, "resampling": resampling}
     settings = {
-        "textures": scene_basis.count,
-        "uvSsim": uv_ssim,
+        "textures": max(sum(basis.count for basis in one.bases) for one in planes),
         "atlas": [width, height],
         "density": round(float(np.sqrt(width * height)) * texels_per_pixel(mesh, cameras[centre]), 4),
-        "align": align,
         "holdOut": hold_out,
-        "resampling": resampling,
+        **own,
         **({} if harmonise is None else {"harmonise": harmonise}),
         **_scale(capture, metres_per_unit),
         **_lenses(capture),
@@ -194,7 +224,7 @@ def encode(
     }
     return Scene(
         mesh=mesh,
-        planes=(Plane(spreader(mean.values), (scene_basis,)),),
+        planes=planes,
         names=tuple(names),
         cameras=tuple(cameras),
         held_out=held,
@@ -204,7 +234,26 @@ def encode(
         settings=settings,
         generator=f"eigenfield {__version__}",
         colours=None if fitted is None else _colours(fitted, held),
+        to_rgb=to_rgb,
     )
+
+
+def _fit(
+    cameras: Sequence[Camera],
+    photograph: Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]],
+    mesh: Mesh,
+    atlas: tuple[int, int],
+    options: Options,
+    work: Path | None,
+    progress: Progress | None,
+) -> tuple[tuple[Plane, ...], NDArray[np.float32], dict[str, Any]]:
+    """Planes fitted to the photographs, the matrix that joins them, and what the settings say of the fit."""
+    textures = fitted_textures(len(cameras)) if options.textures is None else options.textures
+    quality = FIT_QUALITY if options.quality is None else options.quality
+    with open_shots(cameras, photograph, mesh, atlas, work, progress) as shots:
+        planes, to_rgb, found = fit_planes(shots, component_count(textures, len(cameras)), quality, work, progress)
+    reached = {name: {"uncoded": round(one.uncoded, 3), "coded": round(one.coded, 3)} for name, one in found.items()}
+    return planes, to_rgb, {"quality": quality, "psnr": reached}
 
 
 def _decompose(
@@ -229,7 +278,8 @@ def _decompose(
     decomposition = spectrum(gram)
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:
-        count = component_count(options.textures, maps.cameras)
+        asked = DEFAULT_TEXTURES if options.textures is None else options.textures
+        count = component_count(asked, maps.cameras)
     else:
         average = spreader(mean.values)
         count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)

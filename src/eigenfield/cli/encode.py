@@ -59,10 +59,8 @@ Examples:
     "--textures",
     "-n",
     type=int,
-    default=15,
-    show_default=True,
     metavar="N",
-    help="Eigen textures to keep; at most one less than there are cameras.",
+    help="Eigen textures to keep; at most one less than there are cameras.  [default: 15; with --fit by the cameras]",
 )
 @click.option("--uv-ssim", type=float, metavar="S", help="Instead: as few as reach this SSIM in UV space (0.98, say).")
 @click.option(
@@ -120,11 +118,17 @@ Examples:
 @click.option(
     "--codec",
     type=click.Choice(["avif", "webp", "png"]),
-    default="avif",
-    show_default=True,
-    help="Pictures in the file: avif is lossy and small, webp and png keep 8 bits exactly.",
+    help="Pictures in the file: avif is lossy and small, webp and png keep 8 bits exactly.  [default: avif]",
 )
-@click.option("--quality", type=click.IntRange(0, 100), metavar="Q", help="Quality of avif, 0 to 100.")
+@click.option("--quality", type=click.IntRange(0, 100), metavar="Q", help="Quality of avif, 0 to 100.  [default: 70]")
+@click.option(
+    "--fit",
+    type=click.Choice(["none", "photographs"]),
+    default="none",
+    show_default=True,
+    help="none: project the photographs into the textures, as the paper does. photographs: fit the textures until the "
+    "drawn pictures match the photographs; smaller, better, takes minutes.",
+)
 @click.option(
     "--keep-maps",
     type=click.Path(path_type=Path),
@@ -155,7 +159,7 @@ def command(
     format: str | None,
     grid: tuple[int, int] | None,
     frame: str | None,
-    textures: int,
+    textures: int | None,
     uv_ssim: float | None,
     density: float,
     atlas: int | tuple[int, int] | None,
@@ -166,7 +170,8 @@ def command(
     reference: str | None,
     hold_out: str | None,
     resampling: str,
-    codec: str,
+    codec: str | None,
+    fit: str,
     quality: int | None,
     keep_maps: Path | None,
     work: Path | None,
@@ -183,18 +188,21 @@ def command(
     from eigenfield.capture import open_any, open_capture
     from eigenfield.files import mended, refuse_existing
     from eigenfield.format import parts, save
-    from eigenfield.format.pictures import check_codec
+    from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
     from eigenfield.mesh import Mesh
     from eigenfield.pipeline import Options, check_options, encode
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
-    check_codec(codec, quality)
+    check_codec(codec or DEFAULT_CODEC, quality)
+    if fit != "none" and codec is not None:
+        raise OptionError("codec", "a fit codes its pictures itself (10-bit AVIF)", remedy="leave --codec out")
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
-        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit
-    )
+        textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
+        quality,
+    )  # fmt: skip
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
         if proxy is not None:
@@ -227,9 +235,11 @@ def command(
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
-            metres_per_unit=metres_per_unit, keep_maps=keep_maps, work=scratch, progress=progress,
+            metres_per_unit=metres_per_unit, fit=fit, quality=quality, keep_maps=keep_maps, work=scratch,
+            progress=progress,
         )  # fmt: skip
-        save(scene, output, codec=codec, quality=quality, overwrite=overwrite, progress=progress)
+        kept = fit != "none"  # coded already
+        save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]

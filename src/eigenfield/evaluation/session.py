@@ -139,19 +139,20 @@ def start_session(
         raise OptionError("png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAPS)}")
     if curve not in CURVES:
         raise OptionError("curve", f"no cameras of a curve are called {curve}", remedy=f"use {', '.join(CURVES)}")
-    if len(scene.planes) != 1 or scene.planes[0].mean.shape[2] != 3:
+    if scene.channels != 3:
         raise OptionError(
             "not-photographs",
-            "the scene is not of photographs (one plane of R, G, B)",
+            f"the scene is not of photographs: it has {scene.channels} channels, not R, G, B",
             remedy="evaluate those that are",
         )
     photographs = match_photographs(scene, capture)
     resampling, align = _recorded(scene)
-    encoded = [int(index) for index in scene.encoded if int(index) in photographs]
+    maps = len(scene.planes) == 1 and scene.to_rgb is None  # a fit makes none
+    encoded = [int(index) for index in scene.encoded if int(index) in photographs] if maps else []
     if align is not None and scene.reference not in photographs:
         log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])
         encoded = []
-    height, width = scene.planes[0].mean.shape[:2]
+    height, width = scene.atlas
     some = {"all": encoded, "sample": evenly(encoded, SAMPLE), "none": []}
     count = _count(scene, textures)
     session = Session(

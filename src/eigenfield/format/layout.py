@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
-from eigenfield.format import limits, pictures
+from eigenfield.format import deep, limits, pictures
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.quantise import Affine
@@ -26,7 +26,7 @@ from eigenfield.viewplane import ViewPlane
 
 _LARGEST = 1e30  # of scales, zeros and lengths: squares and products stay finite
 _KEYS = {
-    "version", "needs", "planes", "cameras", "viewPlane", "reference", "settings", "scores", "generator"
+    "version", "needs", "planes", "toRGB", "cameras", "viewPlane", "reference", "settings", "scores", "generator"
 }  # fmt: skip
 
 
@@ -35,7 +35,8 @@ class Picture:
     """Codes in the file.
 
     width, height, channels: of the array that it decodes to.
-    affine: the way back to numbers, per channel; None: code / 255.
+    affine: the way back to numbers, per channel (of every texture in it); None: code / 255.
+    bits: of the codes, 8 or 10. count: textures in it, one below the other.
     """
 
     data: memoryview
@@ -45,19 +46,31 @@ class Picture:
     channels: int
     affine: Affine | None
     where: str
+    bits: int = 8
+    count: int = 1
 
-    def decode(self) -> NDArray[np.uint8]:
-        """(height, width, channels) uint8. FormatError: see `pictures.decode`."""
-        return pictures.decode(self.data, self.mime, self.width, self.height, self.channels, self.where)
+    def decode(self) -> NDArray[Any]:
+        """(count, height, width, channels) uint8, of 10 bits uint16. FormatError: see `pictures.decode`."""
+        size = (self.width, self.height, self.channels)
+        if self.count == 1 and self.bits == 8:
+            return pictures.decode(self.data, self.mime, *size, self.where)[None]
+        return pictures.decode_stack(self.data, self.mime, *size, self.count, self.bits, self.where)
 
 
 @dataclass(frozen=True, eq=False)
 class BasisLayout:
-    """size: (width, height). weights: (Ne, N) float32."""
+    """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
+    part, None: all of it. corner: row and column in it."""
 
     size: tuple[int, int]
     textures: tuple[Picture, ...]
     weights: NDArray[np.float32]
+    grid: tuple[int, int] | None = None
+    corner: tuple[int, int] = (0, 0)
+
+    @property
+    def count(self) -> int:
+        return sum(picture.count for picture in self.textures)
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +104,7 @@ class Layout:
     view_plane: ViewPlane | None
     triangles: NDArray[np.int32] | None
     reference: int | None
+    to_rgb: NDArray[np.float32] | None
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
@@ -104,7 +118,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     if extension is None:
         return None
     version = extension["version"].text()
-    if version not in (limits.FIRST, limits.VERSION):
+    if version not in (limits.FIRST, limits.SECOND, limits.VERSION):
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )
@@ -116,7 +130,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         findings.note(
             "warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean"
         )
-    mesh = cameras = planes = view_plane = triangles = reference = None
+    mesh = cameras = planes = view_plane = triangles = reference = to_rgb = None
     settings: Mapping[str, Any] = {}
     scores: Mapping[str, Any] = {}
     generator = ""
@@ -131,7 +145,9 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     with findings.part():
         planes = read_planes(document, extension["planes"], cameras, findings)
     with findings.part():
-        check_colours(extension["cameras"], cameras, planes)
+        to_rgb = read_matrix(extension, planes)
+    with findings.part():
+        check_colours(extension["cameras"], cameras, planes, to_rgb)
     with findings.part():
         view_plane = read_view_plane(extension["viewPlane"])
     with findings.part():
@@ -145,7 +161,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         scores = extension["scores"].mapping() if extension.has("scores") else {}
     with findings.part():
         generator = extension["generator"].text() if extension.has("generator") else ""
-    return Layout(version, mesh, planes, cameras, view_plane, triangles, reference, settings, scores, generator)
+    return Layout(version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator)
 
 
 def find_extension(document: Document) -> Value:
@@ -255,9 +271,28 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
     return CameraList(tuple(names), cameras, held_out, colours)
 
 
-def check_colours(entry: Value, cameras: CameraList | None, planes: tuple[PlaneLayout, ...] | None) -> None:
+def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray[np.float32] | None:
+    """(3, K) float32: R, G, B from the channels of all planes. FormatError: `plane-matrix`."""
+    if not entry.has("toRGB"):
+        return None
+    channels = 0 if planes is None else sum(plane.mean.channels for plane in planes)
+    most = limits.MAX_PLANES * limits.MAX_CHANNELS
+    numbers = [item.number(limits.MAX_GAIN) for item in entry["toRGB"].items(3 * most, 3)]
+    if planes is not None and len(numbers) != 3 * channels:
+        entry["toRGB"].fail("plane-matrix", f"{len(numbers)} numbers, 3 for each of {channels} channels expected")
+    return None if planes is None else np.array(numbers, np.float32).reshape(3, channels)
+
+
+def check_colours(
+    entry: Value,
+    cameras: CameraList | None,
+    planes: tuple[PlaneLayout, ...] | None,
+    to_rgb: NDArray[np.float32] | None,
+) -> None:
     """Colours are those of R, G and B. FormatError: `camera-colour`."""
-    if cameras is not None and cameras.colours is not None and planes and planes[0].mean.channels != 3:
+    if cameras is None or cameras.colours is None or not planes or to_rgb is not None:
+        return
+    if planes[0].mean.channels != 3:
         entry["colour"].fail("camera-colour", "colours of cameras, but the first plane has not three channels")
 
 
@@ -303,12 +338,16 @@ def read_planes(
         _read_plane(document, plane, index, cameras, findings)
         for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
     )
-    count = sum(len(basis.textures) for plane in planes for basis in plane.bases)
+    count = sum(basis.count for plane in planes for basis in plane.bases)
     if count > limits.MAX_COMPONENTS:
         entry.fail("plane-components", f"{count} eigen textures, {limits.MAX_COMPONENTS} are allowed")
     total = sum(
         4 * plane.mean.width * plane.mean.height * plane.mean.channels
-        + sum(basis.size[0] * basis.size[1] * plane.mean.channels * len(basis.textures) for basis in plane.bases)
+        + sum(
+            basis.size[0] * basis.size[1] * plane.mean.channels * picture.count * (1 if picture.bits == 8 else 2)
+            for basis in plane.bases
+            for picture in basis.textures
+        )
         for plane in planes
     )
     if total > limits.MAX_DECODED:
@@ -322,7 +361,7 @@ def _read_plane(
     channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
     if entry.has("mean"):
         size = _size(entry["mean"]["size"], channels)
-        mean = _picture(document, entry["mean"], size, channels, bare=True)
+        mean = _picture(document, entry["mean"], size, channels, 1, bare=True)
     elif index == 0 and channels in (1, 3):
         mean = read_image(document, channels)
     else:
@@ -350,14 +389,29 @@ def _read_basis(
     textures: list[Picture] = []
     for texture in entry["textures"].items(limits.MAX_COMPONENTS):
         with findings.part():
-            textures.append(_picture(document, texture, size, channels, bare=False))
-    count = len(entry["textures"].value)
+            count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
+            textures.append(_picture(document, texture, size, channels, count, bare=False))
+    whole = len(textures) == len(entry["textures"].value)  # else only while validating
+    count = sum(picture.count for picture in textures)
     rows = 0 if cameras is None else cameras.encoded
     weights = np.zeros((rows, 0), np.float32)
-    if count:
+    if count and whole:
         with findings.part():
             weights = _read_weights(document, entry["weights"], rows, count)
-    return BasisLayout(size, tuple(textures), weights)
+    return BasisLayout(size, tuple(textures), weights, *_region(entry, size))
+
+
+def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None, tuple[int, int]]:
+    """Grid (rows, columns) and corner (row, column) of a basis that is only a part. FormatError: `basis-region`."""
+    if not entry.has("grid"):
+        return None, (0, 0)
+    columns, rows = (item.integer(1, limits.MAX_SIDE) for item in entry["grid"].items(2, 2))
+    column, row = (
+        (item.integer(0, limits.MAX_SIDE) for item in entry["corner"].items(2, 2)) if entry.has("corner") else (0, 0)
+    )
+    if column + size[0] > columns or row + size[1] > rows:
+        entry["grid"].fail("basis-region", f"{size[0]}x{size[1]} at {column}, {row} leaves a grid of {columns}x{rows}")
+    return (rows, columns), (row, column)
 
 
 def _read_weights(document: Document, reference: Value, rows: int, count: int) -> NDArray[np.float32]:
@@ -379,14 +433,19 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
     return width, height
 
 
-def _picture(document: Document, entry: Value, size: tuple[int, int], channels: int, *, bare: bool) -> Picture:
+def _picture(
+    document: Document, entry: Value, size: tuple[int, int], channels: int, count: int, *, bare: bool
+) -> Picture:
     """bare: scale and zero may be absent."""
     data, mime = document.picture(entry["bufferView"]), entry["mimeType"].text()
+    bits = entry["bits"].integer(8, deep.BITS) if entry.has("bits") else 8
+    if bits not in (8, deep.BITS) or (bits != 8 and mime != deep.MIME):
+        entry["bits"].fail("picture-type", f"{bits} bits in a picture of type {mime}")
     affine = None
-    if not bare or entry.has("scale") or entry.has("zero"):
-        affine = Affine(*(np.array(_affine(entry[key], channels)) for key in ("scale", "zero")))
-    pictures.check_header(data, mime, *size, channels, entry.where)
-    return Picture(data, mime, *size, channels, affine, entry.where)
+    if not bare or bits != 8 or entry.has("scale") or entry.has("zero"):
+        affine = Affine(*(np.array(_affine(entry[key], channels * count)) for key in ("scale", "zero")))
+    pictures.check_header(data, mime, *size, channels, entry.where, count, bits)
+    return Picture(data, mime, *size, channels, affine, entry.where, bits, count)
 
 
 def _affine(entry: Value, channels: int) -> list[float]:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.1"  # a reader takes any 1.x
+VERSION = "1.2"  # a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
-FEATURES: frozenset[str] = frozenset()  # what an entry of "needs" may be
+SECOND = "1.1"  # colours of cameras
+FEATURES = frozenset({"bits", "regions", "stacks", "toRGB"})  # what an entry of "needs" may be
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk
@@ -20,7 +21,7 @@ MAX_CHANNELS = 64
 MAX_PLANES = 16
 MAX_BASES = 64  # of one plane
 MAX_COMPONENTS = 4_096  # eigen textures, of all planes together
-MAX_DECODED = 8 * 2**30  # bytes of all means (float32) and textures (uint8)
+MAX_DECODED = 8 * 2**30  # bytes of all means (float32) and textures (uint8, of 10 bits uint16)
 
 MAX_CAMERAS = 100_000
 MAX_CAMERA_SIDE = 65_535  # pixels

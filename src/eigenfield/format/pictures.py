@@ -1,4 +1,5 @@
-"""Pictures of 8-bit codes: PNG and WebP (lossless), AVIF (lossy); a JPEG for viewers that know nothing of us.
+"""Pictures of 8-bit codes: PNG and WebP (lossless), AVIF (lossy; of 10 bits in `deep`); a JPEG for viewers that know
+nothing of us.
 
 Codes of one channel are a grey picture, of three an RGB one; any other number is a grey picture in which the channels
 lie one below the other, the first on top. No profile, no orientation: the stored numbers are the codes.
@@ -15,11 +16,12 @@ from numpy.typing import NDArray
 from PIL import AvifImagePlugin, Image, ImageFile, JpegImagePlugin, PngImagePlugin, WebPImagePlugin, features
 
 from eigenfield.errors import FormatError, OptionError
-from eigenfield.format import limits
+from eigenfield.format import deep, limits
 
 Codes = NDArray[np.uint8]
 
 MIME_TYPES = {"png": "image/png", "webp": "image/webp", "avif": "image/avif"}
+DEFAULT_CODEC = "avif"
 LOSSLESS = ("png", "webp")
 AVIF_SPEED = 6  # Tarot, 16 pictures of 1024 x 1024: 3 s; 5 saves 8 % of the bytes and takes 13 s, 4 saves no more
 PREVIEW_SIDE = 512
@@ -56,9 +58,10 @@ def stacked(codes: Codes) -> Codes:
     return np.ascontiguousarray(codes.transpose(2, 0, 1)).reshape(channels * height, width)
 
 
-def picture_size(width: int, height: int, channels: int) -> tuple[int, int]:
-    """Width and height of the picture that holds `channels` of `width` x `height`."""
-    return (width, height) if channels == 3 else (width, height * channels)
+def picture_size(width: int, height: int, channels: int, count: int = 1, bits: int = 8) -> tuple[int, int]:
+    """Width and height of the picture that holds `count` textures of `channels` of `width` x `height`; one of 10 bits
+    is always grey."""
+    return (width, height * count) if channels == 3 and bits == 8 else (width, height * channels * count)
 
 
 def encode(codes: Codes, codec: str, quality: int) -> bytes:
@@ -114,9 +117,11 @@ def dimensions(data: memoryview, mime: str, where: str) -> tuple[int, int]:
     return int(width), int(height)
 
 
-def check_header(data: memoryview, mime: str, width: int, height: int, channels: int, where: str) -> None:
+def check_header(
+    data: memoryview, mime: str, width: int, height: int, channels: int, where: str, count: int = 1, bits: int = 8
+) -> None:
     """Hold a picture's header against the announced size. FormatError: as `dimensions`, and `picture-size`."""
-    found, expected = dimensions(data, mime, where), picture_size(width, height, channels)
+    found, expected = dimensions(data, mime, where), picture_size(width, height, channels, count, bits)
     if found != expected:
         raise FormatError(
             "picture-size",
@@ -143,6 +148,26 @@ def decode(data: memoryview, mime: str, width: int, height: int, channels: int, 
         return pixels
     grey = pixels if pixels.ndim == 2 else pixels[..., 0]
     return np.ascontiguousarray(grey.reshape(channels, height, width).transpose(1, 2, 0))
+
+
+def decode_stack(
+    data: memoryview, mime: str, width: int, height: int, channels: int, count: int, bits: int, where: str
+) -> NDArray[Any]:
+    """(count, height, width, channels) codes, uint8 or of 10 bits uint16, of a picture of `count` textures.
+
+    FormatError: as `decode`.
+    """
+    if bits == 8 and channels == 3:
+        return decode(data, mime, width, height * count, 3, where).reshape(count, height, width, 3)
+    flat: NDArray[Any]
+    if bits == 8:
+        flat = decode(data, mime, width, height * channels * count, 1, where)[..., 0]
+    else:
+        check_header(data, mime, width, height, channels, where, count, bits)
+        flat = deep.decode_deep(data, where)
+        if flat.shape != (height * channels * count, width):
+            raise FormatError("picture-damaged", "decodes to another size than its header says", where=where)
+    return np.ascontiguousarray(flat.reshape(count, channels, height, width).transpose(0, 2, 3, 1))
 
 
 def _open(data: memoryview, mime: str, where: str) -> ImageFile.ImageFile:

@@ -18,6 +18,7 @@ from eigenfield.format.document import Document
 from eigenfield.format.findings import Finding, Findings
 from eigenfield.format.layout import BasisLayout, Layout, Picture, PlaneLayout, read_image, read_layout
 from eigenfield.format.quantise import mean_values
+from eigenfield.format.stored import PictureFile, keep_files
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane, Scene
 
@@ -95,28 +96,41 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
         scores=layout.scores,
         generator=layout.generator,
         colours=layout.cameras.colours,
+        to_rgb=layout.to_rgb,
     )
 
 
 def _decode_plane(plane: PlaneLayout) -> Plane:
-    mean = mean_values(plane.mean.decode(), plane.mean.affine)
-    return Plane(mean, tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases))
+    mean = mean_values(plane.mean.decode()[0], plane.mean.affine)
+    bases = tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases)
+    made = Plane(mean, bases)
+    keep_files(made, [_file(plane.mean)])
+    return made
+
+
+def _file(picture: Picture) -> PictureFile:
+    return PictureFile(bytes(picture.data), picture.mime, picture.bits, picture.count, picture.affine)
 
 
 def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
     width, height = basis.size
-    count = len(basis.textures)
-    textures = np.zeros((count, height, width, channels), np.uint8)
+    deep = any(picture.bits > 8 for picture in basis.textures)
+    starts = np.cumsum([0, *(picture.count for picture in basis.textures)])
+    count = int(starts[-1])
+    textures = np.zeros((count, height, width, channels), np.uint16 if deep else np.uint8)
+    scale, zero = np.ones((count, channels), np.float32), np.zeros((count, channels), np.float32)
 
     def decode(index: int) -> None:
-        textures[index] = basis.textures[index].decode()
-
-    parallel_map(decode, range(count))
-    scale, zero = np.ones((count, channels), np.float32), np.zeros((count, channels), np.float32)
-    for index, picture in enumerate(basis.textures):
+        picture, part = basis.textures[index], slice(starts[index], starts[index + 1])
+        textures[part] = picture.decode()
         if picture.affine is not None:
-            scale[index], zero[index] = picture.affine.scale, picture.affine.zero
-    return Basis(textures, scale, zero, basis.weights)
+            scale[part] = picture.affine.scale.reshape(-1, channels)
+            zero[part] = picture.affine.zero.reshape(-1, channels)
+
+    parallel_map(decode, range(len(basis.textures)))
+    made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
+    keep_files(made, [_file(picture) for picture in basis.textures])
+    return made
 
 
 def validate(path: str | os.PathLike[str]) -> list[Finding]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -22,6 +22,7 @@ from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_by
 from eigenfield.format.document import FLOAT, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
+from eigenfield.format.stored import PictureFile, files_of
 from eigenfield.format.strict_json import printable
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
@@ -65,14 +66,15 @@ def save(
     scene: Scene,
     path: str | os.PathLike[str],
     *,
-    codec: str = "avif",
+    codec: str | None = None,
     quality: int | None = None,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
     """Write `scene` as a .glb, atomically.
 
-    codec: "png", "webp" (both keep every code) or "avif" (lossy).
+    codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy). Without codec and quality what is coded
+    already (by a fit, or read from a file) is kept as it is, and the rest becomes AVIF.
     quality: 0..100 for avif, QUALITY unless said; the mean is coded finer (MEAN_SHARE).
     Raises OutputError (`output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...) and OptionError (`codec`,
     `codec-missing`, `quality`), and FormatError for a scene that is inconsistent in itself, before anything is written.
@@ -86,18 +88,22 @@ def save(
 
 
 def encode_scene(
-    scene: Scene, *, codec: str = "avif", quality: int | None = None, progress: Progress | None = None
+    scene: Scene, *, codec: str | None = None, quality: int | None = None, progress: Progress | None = None
 ) -> bytes:
     """The whole .glb in memory; options and errors as `save`. The same bytes at any number of threads."""
     return b"".join(_blocks(scene, codec, quality, progress, None))
 
 
-def _blocks(scene: Scene, codec: str, quality: int | None, progress: Progress | None, path: Path | None) -> list[bytes]:
-    pictures.check_codec(codec, quality)
+def _blocks(
+    scene: Scene, codec: str | None, quality: int | None, progress: Progress | None, path: Path | None
+) -> list[bytes]:
+    if codec is None and quality is not None:
+        codec = pictures.DEFAULT_CODEC
+    pictures.check_codec(codec or pictures.DEFAULT_CODEC, quality)
     check_writable(scene, path)
     coded = _code_pictures(scene, codec, QUALITY if quality is None else quality, progress)
     buffer = _Buffer()
-    gltf = _gltf(scene, buffer, coded, pictures.MIME_TYPES[codec])
+    gltf = _gltf(scene, buffer, coded)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
         raise OutputError(
@@ -119,17 +125,11 @@ def check_readable(text: bytes, binary: bytes) -> None:
 
 
 @dataclass(frozen=True, eq=False)
-class _CodedBasis:
-    textures: list[bytes]
-    scale: NDArray[np.float32]
-    zero: NDArray[np.float32]
-
-
-@dataclass(frozen=True, eq=False)
 class _CodedPlane:
-    mean: bytes
-    affine: quantise.Affine | None
-    bases: list[_CodedBasis]
+    """The files of a plane's mean and of each basis's textures, by rank."""
+
+    mean: PictureFile
+    bases: list[Sequence[PictureFile]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,38 +140,57 @@ class _Coded:
     planes: list[_CodedPlane]
 
 
-def _code_pictures(scene: Scene, codec: str, quality: int, progress: Progress | None) -> _Coded:
+def _code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progress | None) -> _Coded:
     """Every picture of the scene, coded, the pictures shared among the threads."""
     fine = round(100 - MEAN_SHARE * (100 - quality))
-    jobs: list[Callable[[], bytes]] = []
-    means = [quantise.mean_codes(plane.mean, _harmonised(scene, plane)) for plane in scene.planes]
-    jobs.extend(partial(pictures.encode, codes, codec, fine) for codes, _ in means)
-    steps = [
-        [quantise.basis_scale(basis, photographic) for basis in plane.bases]
-        for plane in scene.planes
-        for photographic in [_harmonised(scene, plane) or quantise.photographic(plane.mean)]
-    ]
-    for plane, scales in zip(scene.planes, steps, strict=True):
-        for basis, (scale, zero) in zip(plane.bases, scales, strict=True):
-            jobs.extend(partial(_code_texture, basis, k, scale, zero, codec, quality) for k in range(basis.count))
+    jobs: list[Callable[[], PictureFile]] = []
+    for plane in scene.planes:
+        jobs.append(_mean_job(scene, plane, codec, fine))
+        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.to_rgb is not None
+        for basis in plane.bases:
+            jobs.extend(_basis_jobs(basis, codec, quality, one_unit))
     done = track(parallel_stream(lambda job: job(), jobs), "code textures", len(jobs), progress)
     files = iter(list(done))
-    coded_means = [next(files) for _ in means]
-    planes = [
-        _CodedPlane(
-            coded_means[i],
-            means[i][1],
-            [
-                _CodedBasis([next(files) for _ in range(basis.count)], scale, zero)
-                for basis, (scale, zero) in zip(plane.bases, steps[i], strict=True)
-            ],
-        )
-        for i, plane in enumerate(scene.planes)
-    ]
-    first = scene.planes[0].mean
-    if codec == "png" and first.shape[2] in (1, 3) and means[0][1] is None:
+    planes = []
+    for plane in scene.planes:
+        mean = next(files)
+        planes.append(_CodedPlane(mean, [_take(files, basis.count) for basis in plane.bases]))
+    first = planes[0].mean
+    plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
+    if plain and first.mime == "image/png" and first.affine is None:
         return _Coded(None, planes)  # the mean itself serves
-    return _Coded(_preview(first.clip(0, 1) if scene.colours is not None else first), planes)
+    return _Coded(_preview(scene), planes)
+
+
+def _mean_job(scene: Scene, plane: Plane, codec: str | None, quality: int) -> Callable[[], PictureFile]:
+    kept = files_of(plane) if codec is None else None
+    if kept is not None:
+        return partial(_first, kept)
+    codes, affine = quantise.mean_codes(plane.mean, _harmonised(scene, plane))
+    return partial(_code, codes, codec or pictures.DEFAULT_CODEC, quality, affine)
+
+
+def _basis_jobs(basis: Basis, codec: str | None, quality: int, one_unit: bool) -> Iterator[Callable[[], PictureFile]]:
+    kept = files_of(basis) if codec is None else None
+    if kept is not None:
+        for file in kept:
+            yield partial(_first, (file,))
+        return
+    scale, zero = quantise.basis_scale(basis, one_unit)
+    for k in range(basis.count):
+        yield partial(_code_texture, basis, k, scale, zero, codec or pictures.DEFAULT_CODEC, quality)
+
+
+def _first(files: Sequence[PictureFile]) -> PictureFile:
+    return files[0]
+
+
+def _take(files: Iterator[PictureFile], count: int) -> list[PictureFile]:
+    """The next files that hold `count` textures together."""
+    found: list[PictureFile] = []
+    while sum(file.count for file in found) < count:
+        found.append(next(files))
+    return found
 
 
 def _harmonised(scene: Scene, plane: Plane) -> bool:
@@ -179,14 +198,22 @@ def _harmonised(scene: Scene, plane: Plane) -> bool:
     return scene.colours is not None and plane is scene.planes[0]
 
 
+def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: quantise.Affine | None) -> PictureFile:
+    return PictureFile(pictures.encode(codes, codec, quality), pictures.MIME_TYPES[codec], 8, 1, affine)
+
+
 def _code_texture(
     basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32], codec: str, quality: int
-) -> bytes:
-    return pictures.encode(quantise.texture_codes(basis, index, scale, zero), codec, quality)
+) -> PictureFile:
+    affine = quantise.Affine(np.array(_shortest(scale[index])), np.array(_shortest(zero[index])))
+    return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
 
-def _preview(mean: NDArray[np.float32]) -> bytes:
+def _preview(scene: Scene) -> bytes:
     """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched."""
+    mean = scene.planes[0].mean if scene.to_rgb is None else _joined(scene, scene.to_rgb)
+    if scene.colours is not None:
+        mean = mean.clip(0, 1)
     shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
     if not quantise.photographic(mean) and not quantise.unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
@@ -194,19 +221,31 @@ def _preview(mean: NDArray[np.float32]) -> bytes:
     return pictures.encode_preview(np.rint(shown * 255).clip(0, 255).astype(np.uint8))
 
 
-def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded, mime: str) -> dict[str, Any]:
+def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(H, W, 3): the means of all planes as R, G, B, at the size of the first; near enough for a preview."""
+    import cv2
+
+    height, width = scene.planes[0].mean.shape[:2]
+    resized = [cv2.resize(plane.mean, (width, height), interpolation=cv2.INTER_LINEAR) for plane in scene.planes]
+    stacked = np.concatenate([np.atleast_3d(np.asarray(one)) for one in resized], axis=2)
+    return np.asarray(stacked @ to_rgb.T, np.float32).clip(0, 1)
+
+
+def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
     primitive = _primitive(scene, buffer)
-    first = coded.planes[0].mean if coded.preview is None else coded.preview
+    first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
     planes = [
-        _plane(plane, made, buffer, mime, inline=index > 0 or coded.preview is not None)
+        _plane(plane, made, buffer, inline=index > 0 or coded.preview is not None)
         for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
     ]
+    needs = _needs(scene, coded)
     extension: dict[str, Any] = {
-        "version": limits.FIRST if scene.colours is None else limits.VERSION,
-        "needs": [],
+        "version": limits.VERSION if needs else limits.FIRST if scene.colours is None else limits.SECOND,
+        "needs": needs,
         "planes": planes,
+        **({} if scene.to_rgb is None else {"toRGB": _shortest(scene.to_rgb.ravel())}),
         "cameras": _cameras(scene, buffer),
         "viewPlane": _view_plane(scene, buffer),
         "reference": int(scene.reference),
@@ -215,9 +254,9 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded, mime: str) -> dict[str, 
         "generator": scene.generator or f"eigenfield {__version__}",
     }
     for plane, made in zip(planes, coded.planes, strict=True):  # last: a file that is still arriving can be drawn
-        for basis, made_basis in zip(plane["bases"], made.bases, strict=True):
-            for entry, data in zip(basis["textures"], made_basis.textures, strict=True):
-                entry["bufferView"] = buffer.view(data)
+        for basis, files in zip(plane["bases"], made.bases, strict=True):
+            for entry, file in zip(basis["textures"], files, strict=True):
+                entry["bufferView"] = buffer.view(file.data)
     perspective, nodes = _nodes(scene)
     return {
         "asset": {"version": "2.0", "generator": f"eigenfield {__version__}"},
@@ -264,26 +303,47 @@ def _primitive(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
     }
 
 
-def _plane(plane: Plane, coded: _CodedPlane, buffer: _Buffer, mime: str, *, inline: bool) -> dict[str, Any]:
+def _plane(plane: Plane, coded: _CodedPlane, buffer: _Buffer, *, inline: bool) -> dict[str, Any]:
     """A plane's entry without the textures' buffer views; inline: the mean is its own picture, not images[0]."""
     height, width, channels = plane.mean.shape
     made: dict[str, Any] = {"channels": channels}
     if inline:
-        mean: dict[str, Any] = {"bufferView": buffer.view(coded.mean), "mimeType": mime, "size": [width, height]}
-        if coded.affine is not None:
-            mean |= {"scale": coded.affine.scale.tolist(), "zero": coded.affine.zero.tolist()}
-        made["mean"] = mean
+        mean: dict[str, Any] = {"bufferView": buffer.view(coded.mean.data), "size": [width, height]}
+        made["mean"] = mean | _picture(coded.mean)
     made["bases"] = []
-    for basis, coded_basis in zip(plane.bases, coded.bases, strict=True):
-        entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]], "textures": []}
+    for basis, files in zip(plane.bases, coded.bases, strict=True):
+        entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
+        if basis.grid is not None:
+            entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
         if basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
-        for scale, zero in zip(coded_basis.scale, coded_basis.zero, strict=True):
-            entry["textures"].append(
-                {"bufferView": -1, "mimeType": mime, "scale": _shortest(scale), "zero": _shortest(zero)}
-            )
+        entry["textures"] = [{"bufferView": -1, **_picture(file)} for file in files]
         made["bases"].append(entry)
     return made
+
+
+def _picture(file: PictureFile) -> dict[str, Any]:
+    """What a picture's entry says beside where it lies."""
+    made: dict[str, Any] = {"mimeType": file.mime}
+    if file.bits != 8:
+        made["bits"] = file.bits
+    if file.count != 1:
+        made["count"] = file.count
+    if file.affine is not None:
+        made |= {"scale": _shortest(file.affine.scale), "zero": _shortest(file.affine.zero)}
+    return made
+
+
+def _needs(scene: Scene, coded: _Coded) -> list[str]:
+    """The features that a reader must know to draw this scene rightly."""
+    files = [file for plane in coded.planes for some in [[plane.mean], *plane.bases] for file in some]
+    found = {
+        "bits": any(file.bits != 8 for file in files),
+        "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
+        "stacks": any(file.count != 1 for file in files),
+        "toRGB": scene.to_rgb is not None,
+    }
+    return [name for name, needed in found.items() if needed]
 
 
 def _cameras(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
@@ -330,9 +390,9 @@ def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     ]
 
 
-def _shortest(numbers: NDArray[np.float32]) -> list[float]:
-    """The shortest decimals that give the same float32."""
-    return [float(str(number)) for number in numbers]
+def _shortest(numbers: NDArray[Any]) -> list[float]:
+    """The shortest decimals that give the same numbers."""
+    return [float(str(number)) for number in numbers.ravel()]
 
 
 def check_writable(scene: Scene, path: Path | None) -> None:

@@ -1,0 +1,137 @@
+"""What is fitted: one plane's mean at the finest density and its components at a coarser one, planar and as numbers."""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.fitting.kernels import enlarge, reduce
+from eigenfield.rendering.drawing import Surface
+from eigenfield.rendering.kernels import TILE
+from eigenfield.rendering.resample import Taps, make_taps
+
+ZERO = np.zeros((0, 0, 0), np.float32)
+
+Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texels of the components' grid
+
+
+@dataclass(eq=False)
+class Block:
+    """Components with one region. textures: (n, C, rows, columns) float32; weights: (Ne, n) float32."""
+
+    rectangle: Rectangle
+    textures: NDArray[np.float32]
+    weights: NDArray[np.float32]
+
+    @property
+    def count(self) -> int:
+        return len(self.textures)
+
+    @property
+    def window(self) -> tuple[slice, slice]:
+        """Rows and columns of the grid."""
+        top, bottom, left, right = self.rectangle
+        return slice(top, bottom), slice(left, right)
+
+
+@dataclass(eq=False)
+class Model:
+    """A plane in the making.
+
+    matrix: (C, 3) float32, its channels from R, G, B. mean: (C, rows, columns) float32. grid: (h, w) of the components.
+    """
+
+    matrix: NDArray[np.float32]
+    mean: NDArray[np.float32]
+    grid: tuple[int, int]
+    blocks: list[Block]
+
+    @property
+    def channels(self) -> int:
+        return len(self.matrix)
+
+    def sums(self, cameras: slice) -> NDArray[np.float32]:
+        """(B, C, h, w) float32: the weighted sum of all components for some cameras."""
+        return sums_of(
+            self, [block.textures for block in self.blocks], [block.weights for block in self.blocks], cameras
+        )
+
+
+def sums_of(
+    model: Model, textures: list[NDArray[np.float32]], weights: list[NDArray[np.float32]], cameras: slice
+) -> NDArray[np.float32]:
+    """As `Model.sums`, with other textures or weights in the model's blocks."""
+    rows = [block_weights[cameras] for block_weights in weights]
+    count = len(rows[0]) if rows else 0
+    total = np.zeros((count, model.channels, *model.grid), np.float32)
+    for block, some, mine in zip(model.blocks, textures, rows, strict=True):
+        if block.count:
+            part = mine @ some.reshape(block.count, -1)
+            total[:, :, *block.window] += part.reshape(count, *some.shape[1:])
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class Finers:
+    """How mean and components become as fine as the atlas that is drawn; mean: None where it is as fine itself."""
+
+    mean: Finer | None
+    grid: Finer
+
+    @property
+    def fine(self) -> tuple[int, int]:
+        """(H, W) of the atlas."""
+        return self.grid.fine
+
+    def fine_mean(self, mean: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(C, H, W): a mean as fine as the atlas."""
+        if self.mean is None:
+            return mean
+        fine = np.zeros((len(mean), *self.fine), np.float32)
+        self.mean.up(mean, fine)
+        return fine
+
+    def coarse_mean(self, fine: NDArray[np.float32]) -> NDArray[np.float32]:
+        """The transpose of `fine_mean`."""
+        if self.mean is None:
+            return fine
+        coarse = np.zeros((len(fine), *self.mean.coarse), np.float32)
+        self.mean.down(fine, coarse)
+        return coarse
+
+
+@dataclass(frozen=True, eq=False)
+class Finer:
+    """From the components' grid to the finest atlas and back, see the kernels. spans: (H, 2) columns in use."""
+
+    rows: Taps
+    columns: Taps
+    spans: NDArray[np.int64]
+    coarse: tuple[int, int]
+    fine: tuple[int, int]
+
+    def up(self, coarse: NDArray[np.float32], fine: NDArray[np.float32], start: NDArray[np.float32] = ZERO) -> None:
+        """fine (C, H, W) = start + coarse (C, h, w) made finer, in the columns in use."""
+        lines = np.zeros((self.coarse[0], self.fine[1]), np.float32)
+        taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)
+        enlarge(coarse, *taps, self.spans, lines, start, fine)
+
+    def down(self, fine: NDArray[np.float32], coarse: NDArray[np.float32]) -> None:
+        """coarse (C, h, w) = the transpose of `up` on fine (C, H, W)."""
+        lines = np.zeros((self.coarse[0], self.fine[1]), np.float32)
+        taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)
+        reduce(fine, *taps, self.spans, lines, coarse)
+
+
+def make_finer(surface: Surface, grid: tuple[int, int]) -> Finer:
+    """Between `grid` and the atlas of `surface`, whose unused tiles are left out."""
+    height, width = surface.size
+    spans = np.zeros((height, 2), np.int64)
+    for row in np.flatnonzero(surface.used.any(axis=1)):
+        used = np.flatnonzero(surface.used[row])
+        spans[row * TILE : (row + 1) * TILE] = used[0] * TILE, min((used[-1] + 1) * TILE, width)
+    return Finer(make_taps(height, grid[0]), make_taps(width, grid[1]), spans, grid, (height, width))

@@ -1,0 +1,92 @@
+"""The photographs that a fit is held against, and how the renderer draws each of their cameras."""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.camera import Camera
+from eigenfield.files import scratch_array
+from eigenfield.fitting.kernels import place_pixels
+from eigenfield.mesh import Mesh
+from eigenfield.metrics import to_codes
+from eigenfield.parallel import parallel_stream
+from eigenfield.progress import Progress, track
+from eigenfield.rendering.drawing import Frame, Surface, cover, make_surface
+
+Decode = Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]]
+
+
+@dataclass(frozen=True, eq=False)
+class Shots:
+    """Photographs of Ne cameras as 8-bit codes, which is what the measures compare with, and where their pixels land.
+
+    codes: a flat memory map of R, G, B, landed: one of columns and rows in the atlas, both from pixel starts[c] for
+    camera c. masks: (h, w) float32 of each camera, None without one. surface: the mesh under the finest atlas.
+    """
+
+    cameras: tuple[Camera, ...]
+    codes: NDArray[np.uint8]
+    landed: NDArray[np.float32]
+    starts: NDArray[np.int64]
+    masks: tuple[NDArray[np.float32] | None, ...]
+    surface: Surface
+
+    def __len__(self) -> int:
+        return len(self.cameras)
+
+    def photograph(self, index: int) -> NDArray[np.uint8]:
+        """(h, w, 3) codes."""
+        return self._part(self.codes, index)
+
+    def places(self, index: int) -> NDArray[np.float32]:
+        """(h, w, 2): column and row of the atlas that each pixel shows, -1 where it shows none."""
+        return self._part(self.landed, index)
+
+    def _part(self, of: NDArray[Any], index: int) -> NDArray[Any]:
+        camera = self.cameras[index]
+        return np.asarray(of[self.starts[index] : self.starts[index + 1]]).reshape(camera.height, camera.width, -1)
+
+    def weight(self, index: int) -> NDArray[np.float32]:
+        """(h, w) weights of the pixels, or (0, 0) for ones."""
+        mask = self.masks[index]
+        return np.zeros((0, 0), np.float32) if mask is None else mask
+
+
+@contextlib.contextmanager
+def open_shots(
+    cameras: Sequence[Camera],
+    decode: Decode,
+    mesh: Mesh,
+    atlas: tuple[int, int],
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> Iterator[Shots]:
+    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 11 bytes a pixel:
+    memory does not grow with their number (but for masks). atlas: (rows, columns) of the finest texture. Raises
+    CaptureError, OutputError `disk-full`."""
+    starts = np.concatenate([[0], np.cumsum([camera.width * camera.height for camera in cameras])]).astype(np.int64)
+    total, surface = int(starts[-1]), make_surface(mesh, *atlas)
+    with scratch_array((total, 3), np.uint8, work) as codes, scratch_array((total, 2), np.float32, work) as landed:
+
+        def put(index: int) -> NDArray[np.float32] | None:
+            pixels, mask = decode(index)
+            camera, part = cameras[index], slice(starts[index], starts[index + 1])
+            codes[part] = to_codes(pixels).reshape(-1, 3)
+            frame = Frame(surface, camera.height, camera.width)
+            cover(surface, camera, frame)
+            places = np.zeros((camera.height, camera.width, 2), np.float32)
+            place_pixels(frame.inverse_depth, frame.column_of, frame.row_of, *atlas, places)
+            landed[part] = places.reshape(-1, 2)
+            return None if mask is None else (mask > 0.5).astype(np.float32)
+
+        masks = tuple(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
+        yield Shots(tuple(cameras), codes, landed, starts, masks, surface)

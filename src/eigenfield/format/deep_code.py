@@ -1,0 +1,93 @@
+"""Means and eigen textures to 10-bit codes and picture files, and what those files hold.
+
+One step for all eigen textures of a basis: with weights of unit variance a step in one moves the pictures as much as in
+any other, and the encoder, tuned for squared error, then spends its bytes where they gain as much for all. Several
+textures share a picture, one below the other: a picture's headers cost as much as a faint texture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.format.deep import FLAT, MIME, TOP, crf_of, decode_deep, encode_deep
+from eigenfield.format.quantise import Affine
+from eigenfield.format.stored import PictureFile, files_of, keep_files
+from eigenfield.parallel import parallel_map
+from eigenfield.scene import Basis, Plane
+
+STEP = 1 / 510  # of the code, in the photographs' range: half a grey level, unless a texture needs more range
+ROWS = 4096  # of a picture of several textures, at most
+
+
+def code_mean(mean: NDArray[np.float32], step: float, preset: int) -> tuple[NDArray[np.float32], PictureFile]:
+    """(H, W, C) float32 as its file gives it back, and the file. One step for all channels; what lies in 0..1 has the
+    codes 0..TOP. step: of the quantiser, in the values' unit."""
+    low, high = float(mean.min()), float(mean.max())
+    if low >= -0.125 and high <= 1.125 and mean.shape[2] in (1, 3):  # a photograph's, but for what a filter overshoots
+        affine = Affine(np.full(mean.shape[2], 1 / TOP), np.zeros(mean.shape[2]))
+    else:
+        unit = max(STEP, max(-low / FLAT, high / (TOP - FLAT)))
+        affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(FLAT)))
+    codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
+    data = encode_deep(_stack(codes[None]), crf_of(step / float(affine.scale[0])), preset)
+    stored = _unstack(decode_deep(data, "mean"), codes[None].shape)[0]
+    return ((stored - affine.zero) * affine.scale).astype(np.float32), PictureFile(data, MIME, 10, 1, affine)
+
+
+def code_basis(basis: Basis, step: float, preset: int) -> Basis:
+    """A basis of float textures (N, H, W, C) as its files give it back, uint16, with the files kept beside it.
+
+    step: of the quantiser, in the values' unit.
+    """
+    count, height, _, channels = basis.textures.shape
+    values = basis.values()
+    unit = max(STEP, float(np.abs(values).max(initial=0)) / (FLAT - 1))
+    crf = crf_of(step / unit)
+    codes = np.rint(values / np.float32(unit) + FLAT).clip(0, TOP).astype(np.uint16)
+    each = max(1, min(ROWS // (height * channels), count))
+    starts = range(0, count, each)
+
+    def code(first: int) -> tuple[PictureFile, NDArray[np.uint16]]:
+        part = codes[first : first + each]
+        data = encode_deep(_stack(part), crf, preset)
+        numbers = len(part) * channels
+        affine = Affine(np.full(numbers, unit), np.full(numbers, float(FLAT)))
+        return PictureFile(data, MIME, 10, len(part), affine), _unstack(decode_deep(data, "textures"), part.shape)
+
+    done = parallel_map(code, starts)
+    stored = np.concatenate([part for _, part in done]) if done else codes
+    scale = np.full((count, channels), unit, np.float32)
+    made = Basis(stored, scale, np.full_like(scale, FLAT), basis.weights, basis.grid, basis.corner)
+    keep_files(made, [file for file, _ in done])
+    return made
+
+
+def with_weights(basis: Basis, weights: NDArray[np.float32]) -> Basis:
+    """The same coded textures with other weights (Ne, N)."""
+    made = replace(basis, weights=weights)
+    files = files_of(basis)
+    if files is not None:
+        keep_files(made, files)
+    return made
+
+
+def code_plane(mean: NDArray[np.float32], bases: tuple[Basis, ...], step: float, preset: int) -> Plane:
+    """A plane of coded bases with its mean coded, as its files give it back."""
+    values, file = code_mean(mean, step, preset)
+    made = Plane(values, bases)
+    keep_files(made, [file])
+    return made
+
+
+def _stack(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:
+    """(n, H, W, C) as one grey picture: channel below channel, texture below texture."""
+    count, height, width, channels = codes.shape
+    return np.ascontiguousarray(codes.transpose(0, 3, 1, 2)).reshape(count * channels * height, width)
+
+
+def _unstack(picture: NDArray[np.uint16], shape: tuple[int, ...]) -> NDArray[np.uint16]:
+    count, height, width, channels = shape
+    return np.ascontiguousarray(picture.reshape(count, channels, height, width).transpose(0, 2, 3, 1))

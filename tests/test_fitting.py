@@ -1,0 +1,280 @@
+"""The fit: its operators are the renderer's and their transposes, and it finds what is there to be found."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from captures import write_capture
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scenes import bumpy_square, row_grid, smooth_pictures, tiny_scene, unit_weights
+
+import eigenfield as ef
+from eigenfield.cli import main
+from eigenfield.errors import OptionError
+from eigenfield.evaluation import evaluate
+from eigenfield.fitting import PlaneSettings, fit_plane, fitted_textures, open_shots
+from eigenfield.fitting.colour import LUMA, split_matrix, to_rgb
+from eigenfield.fitting.kernels import add_laplacian, draw_back
+from eigenfield.fitting.model import Block, Finers, Model, make_finer
+from eigenfield.fitting.passes import NONE, look, psnr_of
+from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, whiten
+from eigenfield.format import parts, validate
+from eigenfield.metrics import psnr, to_codes
+from eigenfield.parallel import set_threads
+from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering.drawing import make_surface
+
+SIDE, GRID = 64, (40, 36)
+RGB = np.eye(3, dtype=np.float32)
+
+
+def true_model(cameras: int, seed: int = 0) -> Model:
+    """A mean and three components of luma and the rest, far from the borders of 0..1."""
+    mean = 0.5 + 0.2 * smooth_pictures(1, SIDE, SIDE, 3, seed)[0].transpose(2, 0, 1)
+    textures = 0.06 * smooth_pictures(3, *GRID, 3, seed + 1).transpose(0, 3, 1, 2)
+    block = Block((0, GRID[0], 0, GRID[1]), np.ascontiguousarray(textures), unit_weights(cameras, 3, seed + 2))
+    return Model(RGB, np.ascontiguousarray(mean.astype(np.float32)), GRID, [block])
+
+
+@pytest.fixture(scope="module")
+def world():
+    """Nine cameras that see what `true_model` draws, rounded to codes."""
+    cameras, mesh = row_grid(9, 72, 60), bumpy_square(12)
+    model = true_model(9)
+    surface = make_surface(mesh, SIDE, SIDE)
+    finers = Finers(None, make_finer(surface, GRID))
+    scene = replace(tiny_scene(cameras=9), mesh=mesh, cameras=cameras)
+    pictures = []
+    for index, camera in enumerate(cameras):
+        texture = np.zeros((3, SIDE, SIDE), np.float32)
+        finers.grid.up(model.sums(slice(index, index + 1))[0], texture)
+        texture += model.mean
+        plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
+        drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9), samples=1)
+        pictures.append(to_codes(drawn.image).astype(np.float32) / 255)
+    with open_shots(cameras, lambda index: (pictures[index], None), mesh, (SIDE, SIDE)) as shots:
+        yield shots, finers, model
+
+
+def test_the_fit_draws_what_the_renderer_draws(world):
+    shots, finers, model = world
+    found = look(
+        shots, model, finers, mean=model.mean, textures=[model.blocks[0].textures], weights=[model.blocks[0].weights],
+        photographs=True, wanted=(False, False, False),
+    )  # fmt: skip
+    error = np.sqrt(found.squares / found.pixels / 3)
+    assert (error < 0.5 / 255).all()  # rounding to codes alone: a step's deviation is 0.29 of it
+    assert (found.pixels > 1000).all()
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(2, 40), st.integers(2, 40), st.integers(1, 3), st.integers(0, 2**31))
+def test_drawing_and_its_transpose(height, width, channels, seed):
+    random = np.random.default_rng(seed)
+    places = random.uniform(0, 1, (7, 9, 2)).astype(np.float32) * np.float32([width - 1, height - 1])
+    places[random.random((7, 9)) < 0.2] = -1
+    a, b = random.normal(size=(2, channels, height, width)).astype(np.float32)
+    weight = random.uniform(0, 1, (7, 9)).astype(np.float32)
+    matrix = np.zeros((channels, 3), np.float32)
+
+    def normal(texture):
+        out = np.zeros_like(texture)
+        squares, total = draw_back(places, texture, NONE, matrix, weight, 0, 1, out)
+        return out, squares, total
+
+    (image, squares, total), (other, _, _) = normal(a), normal(b)
+    assert squares == pytest.approx(float((a * image).sum()), rel=1e-3, abs=1e-4)  # |G a|^2 = <a, G^T G a>
+    assert float((b * image).sum()) == pytest.approx(float((a * other).sum()), rel=1e-3, abs=1e-3)
+    assert total == pytest.approx(weight[places[..., 0] >= 0].sum(), rel=1e-5)
+    halves = [np.zeros_like(a), np.zeros_like(a)]
+    for first in range(2):
+        draw_back(places, a, NONE, matrix, weight, first, 2, halves[first])
+    np.testing.assert_allclose(halves[0] + halves[1], image, atol=1e-4)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(1, 60), st.integers(1, 60), st.integers(0, 2**31))
+def test_making_finer_and_its_transpose(rows, columns, seed):
+    random = np.random.default_rng(seed)
+    finer = make_finer(make_surface(bumpy_square(), SIDE, SIDE), (rows, columns))
+    coarse, fine = random.normal(size=(2, rows, columns)), random.normal(size=(2, SIDE, SIDE))
+    up, down = np.zeros(fine.shape, np.float32), np.zeros(coarse.shape, np.float32)
+    finer.up(coarse.astype(np.float32), up)
+    finer.down(fine.astype(np.float32), down)
+    assert float((up * fine).sum()) == pytest.approx(float((coarse * down).sum()), rel=1e-3, abs=1e-2)
+
+
+def test_the_laplacian_is_that_of_a_quadratic():
+    y, x = np.mgrid[0:9, 0:9].astype(np.float32)
+    out = np.zeros((1, 9, 9), np.float32)
+    add_laplacian((x * x + 2 * y * y)[None], np.float32(0.5), out)
+    np.testing.assert_allclose(out[0, 1:-1, 1:-1], -3)  # -(2 + 4) / 2
+    assert out.sum() == pytest.approx(0, abs=1e-3)
+
+
+def test_the_weights_of_known_textures_are_found(world):
+    shots, finers, model = world
+    true = model.blocks[0].weights
+    guess = Model(RGB, model.mean, GRID, [Block(model.blocks[0].rectangle, model.blocks[0].textures, true * 0)])
+    fit_weights(shots, guess, finers, 12)
+    np.testing.assert_allclose(guess.blocks[0].weights, true, atol=0.05)
+
+
+def test_mean_and_textures_of_known_weights_draw_the_photographs(world):
+    shots, finers, model = world
+    block = model.blocks[0]
+    guess = Model(RGB, np.full_like(model.mean, 0.5), GRID, [replace_textures(block, block.textures * 0)])
+    scales = measure_scales(shots, guess, finers)
+    before = fit_textures(shots, guess, finers, scales, 25)
+    after = fit_textures(shots, guess, finers, scales, 0)
+    assert after < before / 1000
+
+
+def replace_textures(block: Block, textures: np.ndarray) -> Block:
+    return Block(block.rectangle, textures, block.weights)
+
+
+def test_whitening_changes_no_sum_and_orders_by_strength(world):
+    shots, finers, model = world
+    block = model.blocks[0]
+    mixed = np.array([[1, 0.4, 0], [0.2, 2, 0.1], [0, 0.3, 0.7]], np.float32)
+    textures = np.tensordot(np.linalg.inv(mixed), block.textures, 1).astype(np.float32)
+    skewed = Model(RGB, model.mean, GRID, [Block(block.rectangle, textures, block.weights @ mixed)])
+    before = skewed.sums(slice(0, 9))
+    scales = measure_scales(shots, skewed, finers)
+    whiten(skewed, scales)
+    np.testing.assert_allclose(skewed.sums(slice(0, 9)), before, atol=1e-4)
+    weights = skewed.blocks[0].weights
+    np.testing.assert_allclose(weights.T @ weights / 9, np.eye(3), atol=1e-4)
+    energy = (np.square(skewed.blocks[0].textures) * scales.coarse).sum(axis=(1, 2, 3))
+    assert (np.diff(energy) < 0).all()
+
+
+def settings_of(textures: int = 3) -> PlaneSettings:
+    return PlaneSettings(RGB, (SIDE, SIDE), (64, 64), textures, 1, 1e-3, 1e-3, 8)
+
+
+def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
+    shots, _, _ = world
+    reached = [fit_plane(shots, settings_of(), "test", rounds=rounds) for rounds in (0, 3)]
+    assert reached[1].uncoded > reached[0].uncoded + 1
+    assert reached[1].coded > 38
+    plane = reached[1].plane
+    scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=shots.cameras, planes=(plane,))
+    drawn = [Renderer(scene).draw(camera, np.eye(9)[i], samples=1) for i, camera in enumerate(shots.cameras)]
+    errors = [(d.image - shots.photograph(i) / np.float32(255))[d.coverage > 0] for i, d in enumerate(drawn)]
+    assert np.mean([-10 * np.log10(np.square(e).mean()) for e in errors]) == pytest.approx(reached[1].coded, abs=0.02)
+
+
+def test_the_number_of_threads_changes_nothing(world):
+    shots, _, _ = world
+    planes = []
+    for threads in (1, 3):
+        set_threads(threads)
+        try:
+            planes.append(fit_plane(shots, settings_of(), "test", rounds=1).plane)
+        finally:
+            set_threads(None)
+    np.testing.assert_array_equal(planes[0].mean, planes[1].mean)
+    np.testing.assert_array_equal(planes[0].bases[0].textures, planes[1].bases[0].textures)
+    np.testing.assert_array_equal(planes[0].bases[0].weights, planes[1].bases[0].weights)
+
+
+def test_what_a_mask_hides_does_not_count(world):
+    shots, finers, model = world
+    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
+    pictures[4][20:40, 20:50] = 1.0  # somebody walked by
+    mask = np.ones(pictures[4].shape[:2], np.float32)
+    mask[20:40, 20:50] = 0
+    options = {
+        "mean": model.mean, "textures": [model.blocks[0].textures], "weights": [model.blocks[0].weights],
+        "photographs": True, "wanted": (False, False, False),
+    }  # fmt: skip
+    for masks, good in ((None, False), (mask, True)):
+        with open_shots(
+            shots.cameras,
+            lambda i, masks=masks: (pictures[i], masks if i == 4 else None),
+            bumpy_square(12),
+            (SIDE, SIDE),
+        ) as others:
+            found = look(others, model, finers, **options)
+            assert (psnr_of(found.squares[4:5], found.pixels[4:5], 3) > 45) == good
+
+
+def test_luma_and_chroma_make_the_colours_again():
+    luma, chroma = split_matrix()
+    random = np.random.default_rng(0).uniform(0, 1, (50, 3)).astype(np.float32)
+    parts = random @ np.concatenate([luma, chroma]).T
+    np.testing.assert_allclose(parts @ to_rgb().T, random, atol=1e-6)
+    np.testing.assert_allclose(np.full(3, 0.3) @ chroma.T, 0, atol=1e-6)  # a grey has none
+    np.testing.assert_allclose(parts[:, 0], random @ LUMA, atol=1e-6)
+
+
+@pytest.mark.parametrize(("cameras", "expected"), [(2, 1), (20, 7), (81, 27), (1000, 96)])
+def test_more_cameras_more_textures(cameras, expected):
+    assert fitted_textures(cameras) == expected
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory):
+    folder = write_capture(tmp_path_factory.mktemp("fit") / "nine")
+    output = folder.parent / "fitted.glb"
+    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "--fit", "photographs", "-n", "4", "-q"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "90"])
+        main()
+    return folder, output
+
+
+def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
+    folder, output = fitted
+    scene, capture = ef.load(output), ef.open_capture(folder)
+    assert validate(output) == []
+    assert [plane.mean.shape[2] for plane in scene.planes] == [1, 2] and scene.to_rgb is not None
+    assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 90
+    ef.encode(capture, proxy=folder / "proxy.ply", textures=4).save(output.parent / "plain.glb", quality=80)
+    plain = ef.load(output.parent / "plain.glb")
+    values = {"fit": [], "none": []}
+    for index in range(len(capture)):
+        for name, one in (("fit", scene), ("none", plain)):
+            drawn = Renderer(one).draw(one.cameras[index], camera_weights(one, index))
+            values[name].append(
+                psnr(to_codes(drawn.image), to_codes(capture.photograph(index).pixels), drawn.coverage > 0)
+            )
+    sizes = [parts(file) for file in (output, output.parent / "plain.glb")]
+    pictures = [size["mean"] + size["textures"] for size in sizes]
+    assert pictures[0] < pictures[1]
+    assert np.mean(values["fit"]) > 41  # 43.5 the other way, with more bytes: so smooth a scene is easy for both
+
+
+def test_saving_again_codes_nothing_twice(fitted, tmp_path):
+    _, output = fitted
+    ef.load(output).save(tmp_path / "again.glb")
+    assert (tmp_path / "again.glb").read_bytes() == output.read_bytes()
+    ef.load(output).save(tmp_path / "eight.glb", codec="png")
+    first, again = ef.load(output), ef.load(tmp_path / "eight.glb")
+    mix = np.eye(9)[0]
+    assert np.abs(Renderer(first).texture(mix) - Renderer(again).texture(mix)).mean() < 2 / 255
+
+
+def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
+    folder, output = fitted
+    figures = evaluate(ef.load(output), ef.open_capture(folder))
+    assert figures["image"]["encoded"]["psnr"]["mean"] > 40
+    assert not figures.get("uv")
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [({"align": "dis"}, "fit"), ({"uv_ssim": 0.9}, "fit"), ({"harmonise": "gain"}, "fit"), ({"fit": "magic"}, "fit"),
+     ({"quality": 101}, "quality"), ({"keep_maps": "maps"}, "fit")],
+)  # fmt: skip
+def test_options_that_do_not_go_with_a_fit(fitted, options, code):
+    folder, _ = fitted
+    with pytest.raises(OptionError) as caught:
+        ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", **{"fit": "photographs", **options})
+    assert caught.value.code == code
