@@ -1,9 +1,9 @@
 """Intrinsics and poses of cameras in few bytes.
 
 A camera is eleven numbers: fx, fy, skew, cx, cy in pixels; its rotation against that of the first camera as modified
-Rodrigues parameters p = tan(angle / 4) axis, |p| <= 1; its centre. Each is rounded to a step. On a regular grid the plane
-over rows and columns that fits each of them best is taken off. What is left is coded as it is, or less that of the
-camera before, whichever takes fewer bytes.
+Rodrigues parameters p = tan(angle / 4) axis, |p| <= 1; its centre. Each is rounded to a step. On a regular grid the
+plane over rows and columns that fits each of them best is taken off. What is left is coded as it is, or less that of
+the camera before, whichever takes fewer bytes.
 """
 
 from __future__ import annotations
@@ -20,8 +20,15 @@ from eigenfield.camera import Camera
 from eigenfield.format import limits
 from eigenfield.format.grid_coder import checked_grid, read_grid, write_grid
 from eigenfield.format.range_coder import (
-    VERSION, check_end, check_header, check_numbers, coded, damaged, decoder, filled_up,
-)  # fmt: skip
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+)
 from eigenfield.format.table_kernels import CONTEXTS, MIXTURES, code_lines
 
 HEADER = struct.Struct("<BBHHI3d4d8d")  # version, kind, rows, columns, cameras; steps; first rotation; first numbers

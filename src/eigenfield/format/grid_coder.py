@@ -14,7 +14,11 @@ from eigenfield.format.table_kernels import code_cells
 def checked_grid(grid: ArrayLike, cameras: int) -> NDArray[np.int64]:
     """(rows, columns) int64 with every camera once and -1 where there is none. Raises ValueError for anything else."""
     cells = np.asarray(grid, np.int64)
-    if cells.ndim != 2 or cells.min(initial=0) < -1 or not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras)):
+    if (
+        cells.ndim != 2
+        or cells.min(initial=0) < -1
+        or not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras))
+    ):
         raise ValueError("a grid has every camera once, and -1 where there is none")
     return cells
 

@@ -1,200 +1,181 @@
-"""A triangle mesh with texture coordinates in few bytes."""
+"""A triangle mesh with texture coordinates in few bytes.
+
+Positions are rounded to a lattice; vertices at one lattice point are one *place*. Then come, one after the other:
+
+1. the faces between places, each over an edge of those before (`mesh_kernels`), and with every new place its x, y and,
+   where the lattice is not flat, z;
+2. the z of a flat lattice, inverse depth (`mesh_value_kernels.code_depths`);
+3. which vertex of its place each face's corner is, and the charts (`mesh_corner_kernels`);
+4. texture coordinates of charts that are not a map of x and y (`mesh_value_kernels.code_textures`).
+
+docs/coding.md describes the bytes.
+"""
 
 from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+from numpy.typing import NDArray
 
-from eigenfield.errors import FormatError
 from eigenfield.format import limits
+from eigenfield.format.lattice import Lattice
+from eigenfield.format.mesh_charts import chart_kinds, mapped_texture
+from eigenfield.format.mesh_corner_kernels import MAPPED, Corners, code_corners, corner_lists, new_vertices, no_corners
 from eigenfield.format.mesh_front_kernels import new_front
-from eigenfield.format.mesh_corner_kernels import (
-    MAPPED, MIRRORED, Corners, code_corners, corner_lists, new_vertices, no_corners,
-)
 from eigenfield.format.mesh_kernels import Source, new_built, no_source, traverse
 from eigenfield.format.mesh_value_kernels import CONTEXTS, MIXTURES, code_depths, code_textures
-from eigenfield.format.range_coder import coded, decoder, check_end
+from eigenfield.format.range_coder import (
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+)
 from eigenfield.mesh import Mesh
 
-HEADER = struct.Struct("<BBBBIII16d")
-VERSION = 1
-REACH = 2**20 - 1
-RATIO = 16  # vertices or faces that a byte stands for, at most: bounds what a decoder allocates
-SPARE = 1024  # and so many more
+HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, 0; places, faces, vertices; the lattice
+REACH = 2**20 - 1  # of lattice coordinates, either way
+MOST_DIGITS = 18  # of texture coordinates in 0..1
+FARTHEST = 1e30  # of positions and texture coordinates
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
-    """The grid to which positions are rounded: matrix (4, 4) float64 from (i, j, k, 1), whole numbers, to homogeneous
-    world coordinates. flat: i and j are pixels of a camera in front of all, k is inverse depth: depth is coded over them.
+class _Welded:
+    """places: (n, 3) int64. place: (v,) of each vertex. faces: (m, 3) of vertices, no two corners at one place. label,
+    kinds, maps: see `chart_kinds`. codes: (v, 2) int64 texture coordinates."""
+
+    places: NDArray[np.int64]
+    place: NDArray[np.int32]
+    faces: NDArray[np.int32]
+    label: NDArray[np.int32]
+    kinds: NDArray[np.int8]
+    maps: NDArray[np.int64]
+    codes: NDArray[np.int64]
+
+
+def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12) -> tuple[bytes, Mesh]:
+    """The bytes, and the mesh that a decoder finds: the same faces, each with its sense, in another order.
+
+    Positions are rounded to the lattice. Texture coordinates are off by at most half of 2^-uv_bits where they are
+    coded; in charts that are an affine map of lattice x and y to within that, they are that map of the rounded x and
+    y, so that texture and surface move together. Left out: vertices without a face, and faces two
+    of whose corners fall onto one lattice point.
+
+    Raises ValueError for a mesh without texture coordinates, or one that reaches 2^20 steps from the lattice's origin,
+    or behind its camera; for `uv_bits` beyond 1 to 18.
     """
+    if mesh.uv is None or not 1 <= uv_bits <= MOST_DIGITS:
+        raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
+    welded = _welded(mesh, lattice, uv_bits)
+    n, m, v = len(welded.places), len(welded.faces), len(welded.place)
+    found: list[Mesh] = []
 
-    matrix: NDArray[np.float64]
-    flat: bool
-
-    def points(self, steps: NDArray[np.int64]) -> NDArray[np.float64]:
-        """(n, 3) lattice coordinates to world positions."""
-        x, y, z = steps.astype(np.float64).T
-        m = self.matrix
-        with np.errstate(all="ignore"):
-            row = [m[r, 0] * x + m[r, 1] * y + m[r, 2] * z + m[r, 3] for r in range(4)]
-            return np.stack([row[0] / row[3], row[1] / row[3], row[2] / row[3]], axis=1)
-
-    def coordinates(self, positions: ArrayLike) -> NDArray[np.float64]:
-        """(n, 3) world positions to lattice coordinates, not rounded; not finite behind the camera."""
-        p = np.asarray(positions, np.float64)
-        h = np.concatenate([p, np.ones((len(p), 1))], axis=1) @ np.linalg.inv(self.matrix).T
-        with np.errstate(all="ignore"):
-            return h[:, :3] / h[:, 3:]
-
-
-def camera_lattice(matrix: ArrayLike, step: float, inverse_step: float, origin: tuple[float, float] = (0.5, 0.5)) -> Lattice:
-    m = np.asarray(matrix, np.float64)
-    turn = np.linalg.inv(m[:, :3])
-    centre = -turn @ m[:, 3]
-    result = np.zeros((4, 4))
-    result[:3, 0], result[:3, 1] = step * turn[:, 0], step * turn[:, 1]
-    result[:3, 2], result[3, 2] = inverse_step * centre, inverse_step
-    result[:3, 3] = turn @ np.array([*origin, 1.0]) + inverse_step / 2 * centre
-    result[3, 3] = inverse_step / 2
-    return Lattice(result, True)
-
-
-def world_lattice(origin: ArrayLike, step: ArrayLike) -> Lattice:
-    result = np.eye(4)
-    result[:3, :3] = np.diag(np.broadcast_to(np.asarray(step, np.float64), 3))
-    result[:3, 3] = origin
-    return Lattice(result, False)
-
-
-def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, uv_tolerance: float = 0.0):
-    assert mesh.uv is not None
-    steps = np.rint(lattice.coordinates(mesh.vertices))
-    if not (np.abs(steps) <= REACH).all():
-        raise ValueError("the mesh does not fit the lattice")
-    points = steps.astype(np.int64)
-    codes = np.rint(mesh.uv.astype(np.float64) * 2**uv_bits).astype(np.int64)
-    places, place = np.unique(points, axis=0, return_inverse=True)
-    place = place.reshape(-1).astype(np.int32)
-    f = place[mesh.faces]
-    faces = mesh.faces[(f != np.roll(f, 1, axis=1)).all(axis=1)]
-    # one vertex for those alike in everything
-    key, alike = np.unique(np.concatenate([place[:, None], codes], axis=1), axis=0, return_inverse=True)
-    alike = alike.reshape(-1)
-    used = np.unique(faces)
-    n, m, v = len(np.unique(place[used])), len(faces), len(used)
-    label, kinds, maps = _charts(mesh, faces, lattice.coordinates(mesh.vertices), codes, uv_tolerance)
-    header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, 0, n, m, v, *lattice.matrix.reshape(-1))
-    out = {}
-
-    def run(coder):
-        source = _source(places, place[faces])
-        built = new_built(n, m)
-        fault = traverse(coder, source, built, new_front(n, m), lattice.flat)
-        assert fault == 0
+    def run(coder: Any) -> None:
+        source, built = _source(welded), new_built(n, m)
+        complete = traverse(coder, source, built, new_front(n, m), lattice.flat)
         first, corners = corner_lists(built.faces, n)
         if lattice.flat:
-            coder.bits[31] = 20
             code_depths(coder, built, first, corners)
+        blank = np.full(v, -1, np.int32)
+        given = Corners(
+            welded.faces, welded.label, source.number[welded.place], welded.kinds, welded.maps, blank, blank.copy()
+        )
         vertices = new_vertices(v, n, m)
-        full = np.full(len(points), -1, np.int32)
-        given = Corners(faces, label, source.index[place], kinds, maps, full, full.copy())
-        coder.bits[31] = 22
-        assert code_corners(coder, given, source.face_order, built, vertices, first, corners)
-        out["order"] = given.order[:v].copy()
-        uv = codes[out["order"]]
-        coder.bits[31] = 21
-        code_textures(coder, vertices, lattice.points(built.points), uv, *corner_lists(vertices.faces, v))
-        out["bits"]=coder.bits
+        complete = complete and code_corners(coder, given, source.face_order, built, vertices, first, corners)
+        assert complete
+        codes = welded.codes[given.order]
+        code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
+        found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
 
-    body = coded(run, CONTEXTS, MIXTURES, room=4 * (n + m) + 1024)
-    data = header + body
-    data += bytes(max(0, -(-(max(v, m) - SPARE) // RATIO) - len(data)))
-    return data, out
+    header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, 0, n, m, v, *lattice.matrix.reshape(-1))
+    body = coded(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
+    return filled_up(header + body, max(n, m, v)), found[0]
 
 
-def _charts(mesh, faces, places, codes, tolerance):
-    """Charts by vertices; affine maps from lattice x, y to u, v where that is what they are."""
-    count = len(mesh.vertices)
-    f = faces.astype(np.int64)
-    links = coo_array((np.ones(2 * len(f), np.int8), (np.r_[f[:, 0], f[:, 0]], np.r_[f[:, 1], f[:, 2]])), shape=(count, count))
-    labels, label = connected_components(links, directed=False)
-    kinds = np.zeros(labels, np.int8)
-    maps = np.zeros((labels, 6), np.int64)
-    uv = mesh.uv.astype(np.float64)
-    corner = codes[f]
-    one, two = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
-    area = np.bincount(label[f[:, 0]], one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], labels)
-    kinds[area < 0] = MIRRORED
-    order = np.argsort(label, kind="stable")
-    starts = np.searchsorted(label[order], np.arange(labels + 1))
-    linear = None
-    for c in range(labels):
-        members = order[starts[c] : starts[c + 1]]
-        if len(members) < 3 or tolerance <= 0:
-            continue
-        fit = _affine(places[members, :2], uv[members], linear, tolerance)
-        if fit is not None:
-            kinds[c] = MAPPED
-            maps[c] = fit.view(np.uint32)
-            linear = fit[:4]
-    return label.astype(np.int32), kinds, maps
-
-
-def _affine(xy, uv, linear, tolerance):
-    """The float32 map."""
-    if linear is not None:
-        A = linear.astype(np.float64).reshape(2, 2)
-        rest = uv - xy @ A.T
-        shift = ((rest.min(axis=0) + rest.max(axis=0)) / 2).astype(np.float32)
-        if np.abs(rest - shift).max() <= tolerance:
-            return np.concatenate([linear, shift])
-    B = np.concatenate([xy, np.ones((len(xy), 1))], axis=1)
-    solution = np.linalg.lstsq(B, uv, rcond=None)[0]
-    A = solution[:2].T.astype(np.float32)
-    rest = uv - xy @ A.T.astype(np.float64)
-    shift = ((rest.min(axis=0) + rest.max(axis=0)) / 2).astype(np.float32)
-    if np.abs(rest - shift).max() > tolerance:
-        return None
-    return np.concatenate([A.reshape(-1), shift])
-
-
-def _source(points, faces):
-    n, m = len(points), len(faces)
-    f = faces.astype(np.int64)
-    edges = (f * n + np.roll(f, -1, axis=1)).reshape(-1)
-    order = np.argsort(edges, kind="stable")
-    seeds = np.argsort(points[f, 0].sum(axis=1), kind="stable").astype(np.int32)
-    blank = np.full(n, -1, np.int32)
-    return Source(points, faces, seeds, edges[order], (order // 3).astype(np.int32), np.zeros(m, np.bool_),
-                  blank, blank.copy(), np.zeros(m, np.int32))
-
-
-def decode_mesh(data: bytes, where: str = "mesh"):
-    if len(data) < HEADER.size:
-        raise FormatError("mesh-coded", "too short", where=where)
-    version, flat, bits, _, n, m, v, *matrix = HEADER.unpack_from(data)
-    lattice = Lattice(np.array(matrix).reshape(4, 4), bool(flat))
-    coder = decoder(data[HEADER.size:], CONTEXTS, MIXTURES)
+def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
+    """Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    check_header(data, HEADER.size, where)
+    _, flat, uv_bits, _, n, m, v, *numbers = HEADER.unpack_from(data)
+    if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
+        raise damaged(f"{v} vertices and {m} faces, more than a scene may have", where)
+    check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
+    if flat > 1 or not 1 <= uv_bits <= MOST_DIGITS or not np.isfinite(numbers).all():
+        raise damaged("a lattice that cannot be", where)
+    lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
+    coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
     built = new_built(n, m)
-    fault = traverse(coder, no_source(), built, new_front(n, m), lattice.flat)
-    if fault: raise FormatError("mesh-coded", f"fault {fault}", where=where)
+    if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat):
+        raise damaged("faces that cannot be", where)
+    check_end(coder, where)
     first, corners = corner_lists(built.faces, n)
     if lattice.flat:
         code_depths(coder, built, first, corners)
     vertices = new_vertices(v, n, m)
-    if not code_corners(coder, no_corners(), np.zeros(0, np.int32), built, vertices, first, corners): raise FormatError("mesh-coded","corners", where=where)
+    if not code_corners(coder, no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
+        raise damaged("corners of faces that cannot be", where)
     codes = np.zeros((v, 2), np.int64)
-    world = lattice.points(built.points)
-    code_textures(coder, vertices, world, codes, *corner_lists(vertices.faces, v))
-    uv = codes / 2.0**bits
-    maps = vertices.maps.astype(np.uint32).view(np.float32).astype(np.float64)[vertices.chart]
+    code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
+    check_end(coder, where)
+    mesh = _mesh(lattice, uv_bits, built, vertices, codes)
+    assert mesh.uv is not None
+    if not (np.abs(mesh.vertices) <= FARTHEST).all() or not (np.abs(mesh.uv) <= FARTHEST).all():
+        raise damaged("positions or texture coordinates that are not finite", where)
+    return mesh
+
+
+def _welded(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
+    """The mesh on the lattice, without what takes part in no face."""
+    assert mesh.uv is not None
+    exact = lattice.coordinates(mesh.vertices)
+    steps = np.rint(exact)
+    if not (np.abs(steps) <= REACH).all() or (lattice.flat and steps[:, 2].min(initial=0) < 0):
+        raise ValueError("the mesh reaches beyond the lattice, or behind its camera")
+    uv = mesh.uv.astype(np.float64)
+    scale = 2.0**uv_bits
+    if not (np.abs(uv) * scale <= REACH).all():
+        raise ValueError("texture coordinates that are not finite, or far beyond 0 to 1")
+    label, kinds, maps = chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
+    codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)
+    alike = np.concatenate([steps.astype(np.int64), codes, label[:, None]], axis=1)
+    _, first, same = np.unique(alike, axis=0, return_index=True, return_inverse=True)
+    faces = first[same.reshape(-1)][mesh.faces]
+    _, place = np.unique(steps[first], axis=0, return_inverse=True)
+    at = np.zeros(len(steps), np.int64)
+    at[first] = place.reshape(-1)
+    corner = at[faces]
+    faces = faces[(corner != np.roll(corner, 1, axis=1)).all(axis=1)]
+    used, faces = np.unique(faces, return_inverse=True)
+    places, place = np.unique(steps[used].astype(np.int64).reshape(-1, 3), axis=0, return_inverse=True)
+    return _Welded(
+        places, place.reshape(-1).astype(np.int32), faces.reshape(-1, 3).astype(np.int32), label[used], kinds, maps,
+        codes[used],
+    )  # fmt: skip
+
+
+def _source(welded: _Welded) -> Source:
+    n, m = len(welded.places), len(welded.faces)
+    faces = welded.place[welded.faces]
+    f = faces.astype(np.int64)
+    edges = (f * n + np.roll(f, -1, axis=1)).reshape(-1)
+    order = np.argsort(edges, kind="stable")
+    seeds = np.argsort(welded.places[f, 0].sum(axis=1), kind="stable").astype(np.int32)
+    blank = np.full(n, -1, np.int32)
+    return Source(
+        welded.places, faces, seeds, edges[order], (order // 3).astype(np.int32), np.zeros(m, np.bool_), blank,
+        blank.copy(), np.zeros(m, np.int32),
+    )  # fmt: skip
+
+
+def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDArray[np.int64]) -> Mesh:
+    uv = codes / 2.0**uv_bits
     mapped = vertices.kinds[vertices.chart] == MAPPED
-    x, y = built.points[vertices.place, 0], built.points[vertices.place, 1]
-    uv[mapped] = np.stack([maps[:, 0] * x + maps[:, 1] * y + maps[:, 4], maps[:, 2] * x + maps[:, 3] * y + maps[:, 5]], axis=1)[mapped]
-    return Mesh(world[vertices.place].astype(np.float32), vertices.faces, uv.astype(np.float32))
+    place = vertices.place
+    uv[mapped] = mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
+    with np.errstate(over="ignore"):
+        return Mesh(lattice.points(built.points)[place].astype(np.float32), vertices.faces, uv.astype(np.float32))

@@ -18,6 +18,7 @@ from eigenfield.format.range_kernels import binary_digits, code_flag, code_raw
 from eigenfield.jit import kernel
 
 MOST = 32  # faces at a place that are looked at
+RECENT = 256  # charts that are searched for the same map
 CHOICES = 4  # vertices that are asked for
 UNKNOWN, AGREES, CUT, NONE = 0, 1, 2, 3  # what is known of the edge to a neighbour
 ASKED = FACES
@@ -31,7 +32,8 @@ PLAIN, MAPPED, MIRRORED = 0, 1, 2  # charts: texture coordinates coded; by an af
 class Vertices(NamedTuple):
     """faces: (m, 3) int32 vertices of the built faces' corners. place, chart: (v,) int32. latest, older: (n,) and (v,)
     int32: the vertex that came last at a place and the one before it there, or -1. kinds: (charts,) int8 and maps
-    (charts, 6) int64, the bits of float32 numbers. counts: (2,) int64 vertices and charts so far."""
+    (charts, 6) int64, the bits of float32 numbers. counts: (3,)
+    int64 vertices and charts so far, and the number of the last chart with a map, plus 1."""
 
     faces: NDArray[np.int32]
     place: NDArray[np.int32]
@@ -45,15 +47,15 @@ class Vertices(NamedTuple):
 
 class Corners(NamedTuple):
     """The vertices to be coded; of size 0 in decoding: faces (m, 3) int32 and label (v,) int32, the chart of a vertex,
-    in the source's numbers; place (v,) int32 in the bytes' numbers; kinds, maps of the charts; index (v,) int32, a
-    vertex's number in the bytes or -1, and its inverse `order`."""
+    in the source's numbers; place (v,) int32 in the bytes' numbers; kinds, maps of the charts; number (v,) int32, a
+    vertex's in the bytes or -1, and its inverse `order`."""
 
     faces: NDArray[np.int32]
     label: NDArray[np.int32]
     place: NDArray[np.int32]
     kinds: NDArray[np.int8]
     maps: NDArray[np.int64]
-    index: NDArray[np.int32]
+    number: NDArray[np.int32]
     order: NDArray[np.int32]
 
 
@@ -69,7 +71,7 @@ def new_vertices(vertices: int, places: int, faces: int) -> Any:
     return Vertices(
         np.zeros((faces, 3), np.int32), np.zeros(vertices, np.int32), np.zeros(vertices, np.int32),
         np.full(places, -1, np.int32), np.zeros(vertices, np.int32), np.zeros(charts, np.int8),
-        np.zeros((charts, 6), np.int64), np.zeros(2, np.int64),
+        np.zeros((charts, 6), np.int64), np.zeros(3, np.int64),
     )  # fmt: skip
 
 
@@ -181,15 +183,14 @@ def _code_chart(coder, source, out, given):
     if writing:
         for k in range(6):
             out.maps[chart, k] = source.maps[source.label[given], k]
-    last, same = np.int64(-1), np.int64(-1)
-    for other in range(chart):
-        if out.kinds[other] == MAPPED:
-            last = np.int64(other)
-            alike = True
-            for k in range(6):
-                alike = alike and out.maps[other, k] == out.maps[chart, k]
-            if alike and writing:
-                same = last
+    last, same = np.int64(out.counts[2]) - 1, np.int64(-1)
+    out.counts[2] = chart + 1
+    for other in range(max(0, chart - RECENT), chart if writing else 0):
+        alike = out.kinds[other] == MAPPED
+        for k in range(6):
+            alike = alike and out.maps[other, k] == out.maps[chart, k]
+        if alike:
+            same = np.int64(other)
     if last >= 0 and code_flag(coder, np.int64(same >= 0), CHART + 2, CHART + 2, CHART + 2, M_CHART):
         same = code_raw(coder, same, binary_digits(chart - 1))
         if same >= chart or out.kinds[same] != MAPPED:
@@ -231,7 +232,7 @@ def code_corners(coder, source, face_order, built, out, first, corners):
                 for j in range(3):
                     if source.place[source.faces[face_order[face], j]] == place:
                         given[k] = source.faces[face_order[face], j]
-                vertex = np.int64(source.index[given[k]])
+                vertex = np.int64(source.number[given[k]])
             vertex = _code_corner(coder, built, out, beside, state, face, k, vertex)
             fresh[k] = vertex == -1
             if vertex == -1:
@@ -243,7 +244,7 @@ def code_corners(coder, source, face_order, built, out, first, corners):
                 out.older[vertex] = out.latest[place]
                 out.latest[place] = vertex
                 if writing:
-                    source.index[given[k]] = vertex
+                    source.number[given[k]] = vertex
                     source.order[vertex] = given[k]
             elif vertex < 0:
                 return False

@@ -23,7 +23,8 @@ ROW = 2**24  # more than twice any sum of two coordinates
 
 class Front(NamedTuple):
     """start, end, opposite: (3 m,) int32 vertices. before, after: (3 m,) int32 neighbours in the loop. status: (3 m,)
-    int8. into: (n,) int32, the gate that ended last at a vertex, or -1. heap, key: (3 m,) waiting gates. sizes: (2,)."""
+    int8. into: (n,) int32, the gate that ended last at a vertex, or -1. heap, key: (3 m,) waiting gates and where their
+    middles are. sizes: (2,) gates, waiting ones."""
 
     start: NDArray[np.int32]
     end: NDArray[np.int32]
@@ -40,11 +41,10 @@ class Front(NamedTuple):
 def new_front(vertices: int, faces: int) -> Any:
     """No gates yet."""
     room = 3 * faces
-    five = [np.zeros(room, np.int32) for _ in range(5)]
-    return Front(
-        *five, np.zeros(room, np.int8), np.full(vertices, -1, np.int32), np.zeros(room, np.int32),
-        np.zeros(room, np.int64), np.zeros(2, np.int64),
-    )  # fmt: skip
+    start, end, opposite, before, after, heap = (np.zeros(room, np.int32) for _ in range(6))
+    into = np.full(vertices, -1, np.int32)
+    status, key = np.zeros(room, np.int8), np.zeros(room, np.int64)
+    return Front(start, end, opposite, before, after, status, into, heap, key, np.zeros(2, np.int64))
 
 
 @kernel()
@@ -101,8 +101,8 @@ def link(front, one, other):
 
 @kernel()
 def close_left(front, points, gate):
-    """The face in front of `gate` ends at the start of the gate before it: one gate takes the place of both, none if the
-    gate behind ends there too."""
+    """The face in front of `gate` ends at the start of the gate before it: one gate takes the place of both, none if
+    the gate behind ends there too."""
     left, right = front.before[gate], front.after[gate]
     vertex = front.start[left]
     front.status[gate] = CLOSED

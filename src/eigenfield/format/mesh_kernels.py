@@ -40,14 +40,14 @@ FRESH = EDGE + 64 + FANS * FANS + PAIRS
 SEED = FRESH + PAIRS + 4 + 1
 FACES = SEED + 6  # all contexts so far
 M_LEFT, M_RIGHT, M_EDGE, M_FRESH, M_SEED = 4, 5, 6, 7, 8
-BAD_VERTEX, BAD_COUNT = 1, 2  # what `traverse` returns for bytes that are no mesh
 
 
 class Built(NamedTuple):
     """Faces between places as far as they are known, places in the order of the bytes.
 
     points: (n, 3) int64 lattice coordinates. faces: (m, 3) int32. parents: (n, 3) int32: start, end and third corner of
-    the gate over which a place came, or -1. fan: (n,) int32 faces at a place. counts: (2,) int64 places and faces so far.
+    the gate over which a place came, or -1. fan: (n,) int32 faces at a place. counts: (2,) int64 places and faces so
+    far.
     """
 
     points: NDArray[np.int64]
@@ -61,8 +61,8 @@ class Source(NamedTuple):
     """The mesh to be coded; of size 0 in decoding.
 
     points (n, 3) int64; faces (m, 3) int32; seeds (m,) int32, the faces in the order in which they may begin a patch;
-    edges, edge_faces (3 m,): start * n + end of each face's edges, sorted, and whose they are; used (m,) bool; index
-    (n,) int32, a place's number in the bytes or -1, and its inverse `order`; face_order (m,) int32 likewise.
+    edges, edge_faces (3 m,): start * n + end of each face's edges, sorted, and whose they are; used (m,) bool; number
+    (n,) int32, a place's in the bytes or -1, and its inverse `order`; face_order (m,) int32 likewise.
     """
 
     points: NDArray[np.int64]
@@ -71,7 +71,7 @@ class Source(NamedTuple):
     edges: NDArray[np.int64]
     edge_faces: NDArray[np.int32]
     used: NDArray[np.bool_]
-    index: NDArray[np.int32]
+    number: NDArray[np.int32]
     order: NDArray[np.int32]
     face_order: NDArray[np.int32]
 
@@ -146,7 +146,7 @@ def _new_vertex(coder, source, built, given):
     new = built.counts[0]
     built.counts[0] = new + 1
     if coder.writing[0]:
-        source.index[given] = new
+        source.number[given] = new
         source.order[new] = given
         for axis in range(3):
             built.points[new, axis] = source.points[given, axis]
@@ -176,10 +176,10 @@ def _code_seed(coder, source, built, front, planar, room, face):
     corner = np.zeros(3, np.int64)
     for k in range(3):
         given = np.int64(source.faces[face, k]) if coder.writing[0] else np.int64(-1)
-        old = np.int64(coder.writing[0] and source.index[given] >= 0)
+        old = np.int64(coder.writing[0] and source.number[given] >= 0)
         old = code_flag(coder, old, SEED + k, SEED + 3 + k, SEED + k, M_SEED) if built.counts[0] > 0 else np.int64(0)
         if old:
-            corner[k] = _code_old(coder, built, np.int64(source.index[given]) if coder.writing[0] else np.int64(0))
+            corner[k] = _code_old(coder, built, np.int64(source.number[given]) if coder.writing[0] else np.int64(0))
             if corner[k] < 0:
                 return False
         else:
@@ -200,7 +200,8 @@ def _code_seed(coder, source, built, front, planar, room, face):
 
 @kernel()
 def traverse(coder, source, built, front, planar):
-    """Code or decode faces and the lattice coordinates of vertices (planar: x and y alone); 0, or what is wrong."""
+    """Code or decode faces and the lattice coordinates of places (planar: x and y alone); whether they
+    can be."""
     points = built.points
     room = points.shape[0]
     writing = coder.writing[0]
@@ -216,13 +217,13 @@ def traverse(coder, source, built, front, planar):
                 source.used[face] = True
                 source.face_order[built.counts[1]] = face
             if not _code_seed(coder, source, built, front, planar, room, face):
-                return BAD_VERTEX
+                return False
             continue
         a, b = np.int64(front.start[gate]), np.int64(front.end[gate])
         left, right = front.before[gate], front.after[gate]
-        l, r = np.int64(front.start[left]), np.int64(front.end[right])
-        lc = _neighbour(front, points, gate, left, l, b, planar)
-        rc = _neighbour(front, points, gate, right, r, a, planar)
+        start, end = np.int64(front.start[left]), np.int64(front.end[right])
+        lc = _neighbour(front, points, gate, left, start, b, planar)
+        rc = _neighbour(front, points, gate, right, end, a, planar)
         pair = lc * ANGLES + rc
         fa, fb = min(built.fan[a], FANS - 1), min(built.fan[b], FANS - 1)
         face, given, target = np.int64(-1), np.int64(-1), np.int64(-1)
@@ -236,19 +237,19 @@ def traverse(coder, source, built, front, planar):
                     corner = np.int64(source.faces[face, k])
                     if corner != sa and corner != sb:
                         given = corner
-                target = np.int64(source.index[given])
+                target = np.int64(source.number[given])
         if lc < NO_GATE and code_flag(
-            coder, np.int64(target == l), LEFT + pair, LEFT + PAIRS + lc * FANS + fa,
-            LEFT + PAIRS + ANGLES * FANS + 2 * lc + np.int64(l == r), M_LEFT,
+            coder, np.int64(target == start), LEFT + pair, LEFT + PAIRS + lc * FANS + fa,
+            LEFT + PAIRS + ANGLES * FANS + 2 * lc + np.int64(start == end), M_LEFT,
         ):  # fmt: skip
-            _add_face(built, b, a, l)
+            _add_face(built, b, a, start)
             close_left(front, points, gate)
             continue
-        if rc < NO_GATE and (r != l or lc >= NO_GATE) and code_flag(
-            coder, np.int64(target == r), RIGHT + pair, RIGHT + PAIRS + rc * FANS + fb,
+        if rc < NO_GATE and (end != start or lc >= NO_GATE) and code_flag(
+            coder, np.int64(target == end), RIGHT + pair, RIGHT + PAIRS + rc * FANS + fb,
             RIGHT + PAIRS + ANGLES * FANS + rc, M_RIGHT,
         ):  # fmt: skip
-            _add_face(built, b, a, r)
+            _add_face(built, b, a, end)
             close_right(front, points, gate)
             continue
         borders = np.int64(lc == AT_BORDER) + 2 * np.int64(rc == AT_BORDER)
@@ -259,19 +260,17 @@ def traverse(coder, source, built, front, planar):
         ):  # fmt: skip
             front.status[gate] = BORDER
             continue
-        if code_flag(
-            coder, np.int64(target < 0), FRESH + pair, FRESH + PAIRS + borders, FRESH + PAIRS + 4, M_FRESH
-        ):
+        if code_flag(coder, np.int64(target < 0), FRESH + pair, FRESH + PAIRS + borders, FRESH + PAIRS + 4, M_FRESH):
             if built.counts[0] >= room:
-                return BAD_VERTEX
+                return False
             target = _new_vertex(coder, source, built, given)
             built.parents[target, 0], built.parents[target, 1] = a, b
             built.parents[target, 2] = front.opposite[gate]
             code_place(coder, built, target, pair, planar)
         else:
             target = _code_old(coder, built, target)
-            if target < 0 or target == a or target == b:
-                return BAD_VERTEX
+            if target < 0 or target in (a, b):
+                return False
         _add_face(built, b, a, target)
         open_out(front, points, gate, target)
-    return 0 if built.counts[0] == room else BAD_COUNT
+    return built.counts[0] == room

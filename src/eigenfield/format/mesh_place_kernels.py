@@ -101,7 +101,7 @@ def code_seed_place(coder, built, vertex, near, planar):
     """The place of a vertex of a patch's first face: its difference from vertex `near`, from 0 for the first of all."""
     points = built.points
     for axis in range(2 if planar else 3):
-        base = points[near, axis] if near >= 0 else np.int64(0)
+        base = min(max(points[near, axis], -REACH), REACH) if near >= 0 else np.int64(0)
         slot = START + axis
         points[vertex, axis] = base + code_integer(
             coder, points[vertex, axis] - base, slot, slot + 3, slot + 6, M_START

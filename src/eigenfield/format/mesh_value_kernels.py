@@ -25,14 +25,14 @@ LAST = 20
 DEPTH = CORNERS
 TEXTURE = DEPTH + DIFFERENCES * DIFFERENCES + SPREADS * LAST + DIFFERENCES * SPREADS
 CONTEXTS = TEXTURE + 2 * 24 * 3 + 24 * 24 + 24 * 2
-M_DEPTH, M_U, M_V = 12, 13, 14
+M_DEPTH, M_U = 12, 13  # and one more for v
 MIXTURES = 15
 
 
 @kernel()
 def _rounded(value, other):
     """The nearest whole number within REACH; that of `other` for NaN."""
-    if not value == value:
+    if value != value:
         value = other
     return np.int64(math.floor(min(max(value, -REACH), REACH) + 0.5))
 
@@ -164,14 +164,14 @@ def code_textures(coder, vertices, world, uv, first, corners):
     earlier corners predict, or else an earlier corner's; world (places, 3) float64 are decoded positions."""
     faces, charts = vertices.faces, vertices.chart
     guess = np.zeros(2)
-    last_u, last_v = 0, 0
-    before = np.int64(-1)
+    last = np.zeros(2, np.int64)
+    before = -1
     for vertex in range(uv.shape[0]):
         kind = vertices.kinds[charts[vertex]]
         if kind == MAPPED:
             continue
-        u, v, count, anchor = 0.0, 0.0, 0, np.int64(-1)
-        reach = np.int64(0)
+        u, v, count, anchor = 0.0, 0.0, 0, -1
+        reach = 0
         for i in range(first[vertex], min(first[vertex + 1], first[vertex] + MOST)):
             a, b = _beside(faces, corners[i], 1), _beside(faces, corners[i], 2)
             if a < vertex and charts[a] == charts[vertex]:
@@ -184,7 +184,7 @@ def code_textures(coder, vertices, world, uv, first, corners):
                     u += guess[0]
                     v += guess[1]
                     count += 1
-                    reach = max(reach, abs(uv[a, 0] - uv[b, 0]) + abs(uv[a, 1] - uv[b, 1]))
+                    reach = max(reach, binary_digits(abs(uv[a, 0] - uv[b, 0]) + abs(uv[a, 1] - uv[b, 1])))
         if anchor < 0:
             anchor = before
         before = vertex
@@ -193,18 +193,13 @@ def code_textures(coder, vertices, world, uv, first, corners):
         if count > 0:
             pu, pv = u / count, v / count
         iu, iv = _rounded(pu, 0.0), _rounded(pv, 0.0)
-        many, size = min(count, 2), min(binary_digits(reach), 23)
+        many, size = min(count, 2), min(reach, 23)
         for axis in range(2):
-            at = TEXTURE + (axis * 24 + size) * 3 + many
-            last = min(last_u, 23) if axis == 0 else min(last_v, 23)
-            now = TEXTURE + 2 * 24 * 3 + last * 24 + size if axis == 0 else TEXTURE + 2 * 24 * 3 + last_u * 24 + size
             expected = iu if axis == 0 else iv
+            slot = TEXTURE + 2 * 24 * 3
             off = code_integer(
-                coder, uv[vertex, axis] - expected, at, now, TEXTURE + 2 * 24 * 3 + 24 * 24 + axis * 24 + last,
-                M_U if axis == 0 else M_V,
+                coder, uv[vertex, axis] - expected, TEXTURE + (axis * 24 + size) * 3 + many, slot + last[0] * 24 + size,
+                slot + 24 * 24 + axis * 24 + last[axis], M_U + axis,
             )  # fmt: skip
             uv[vertex, axis] = expected + off
-            if axis == 0:
-                last_u = min(binary_digits(abs(off)), 23)
-            else:
-                last_v = min(binary_digits(abs(off)), 23)
+            last[axis] = min(binary_digits(abs(off)), 23)

@@ -1,7 +1,8 @@
 """Bytes to and from the kernels' coder, and the checks that all coded parts share.
 
 A part begins with a header that says how many numbers follow. A decoder allocates in proportion to them, so a byte may
-stand for at most RATIO of them: parts that would be shorter are filled up with zeros, which a decoder would read anyway.
+stand for at most RATIO of them: parts that would be shorter are filled up with zeros, which a decoder reads behind the
+end anyway.
 """
 
 from __future__ import annotations

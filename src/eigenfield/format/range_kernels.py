@@ -1,8 +1,8 @@
 """Adaptive binary arithmetic coding, and integers on top of it; one body codes and decodes.
 
 Carry-less coder (as in Mahoney's lpaq, 2007): an interval [low, high] of 32-bit numbers is divided at every bit in
-proportion to the probability of a one, and bytes on which both ends agree are shifted out. Behind the end of the bytes a
-decoder reads zeros.
+proportion to the probability of a one, and bytes on which both ends agree are shifted out. Behind the end of the bytes
+a decoder reads zeros.
 
 The probability of a one is a mixture of three predictions, each from a slot of its own that the caller's contexts
 choose: with s = ln(p / (1 - p)),
@@ -47,7 +47,7 @@ class Coder(NamedTuple):
     data: (size,) uint8: what is read, or room for what is written; beyond it bytes are counted, not kept.
     state: (4,) int64: low, high, code (of a decoder) and the next byte.
     writing: (1,) bool.
-    probability, count: (slots,) int64 of ones in 1/65536, and bits seen.
+    probability, seen: (slots,) int64 of ones in 1/65536, and how many bits.
     weights: (mixtures, INPUTS) int64.
     """
 
@@ -55,7 +55,7 @@ class Coder(NamedTuple):
     state: NDArray[np.int64]
     writing: NDArray[np.bool_]
     probability: NDArray[np.int64]
-    count: NDArray[np.int64]
+    seen: NDArray[np.int64]
     weights: NDArray[np.int64]
 
 
@@ -135,7 +135,7 @@ def code_split(coder, bit, one):
 @kernel()
 def code_bit(coder, bit, a, b, c, mixture):
     """A bit predicted by slots a, b and c, mixed by row `mixture` of the weights."""
-    p, n, w = coder.probability, coder.count, coder.weights
+    p, n, w = coder.probability, coder.seen, coder.weights
     s0, s1, s2 = STRETCH[p[a] >> 4], STRETCH[p[b] >> 4], STRETCH[p[c] >> 4]
     s = (w[mixture, 0] * s0 + w[mixture, 1] * s1 + w[mixture, 2] * s2) >> 16
     one = SQUASH[min(max(s, -2047), 2047) + 2047]
@@ -199,7 +199,7 @@ def code_magnitude(coder, value, a, b, c, mixture):
         if place == length - 2:
             bit = _code_node(coder, bit, a, b, c, mixture, UPPER + length)
         elif place == length - 3:
-            bit = _code_node(coder, bit, a, b, c, mixture, LOWER + min(length, 9) * 2 + (result & 1))
+            bit = _code_node(coder, bit, a, b, c, mixture, LOWER + 2 * min(length, np.int64(9)) + (result & 1))
         else:
             bit = code_split(coder, bit, ONE // 2)
         result = result * 2 + bit

@@ -112,9 +112,7 @@ def code_cells(coder, cells):
     for k in range(cells.shape[0]):
         there = code_flag(coder, np.int64(cells[k] >= 0), CELL + there, CELL + there, CELL + 2, M_CELL)
         if there:
-            cells[k] = expected + code_integer(
-                coder, cells[k] - expected, CELL + 3, CELL + 3, CELL + 3, M_CELL
-            )
+            cells[k] = expected + code_integer(coder, cells[k] - expected, CELL + 3, CELL + 3, CELL + 3, M_CELL)
             expected = cells[k] + 1
         else:
             cells[k] = -1

@@ -1,8 +1,8 @@
 """The weights of eigen textures in few bytes.
 
 The numbers of one component after the other are divided by its step and rounded. Where the encoded cameras stand on a
-regular grid, a component is a table of its rows and columns, and either its numbers are rounded or those of its discrete
-cosine transform (orthonormal: the squared error is the same), whichever takes fewer bytes.
+regular grid, a component is a table of its rows and columns, and either its numbers are rounded or those of its
+discrete cosine transform (orthonormal: the squared error is the same), whichever takes fewer bytes.
 """
 
 from __future__ import annotations
@@ -17,8 +17,15 @@ from scipy.fft import dctn, idctn
 from eigenfield.format import limits
 from eigenfield.format.grid_coder import checked_grid, read_grid, write_grid
 from eigenfield.format.range_coder import (
-    VERSION, check_end, check_header, check_numbers, coded, damaged, decoder, filled_up,
-)  # fmt: skip
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+)
 from eigenfield.format.range_kernels import AT, HIGH, LOW
 from eigenfield.format.table_kernels import CONTEXTS, FREQUENCIES, MIXTURES, SLOPES, VALUES, code_table, code_way
 
