@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 
 from eigenfield.format.lattice import camera_lattice, world_lattice
@@ -11,13 +13,13 @@ CAMERA = np.array([[100.0, 0, 50, 0], [0, 100, 40, 0], [0, 0, 1, 0]])
 
 
 def relief(rows=20, columns=24, *, step=1.0, charts=1):
-    """A bumpy sheet on the pixels of CAMERA, its texture laid out as that camera sees it; and its lattice. charts: it is
-    cut into so many strips, with gaps between them in the texture."""
+    """A bumpy sheet on the pixels of CAMERA, its texture laid out as that camera sees it; and its lattice. charts: it
+    is cut into so many strips, with gaps between them in the texture."""
     y, x = np.mgrid[:rows, :columns].astype(np.float64)
     inverse = 0.5 + 0.05 * np.sin(x / 5) * np.cos(y / 4)
     vertices, uv, faces = [], [], []
     cuts = np.linspace(0, columns - 1, charts + 1).astype(int)
-    for chart, (first, last) in enumerate(zip(cuts[:-1], cuts[1:], strict=True)):
+    for chart, (first, last) in enumerate(itertools.pairwise(cuts)):
         width = last - first + 1
         start = sum(len(each) for each in vertices)
         part = np.s_[:, first : last + 1]

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import coded_meshes
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import coded_meshes
 from eigenfield.errors import FormatError
 from eigenfield.format.lattice import camera_lattice, world_lattice
 from eigenfield.format.mesh_coder import HEADER, decode_mesh, encode_mesh
