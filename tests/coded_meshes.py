@@ -12,10 +12,14 @@ from eigenfield.mesh import Mesh
 CAMERA = np.array([[100.0, 0, 50, 0], [0, 100, 40, 0], [0, 0, 1, 0]])
 
 
-def relief(rows=20, columns=24, *, step=1.0, charts=1):
+def relief(rows=20, columns=24, *, step=1.0, charts=1, astray=0.0):
     """A bumpy sheet on the pixels of CAMERA, its texture laid out as that camera sees it; and its lattice. charts: it
-    is cut into so many strips, with gaps between them in the texture."""
+    is cut into so many strips, with gaps between them in the texture. astray: the share of
+    vertices that are off the pixels."""
     y, x = np.mgrid[:rows, :columns].astype(np.float64)
+    off = np.random.default_rng(2).uniform(-0.4, 0.4, (2, rows, columns))
+    off *= np.random.default_rng(3).uniform(0, 1, (rows, columns)) < astray
+    x, y = x + off[0], y + off[1]
     inverse = 0.5 + 0.05 * np.sin(x / 5) * np.cos(y / 4)
     vertices, uv, faces = [], [], []
     cuts = np.linspace(0, columns - 1, charts + 1).astype(int)

@@ -23,6 +23,7 @@ def streams():
     """Name and bytes of every undamaged vector."""
     yield "mesh-relief", encode_mesh(*coded_meshes.relief(charts=3))[0]
     yield "mesh-coarse", encode_mesh(*coded_meshes.relief(30, 31, step=2.5), uv_bits=6)[0]
+    yield "mesh-fine", encode_mesh(*coded_meshes.relief(step=0.25, charts=2, astray=0.2), fine=2)[0]
     yield "mesh-ball", encode_mesh(*coded_meshes.ball())[0]
     yield "mesh-soup", encode_mesh(*coded_meshes.soup(7, 60, 150))[0]
     yield "weights-line", code_weights(smooth_weights(4, noise=0.3), 0.05)[0]

@@ -50,6 +50,21 @@ def test_texture_moves_with_the_surface_where_it_is_a_map_of_it():
     assert off < 64 / 2**10  # the map's tolerance, far below the lattice's 1.5 pixels
 
 
+def test_fine_digits_cost_only_the_vertices_that_have_them():
+    plain, _ = coded_meshes.relief(40, 40)
+    mesh, lattice = coded_meshes.relief(40, 40, step=0.125, astray=0.1)
+    fine, expected = encode_mesh(mesh, lattice, fine=3)
+    back = decode_mesh(fine)
+    assert same(back, expected)
+    assert np.array_equal(coded_meshes.face_set(back, lattice), coded_meshes.face_set(mesh, lattice))
+    astray = (np.rint(lattice.coordinates(mesh.vertices))[:, :2] % 8 != 0).any(axis=1).sum()
+    pixels = encode_mesh(plain, camera_lattice(coded_meshes.CAMERA, 1.0, 1e-3))[0]
+    assert len(pixels) < len(fine) < len(pixels) + 2 * astray + 120
+    assert len(fine) < 0.9 * len(encode_mesh(mesh, lattice)[0])
+    with pytest.raises(ValueError, match="fine"):
+        encode_mesh(*coded_meshes.ball(), fine=1)
+
+
 def test_a_ball_with_a_seam_and_poles():
     mesh, lattice = coded_meshes.ball()
     data, expected = encode_mesh(mesh, lattice)

@@ -52,7 +52,7 @@ function assertAlike(found, expected, name) {
 
 test("what Python codes decodes to the same numbers", async () => {
   const whole = names.filter((name) => !name.includes("damaged"));
-  assert.equal(whole.length, 8);
+  assert.equal(whole.length, 9);
   for (const name of whole) {
     const { expected, decode } = await vector(name);
     assert.notEqual(expected, null, name);
@@ -61,7 +61,7 @@ test("what Python codes decodes to the same numbers", async () => {
 });
 
 test("a mesh decodes to the same bits", async () => {
-  for (const name of ["mesh-relief", "mesh-coarse", "mesh-ball", "mesh-soup"]) {
+  for (const name of ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup"]) {
     const { expected, decode } = await vector(name);
     const found = decode();
     for (const part of ["positions", "uv", "indices"]) assert.deepEqual([...found[part]], expected[part], name);

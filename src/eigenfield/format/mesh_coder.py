@@ -39,8 +39,9 @@ from eigenfield.format.range_coder import (
 )
 from eigenfield.mesh import Mesh
 
-HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, 0; places, faces, vertices; the lattice
+HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
 REACH = 2**20 - 1  # of lattice coordinates, either way
+MOST_FINE = 8  # last digits of x and y
 MOST_DIGITS = 18  # of texture coordinates in 0..1
 FARTHEST = 1e30  # of positions and texture coordinates
 
@@ -59,7 +60,7 @@ class _Welded:
     codes: NDArray[np.int64]
 
 
-def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12) -> tuple[bytes, Mesh]:
+def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 0) -> tuple[bytes, Mesh]:
     """The bytes, and the mesh that a decoder finds: the same faces, each with its sense, in another order.
 
     Positions are rounded to the lattice. Texture coordinates are off by at most half of 2^-uv_bits where they are
@@ -67,18 +68,25 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12) -> tuple[byt
     y, so that texture and surface move together. Left out: vertices without a face, and faces two
     of whose corners fall onto one lattice point.
 
+    fine: on a flat lattice, how many of the last binary digits of x and y are 0 at most vertices, 0 to 8. Where those
+    inside a relief are at pixels and those of its contours between them, a step of 2^-fine pixels costs the latter
+    alone.
+
     Raises ValueError for a mesh without texture coordinates, or one that reaches 2^20 steps from the lattice's origin,
-    or behind its camera; for `uv_bits` beyond 1 to 18.
+    or behind its camera; for `uv_bits` beyond 1 to 18, `fine` beyond
+    0 to 8 or in space.
     """
     if mesh.uv is None or not 1 <= uv_bits <= MOST_DIGITS:
         raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
+    if not 0 <= fine <= (MOST_FINE if lattice.flat else 0):
+        raise ValueError("0 to 8 fine digits, and only on a flat lattice")
     welded = _welded(mesh, lattice, uv_bits)
     n, m, v = len(welded.places), len(welded.faces), len(welded.place)
     found: list[Mesh] = []
 
     def run(coder: Any) -> None:
         source, built = _source(welded), new_built(n, m)
-        complete = traverse(coder, source, built, new_front(n, m), lattice.flat)
+        complete = traverse(coder, source, built, new_front(n, m), lattice.flat, fine)
         first, corners = corner_lists(built.faces, n)
         if lattice.flat:
             code_depths(coder, built, first, corners)
@@ -93,7 +101,7 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12) -> tuple[byt
         code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
         found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
 
-    header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, 0, n, m, v, *lattice.matrix.reshape(-1))
+    header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
     body = coded(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
     return filled_up(header + body, max(n, m, v)), found[0]
 
@@ -101,16 +109,16 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12) -> tuple[byt
 def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     """Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
     check_header(data, HEADER.size, where)
-    _, flat, uv_bits, _, n, m, v, *numbers = HEADER.unpack_from(data)
+    _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
     if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
         raise damaged(f"{v} vertices and {m} faces, more than a scene may have", where)
     check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
-    if flat > 1 or not 1 <= uv_bits <= MOST_DIGITS or not np.isfinite(numbers).all():
+    if flat > 1 or not 1 <= uv_bits <= MOST_DIGITS or fine > MOST_FINE * flat or not np.isfinite(numbers).all():
         raise damaged("a lattice that cannot be", where)
     lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
     coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
     built = new_built(n, m)
-    if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat):
+    if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat, fine):
         raise damaged("faces that cannot be", where)
     check_end(coder, where)
     first, corners = corner_lists(built.faces, n)

@@ -25,7 +25,7 @@ from eigenfield.format.mesh_front_kernels import (
     next_gate,
     open_out,
 )
-from eigenfield.format.mesh_place_kernels import PLACES, code_place, code_seed_place
+from eigenfield.format.mesh_place_kernels import PLACES, code_place, code_seed_place, off_grid
 from eigenfield.format.range_kernels import binary_digits, code_flag, code_raw
 from eigenfield.jit import kernel
 
@@ -199,9 +199,9 @@ def _code_seed(coder, source, built, front, planar, room, face):
 
 
 @kernel()
-def traverse(coder, source, built, front, planar):
-    """Code or decode faces and the lattice coordinates of places (planar: x and y alone); whether they
-    can be."""
+def traverse(coder, source, built, front, planar, fine):
+    """Code or decode faces and the lattice coordinates of places (planar: x and y alone; most of them
+    multiples of 2^fine); whether they can be."""
     points = built.points
     room = points.shape[0]
     writing = coder.writing[0]
@@ -253,9 +253,9 @@ def traverse(coder, source, built, front, planar):
             close_right(front, points, gate)
             continue
         borders = np.int64(lc == AT_BORDER) + 2 * np.int64(rc == AT_BORDER)
-        parity = (points[a, 0] & 1) + 2 * (points[b, 0] & 1) + 4 * (points[a, 1] & 1) + 8 * (points[b, 1] & 1)
+        grid = off_grid(points, a, fine) + 4 * off_grid(points, b, fine)
         if code_flag(
-            coder, np.int64(face < 0), EDGE + borders * 16 + parity, EDGE + 64 + fa * FANS + fb,
+            coder, np.int64(face < 0), EDGE + borders * 16 + grid, EDGE + 64 + fa * FANS + fb,
             EDGE + 64 + FANS * FANS + pair, M_EDGE,
         ):  # fmt: skip
             front.status[gate] = BORDER
@@ -266,7 +266,7 @@ def traverse(coder, source, built, front, planar):
             target = _new_vertex(coder, source, built, given)
             built.parents[target, 0], built.parents[target, 1] = a, b
             built.parents[target, 2] = front.opposite[gate]
-            code_place(coder, built, target, pair, planar)
+            code_place(coder, built, target, pair, planar, fine)
         else:
             target = _code_old(coder, built, target)
             if target < 0 or target in (a, b):

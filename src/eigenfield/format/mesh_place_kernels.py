@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from eigenfield.format.range_kernels import binary_digits, code_integer
+from eigenfield.format.range_kernels import binary_digits, code_flag, code_integer, code_raw
 from eigenfield.jit import kernel
 
 REACH = 2**20  # of lattice coordinates, either way
@@ -17,10 +17,11 @@ SIZES = 24  # binary digits of squared lengths that are told apart, in a plane
 DEEP = 44  # likewise, in space
 PAIRS = 169  # classes of both neighbours of a gate
 X, Y, SPACE = 0, 0 + SIZES * 8 + SIZES + PAIRS, 0
-FLAT = Y + SIZES * 8 + 16 * 8 + SIZES * 8  # contexts of a plane
+REST = Y + SIZES * 8 + 16 * 8 + SIZES * 8
+FLAT = REST + 16 + 4 + PAIRS  # contexts of a plane
 START = max(FLAT, SPACE + DEEP + 3 * 24 + 3 * DEEP)
 PLACES = START + 3 * 3
-M_X, M_Y, M_SPACE, M_START = 0, 1, 2, 3
+M_X, M_Y, M_SPACE, M_START, M_REST = 0, 1, 2, 3, 15
 
 
 @kernel()
@@ -42,28 +43,46 @@ def _octant(dx, dy):
 
 
 @kernel()
-def _code_flat(coder, points, vertex, a, b, o, pair):
-    """x and y: predicted OUT times the gate's length in front of its middle."""
+def off_grid(points, vertex, fine):
+    """1 if x is no multiple of 2^fine, plus 2 if y is not; of 2 if fine is 0."""
+    mask = np.int64(max((1 << fine) - 1, 1))
+    return np.int64(points[vertex, 0] & mask != 0) + 2 * np.int64(points[vertex, 1] & mask != 0)
+
+
+@kernel()
+def _code_flat(coder, points, vertex, a, b, o, pair, fine):
+    """x and y: predicted OUT times the gate's length in front of its middle, in units of 2^fine; then whether there is
+    more to them than these, and how much."""
     gx, gy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     hx, hy = points[o, 0] - points[a, 0], points[o, 1] - points[a, 1]
     area = gx * hy - gy * hx
     out = OUT if area > 0 else -OUT
     x = _bounded((points[a, 0] + points[b, 0]) * 0.5 + out * gy)
     y = _bounded((points[a, 1] + points[b, 1]) * 0.5 - out * gx)
-    size = min(binary_digits(gx * gx + gy * gy), SIZES - 1)
-    spread = min(binary_digits(abs(area)), SIZES - 1)
+    half = np.int64(1 << fine >> 1)
+    size = min(binary_digits((gx * gx + gy * gy) >> 2 * fine), SIZES - 1)
+    spread = min(binary_digits(abs(area) >> 2 * fine), SIZES - 1)
     way = _octant(gx, gy)
-    dx = points[vertex, 0] - x
+    x, y = (x + half) >> fine, (y + half) >> fine
+    dx = ((points[vertex, 0] + half) >> fine) - x
     dx = code_integer(coder, dx, X + size * 8 + way, X + SIZES * 8 + spread, X + SIZES * 9 + pair, M_X)
-    points[vertex, 0] = x + dx
     amount = min(binary_digits(abs(dx)), 7)
     sign = np.int64(dx > 0)
     second, third = Y + SIZES * 8, Y + SIZES * 8 + 16 * 8
-    dy = points[vertex, 1] - y
+    dy = ((points[vertex, 1] + half) >> fine) - y
     dy = code_integer(
         coder, dy, Y + size * 8 + way, second + (amount * 2 + sign) * 8 + way, third + spread * 8 + amount, M_Y
     )
-    points[vertex, 1] = y + dy
+    rest_x = points[vertex, 0] - (((points[vertex, 0] + half) >> fine) << fine)
+    rest_y = points[vertex, 1] - (((points[vertex, 1] + half) >> fine) << fine)
+    points[vertex, 0], points[vertex, 1] = (x + dx) << fine, (y + dy) << fine
+    if fine == 0:
+        return
+    near = off_grid(points, a, fine) + 4 * off_grid(points, b, fine)
+    more = np.int64(rest_x != 0 or rest_y != 0)
+    if code_flag(coder, more, REST + near, REST + 16 + off_grid(points, o, fine), REST + 20 + pair, M_REST):
+        points[vertex, 0] += code_raw(coder, rest_x + half, fine) - half
+        points[vertex, 1] += code_raw(coder, rest_y + half, fine) - half
 
 
 @kernel()
@@ -86,12 +105,12 @@ def _code_deep(coder, points, vertex, a, b, o):
 
 
 @kernel()
-def code_place(coder, built, vertex, pair, planar):
+def code_place(coder, built, vertex, pair, planar, fine):
     """The place of a new vertex, from the gate over which it comes: x and y in a plane, x, y and z in space."""
     parents = built.parents
     a, b, o = np.int64(parents[vertex, 0]), np.int64(parents[vertex, 1]), np.int64(parents[vertex, 2])
     if planar:
-        _code_flat(coder, built.points, vertex, a, b, o, pair)
+        _code_flat(coder, built.points, vertex, a, b, o, pair, fine)
     else:
         _code_deep(coder, built.points, vertex, a, b, o)
 

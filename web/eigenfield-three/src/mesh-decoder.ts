@@ -9,6 +9,7 @@ import { RangeDecoder, checkNumbers, codedHeader } from "./range-decoder.js";
 
 const HEADER = 144;
 const MOST_DIGITS = 18;
+const MOST_FINE = 8;
 
 export interface DecodedMesh {
   positions: Float32Array; // three a vertex
@@ -18,16 +19,16 @@ export interface DecodedMesh {
 
 export function decodeMesh(bytes: Uint8Array, where = "mesh"): DecodedMesh {
   const header = codedHeader(bytes, HEADER, where);
-  const [flat, digits] = [header.getUint8(1), header.getUint8(2)];
+  const [flat, digits, fine] = [header.getUint8(1), header.getUint8(2), header.getUint8(3)];
   const [places, faces, count] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];
   const matrix = Float64Array.from({ length: 16 }, (_, k) => header.getFloat64(16 + 8 * k, true));
   if (places > limits.MAX_VERTICES || count > limits.MAX_VERTICES || faces > limits.MAX_TRIANGLES)
     throw damaged(where, `${count} vertices and ${faces} faces`);
   checkNumbers(bytes, Math.max(places, faces, count), limits.MAX_TRIANGLES, where);
-  if (flat > 1 || digits < 1 || digits > MOST_DIGITS || !matrix.every(Number.isFinite))
+  if (flat > 1 || fine > MOST_FINE * flat || digits < 1 || digits > MOST_DIGITS || !matrix.every(Number.isFinite))
     throw damaged(where, "a lattice that cannot be");
   const decoder = new RangeDecoder(bytes.subarray(HEADER), CONTEXTS, MIXTURES);
-  const built = readFaces(decoder, places, faces, flat === 1, where);
+  const built = readFaces(decoder, places, faces, { flat: flat === 1, fine }, where);
   decoder.checkEnd();
   const around = cornerLists(built.faces, places);
   if (flat) readDepths(decoder, built, around.first, around.corners);

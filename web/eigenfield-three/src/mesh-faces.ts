@@ -2,7 +2,7 @@
 
 import { damaged } from "./errors.js";
 import { BORDER, MeshFront, OPEN } from "./mesh-front.js";
-import { PLACES, readPlace, readSeedPlace } from "./mesh-places.js";
+import { type Layout, PLACES, offGrid, readPlace, readSeedPlace } from "./mesh-places.js";
 import { type RangeDecoder, binaryDigits } from "./range-decoder.js";
 
 const ANGLES = 13;
@@ -26,7 +26,13 @@ export interface Built {
   parents: Int32Array; // start, end and third corner of the gate over which a place came, or -1
 }
 
-export function readFaces(decoder: RangeDecoder, places: number, faces: number, flat: boolean, where: string): Built {
+export function readFaces(
+  decoder: RangeDecoder,
+  places: number,
+  faces: number,
+  layout: Layout,
+  where: string,
+): Built {
   const points = new Int32Array(3 * places);
   const built = { points, faces: new Int32Array(3 * faces), parents: new Int32Array(3 * places).fill(-1) };
   const fan = new Int32Array(places);
@@ -53,7 +59,7 @@ export function readFaces(decoder: RangeDecoder, places: number, faces: number, 
       if (known > 0 && decoder.flag(SEED + k, SEED + 3 + k, SEED + k, M_SEED)) corner[k] = old();
       else {
         const vertex = (corner[k] = fresh());
-        readSeedPlace(decoder, points, vertex, k > 0 ? corner[k - 1]! : vertex - 1, flat);
+        readSeedPlace(decoder, points, vertex, k > 0 ? corner[k - 1]! : vertex - 1, layout.flat);
       }
     }
     const [a, b, c] = corner;
@@ -64,7 +70,7 @@ export function readFaces(decoder: RangeDecoder, places: number, faces: number, 
   const neighbour = (gate: number, near: number, vertex: number, far: number) => {
     if (front.status[near] === BORDER) return AT_BORDER;
     if (front.status[near] !== OPEN || vertex === far || near === gate) return NO_GATE;
-    return angleClass(points, front.start[gate]!, front.end[gate]!, vertex, front.opposite[gate]!, flat);
+    return angleClass(points, front.start[gate]!, front.end[gate]!, vertex, front.opposite[gate]!, layout.flat);
   };
 
   while (done < faces) {
@@ -95,11 +101,9 @@ export function readFaces(decoder: RangeDecoder, places: number, faces: number, 
       continue;
     }
     const borders = (lc === AT_BORDER ? 1 : 0) + (rc === AT_BORDER ? 2 : 0);
-    const [x, y] = [3 * a, 3 * b];
-    const parity =
-      (points[x]! & 1) + 2 * (points[y]! & 1) + 4 * (points[x + 1]! & 1) + 8 * (points[y + 1]! & 1);
+    const grid = offGrid(points, a, layout.fine) + 4 * offGrid(points, b, layout.fine);
     const fans = EDGE + 64 + fa * FANS + fb;
-    if (decoder.flag(EDGE + borders * 16 + parity, fans, EDGE + 64 + FANS * FANS + pair, M_EDGE)) {
+    if (decoder.flag(EDGE + borders * 16 + grid, fans, EDGE + 64 + FANS * FANS + pair, M_EDGE)) {
       front.status[gate] = BORDER;
       continue;
     }
@@ -108,7 +112,7 @@ export function readFaces(decoder: RangeDecoder, places: number, faces: number, 
       target = fresh();
       const o = front.opposite[gate]!;
       built.parents.set([a, b, o], 3 * target);
-      readPlace(decoder, points, target, { a, b, o, pair }, flat);
+      readPlace(decoder, points, target, { a, b, o, pair }, layout);
     } else {
       target = old();
       if (target === a || target === b) throw damaged(where, "a face of two corners");

@@ -15,7 +15,7 @@ const DEPTH = CORNERS;
 const TEXTURE = DEPTH + DIFFERENCES * DIFFERENCES + SPREADS * LAST + DIFFERENCES * SPREADS;
 export const CONTEXTS = TEXTURE + 2 * 24 * 3 + 24 * 24 + 24 * 2;
 const [M_DEPTH, M_U] = [12, 13] as const;
-export const MIXTURES = 15;
+export const MIXTURES = 16;
 const STEPS = [0.5, 1.5, 3.0, 6.0, 12.0, 30.0];
 
 function rounded(value: number, other: number): number {
