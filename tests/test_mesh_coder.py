@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 from dataclasses import replace
+from pathlib import Path
 
 import coded_meshes
 import numpy as np
@@ -11,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.errors import FormatError
+from eigenfield.format import mesh_corner_kernels, mesh_kernels, mesh_value_kernels
 from eigenfield.format.lattice import camera_lattice, world_lattice
 from eigenfield.format.mesh_coder import HEADER, decode_mesh, encode_mesh
 from eigenfield.mesh import Mesh
@@ -154,3 +157,25 @@ def test_large_numbers_in_a_short_stream_allocate_nothing(streams):
         with pytest.raises(FormatError) as caught:
             decode_mesh(bytes(stream))
         assert caught.value.code == "coded-size"
+
+
+def test_the_bytes_do_not_change_between_versions():
+    """Files are read for years: a change of the code needs a new version number."""
+    data, _ = encode_mesh(*coded_meshes.soup(5))
+    assert hashlib.sha256(data).hexdigest()[:16] == "81bd45125e52b1dd"
+    mesh, _ = coded_meshes.soup(6)
+    matrix = np.array([[64.0, 0, 32, 0], [0, 64, 32, 0], [0, 0, 1, 8]])
+    data, _ = encode_mesh(mesh, camera_lattice(matrix, 0.5, 2.0**-10), fine=1)
+    assert hashlib.sha256(data).hexdigest()[:16] == "be6ce31a10b17ecd"
+
+
+def test_the_page_has_the_contexts_of_the_code():
+    page = (Path(__file__).parents[1] / "docs" / "coding.md").read_text(encoding="utf-8")
+    firsts = {
+        "LEFT": mesh_kernels.LEFT, "RIGHT": mesh_kernels.RIGHT, "EDGE": mesh_kernels.EDGE, "FRESH": mesh_kernels.FRESH,
+        "SEED": mesh_kernels.SEED, "ASKED": mesh_corner_kernels.ASKED, "NEW": mesh_corner_kernels.NEW,
+        "CHART": mesh_corner_kernels.CHART, "DEPTH": mesh_value_kernels.DEPTH, "TEXTURE": mesh_value_kernels.TEXTURE,
+    }  # fmt: skip
+    for name, first in firsts.items():
+        assert f"| {first} | {name} " in page
+    assert f"| {mesh_value_kernels.CONTEXTS} | end |" in page
