@@ -28,6 +28,7 @@ from eigenfield.format.range_coder import (
     damaged,
     decoder,
     filled_up,
+    float32_numbers,
 )
 from eigenfield.format.table_kernels import CONTEXTS, MIXTURES, code_lines
 
@@ -112,7 +113,7 @@ def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.floa
     check_header(data, body, where)
     planes = np.zeros((3, NUMBERS))
     if gridded:
-        planes = np.frombuffer(data, "<f4", 3 * NUMBERS, HEADER.size).reshape(3, NUMBERS).astype(np.float64)
+        planes = float32_numbers(data, 3 * NUMBERS, HEADER.size).reshape(3, NUMBERS)
     coder = decoder(data[body:], CONTEXTS, MIXTURES)
     cells = read_grid(coder, rows, columns, count, where) if gridded else None
     whole = np.zeros((count, NUMBERS), np.int64)

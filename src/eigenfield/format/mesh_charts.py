@@ -64,7 +64,7 @@ def _with_offset(
 
 def mapped_texture(places: NDArray[np.int64], maps: NDArray[np.int64]) -> NDArray[np.float64]:
     """(v, 2) texture coordinates at lattice coordinates places (v, 3) by maps (v, 6)."""
-    m = maps.astype(np.uint32).view(np.float32).astype(np.float64)
     x, y = places[:, 0].astype(np.float64), places[:, 1].astype(np.float64)
     with np.errstate(all="ignore"):
+        m = maps.astype(np.uint32).view(np.float32).astype(np.float64)
         return np.stack([m[:, 0] * x + m[:, 1] * y + m[:, 4], m[:, 2] * x + m[:, 3] * y + m[:, 5]], axis=1)

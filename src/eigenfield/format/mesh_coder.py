@@ -185,5 +185,5 @@ def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDAr
     mapped = vertices.kinds[vertices.chart] == MAPPED
     place = vertices.place
     uv[mapped] = mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
-    with np.errstate(over="ignore"):
+    with np.errstate(over="ignore", invalid="ignore"):
         return Mesh(lattice.points(built.points)[place].astype(np.float32), vertices.faces, uv.astype(np.float32))

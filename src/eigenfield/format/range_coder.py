@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.errors import FormatError
 from eigenfield.format.range_kernels import AT, finish, new_coder
@@ -56,6 +57,12 @@ def check_numbers(data: bytes, numbers: int, most: int, where: str) -> None:
     """Raise FormatError `coded-size` if there are more than `most` numbers, or more than the bytes may stand for."""
     if numbers > most or numbers > RATIO * len(data) + SPARE:
         raise FormatError("coded-size", f"{numbers} numbers announced in {len(data)} bytes", where=where)
+
+
+def float32_numbers(data: bytes, count: int, offset: int) -> NDArray[np.float64]:
+    """(count,) float64 of the float32 numbers at a byte; NaN of any kind without a warning."""
+    with np.errstate(invalid="ignore"):
+        return np.frombuffer(data, "<f4", count, offset).astype(np.float64)
 
 
 def check_end(coder: Any, where: str) -> None:

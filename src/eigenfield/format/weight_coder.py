@@ -25,6 +25,7 @@ from eigenfield.format.range_coder import (
     damaged,
     decoder,
     filled_up,
+    float32_numbers,
 )
 from eigenfield.format.range_kernels import AT, HIGH, LOW
 from eigenfield.format.table_kernels import CONTEXTS, FREQUENCIES, MIXTURES, SLOPES, VALUES, code_table, code_way
@@ -83,7 +84,7 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
     check_numbers(data, rows * columns * max(components, 1), limits.MAX_WEIGHTS, where)
     body = HEADER.size + 4 * components
     check_header(data, body, where)
-    steps = np.frombuffer(data, "<f4", components, HEADER.size).astype(np.float64)
+    steps = float32_numbers(data, components, HEADER.size)
     if not (np.isfinite(steps).all() and (steps > 0).all()) or rows * columns < count:
         raise damaged("steps that are not positive, or a grid with too few cells", where)
     coder = decoder(data[body:], CONTEXTS, MIXTURES)
@@ -97,7 +98,7 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
         if way not in _ways(cells) or np.abs(table).max() > 4 * LARGEST * max(rows, columns):
             raise damaged(f"numbers of component {k} that cannot be", where)
         before[way] = table
-        with np.errstate(over="ignore"):
+        with np.errstate(over="ignore", invalid="ignore"):
             result[:, k] = _values(table, way, cells, steps[k])
         check_end(coder, where)
     if not np.isfinite(result).all():
