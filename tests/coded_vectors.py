@@ -1,0 +1,66 @@
+"""Coded parts and what they decode to, for decoders in other languages: `python tests/coded_vectors.py FOLDER` writes
+NAME.bin and NAME.json, whose lists a decoder must find, or null where it must refuse."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import coded_meshes
+import numpy as np
+
+from eigenfield.errors import FormatError
+from eigenfield.format.camera_coder import code_cameras, decode_cameras
+from eigenfield.format.mesh_coder import decode_mesh, encode_mesh
+from eigenfield.format.weight_coder import code_weights, decode_weights
+from test_table_coders import GRID, array_cameras, smooth_weights
+
+DAMAGED = 25  # of each
+
+
+def streams():
+    """Name and bytes of every undamaged vector."""
+    yield "mesh-relief", encode_mesh(*coded_meshes.relief(charts=3))[0]
+    yield "mesh-coarse", encode_mesh(*coded_meshes.relief(30, 31, step=2.5), uv_bits=6)[0]
+    yield "mesh-fine", encode_mesh(*coded_meshes.relief(step=0.25, charts=2, astray=0.2), fine=2)[0]
+    yield "mesh-ball", encode_mesh(*coded_meshes.ball())[0]
+    yield "mesh-soup", encode_mesh(*coded_meshes.soup(7, 60, 150))[0]
+    yield "weights-line", code_weights(smooth_weights(4, noise=0.3), 0.05)[0]
+    yield "weights-grid", code_weights(smooth_weights(6, noise=0.02), [0.01, 0.02, 0.05, 0.1, 0.2, 0.3], GRID)[0]
+    steps = {"intrinsic_step": 0.02, "rotation_step": 1e-4, "centre_step": 1e-3}
+    yield "cameras-line", code_cameras(array_cameras(), **steps)[0]
+    yield "cameras-grid", code_cameras(array_cameras(), **steps, grid=GRID)[0]
+
+
+def decoded(kind, stream):
+    """Lists of numbers, or None where the bytes are refused."""
+    try:
+        if kind == "mesh":
+            mesh = decode_mesh(stream)
+            parts = {"positions": mesh.vertices, "uv": mesh.uv, "indices": mesh.faces}
+        elif kind == "weights":
+            parts = {"values": decode_weights(stream)}
+        else:
+            parts = dict(zip(("intrinsics", "poses"), decode_cameras(stream), strict=True))
+    except FormatError:
+        return None
+    return {name: part.astype(np.float64).reshape(-1).tolist() for name, part in parts.items()}
+
+
+def write(folder):
+    random = np.random.default_rng(11)
+    for name, stream in streams():
+        variants = [(name, stream)]
+        for k in range(DAMAGED):
+            damaged = bytearray(stream)
+            for _ in range(random.integers(1, 3)):
+                damaged[random.integers(len(stream) // 2 if k % 2 else 0, len(stream))] = random.integers(256)
+            variants.append((f"{name}-damaged-{k}", bytes(damaged[: len(stream) - (k % 5)])))
+        for label, variant in variants:
+            (folder / f"{label}.bin").write_bytes(variant)
+            (folder / f"{label}.json").write_text(json.dumps(decoded(name.split("-")[0], variant)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))

@@ -1,0 +1,92 @@
+// The decoders of coded meshes, weights and cameras against what Python codes and decodes, damaged bytes included.
+
+import assert from "node:assert/strict";
+import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { fileURLToPath, pathToFileURL } from "node:url";
+import { build } from "vite";
+import { python } from "./command.mjs";
+
+const path = (name) => fileURLToPath(new URL(name, import.meta.url));
+let folder, names, decoders;
+
+before(async () => {
+  folder = await mkdtemp(join(tmpdir(), "eigenfield-coding-"));
+  python(path("../../tests/coded_vectors.py"), folder);
+  names = (await readdir(folder)).filter((name) => name.endsWith(".bin")).map((name) => name.slice(0, -4));
+  await build({
+    configFile: false,
+    logLevel: "error",
+    build: {
+      outDir: join(folder, "built"),
+      target: "es2022",
+      minify: false,
+      lib: { entry: path("pages/coding.ts"), formats: ["es"], fileName: () => "coding.mjs" },
+    },
+  });
+  decoders = await import(pathToFileURL(join(folder, "built/coding.mjs")));
+});
+
+after(() => rm(folder, { recursive: true, force: true }));
+
+const functions = { mesh: "decodeMesh", weights: "decodeWeights", cameras: "decodeCameras" };
+
+async function vector(name) {
+  const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
+  const expected = JSON.parse(await readFile(join(folder, `${name}.json`), "utf8"));
+  return { expected, decode: () => decoders[functions[name.split("-")[0]]](bytes, "here") };
+}
+
+/** The same numbers; floats but for the last digit, which sums in another order may change. */
+function assertAlike(found, expected, name) {
+  for (const [part, numbers] of Object.entries(expected)) {
+    assert.equal(found[part].length, numbers.length, `${name}: ${part}`);
+    const scale = numbers.reduce((most, x) => Math.max(most, Math.abs(x)), 1e-30);
+    numbers.forEach((x, i) => {
+      if (Math.abs(found[part][i] - x) > 1e-6 * scale) assert.fail(`${name}: ${part}[${i}] is ${found[part][i]}, not ${x}`);
+    });
+  }
+}
+
+test("what Python codes decodes to the same numbers", async () => {
+  const whole = names.filter((name) => !name.includes("damaged"));
+  assert.equal(whole.length, 9);
+  for (const name of whole) {
+    const { expected, decode } = await vector(name);
+    assert.notEqual(expected, null, name);
+    assertAlike(decode(), expected, name);
+  }
+});
+
+test("a mesh decodes to the same bits", async () => {
+  for (const name of ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup"]) {
+    const { expected, decode } = await vector(name);
+    const found = decode();
+    for (const part of ["positions", "uv", "indices"]) assert.deepEqual([...found[part]], expected[part], name);
+  }
+});
+
+test("damaged bytes give what Python makes of them, or an error of ours", async () => {
+  let [read, refused] = [0, 0];
+  for (const name of names.filter((name) => name.includes("damaged"))) {
+    const { expected, decode } = await vector(name);
+    if (expected === null) {
+      assert.throws(decode, (error) => error.name === "SceneError", name);
+      refused += 1;
+    } else {
+      assertAlike(decode(), expected, name);
+      read += 1;
+    }
+  }
+  assert.ok(read > 20 && refused > 20, `${read} read, ${refused} refused`);
+});
+
+test("large numbers in few bytes allocate nothing", async () => {
+  for (const [name, at] of [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6]]) {
+    const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
+    new DataView(bytes.buffer).setUint32(at, 2 ** 26, true);
+    assert.throws(() => decoders[functions[name.split("-")[0]]](bytes), { name: "SceneError" });
+  }
+});

@@ -1,0 +1,5 @@
+// What coding.test.mjs tests, as one module for Node.
+
+export { decodeCameras } from "../../eigenfield-three/src/camera-decoder.js";
+export { decodeMesh } from "../../eigenfield-three/src/mesh-decoder.js";
+export { decodeWeights } from "../../eigenfield-three/src/weight-decoder.js";
