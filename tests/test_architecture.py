@@ -41,6 +41,7 @@ SAME_FLOOR = {
     ("fitting", "rendering"),
     ("fitting", "format"),
     ("pipeline", "fitting"),
+    ("pipeline", "format"),
     ("pipeline", "rendering"),
     ("pipeline", "holdout"),
     ("reconstruction", "holdout"),

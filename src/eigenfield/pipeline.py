@@ -29,6 +29,7 @@ from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import CaptureError, OptionError
 from eigenfield.fitting import FIT_QUALITY, fit_planes, fitted_textures, open_shots
+from eigenfield.format.geometry import code_cameras_of, code_mesh
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
@@ -50,7 +51,7 @@ from eigenfield.texturing import (
     texture_maps,
     write_maps,
 )
-from eigenfield.viewplane import fit_view_plane
+from eigenfield.viewplane import find_grid, fit_view_plane
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -181,6 +182,13 @@ def encode(
     centre = _reference(options.reference, names, coordinates, encoded)
 
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    streams: dict[str, bytes] = {}
+    if options.fit != "none":
+        streams["mesh"], mesh = code_mesh(mesh, cameras, centre)
+        streams["cameras"], coded = code_cameras_of(cameras, mesh, _grid_of(coordinates, np.arange(len(cameras))))
+        cameras = list(coded)
+        plane = fit_view_plane(cameras)
+        coordinates = plane.coordinates([camera.centre for camera in cameras])
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     width, height = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     shown = capture.subset(encoded.tolist())
@@ -193,7 +201,8 @@ def encode(
     place = None if work is None else Path(work)
     fitted, to_rgb = None, None
     if options.fit != "none":
-        planes, to_rgb, reached = _fit(used, photograph, mesh, (height, width), options, place, progress)
+        grid = _grid_of(coordinates, encoded)
+        planes, to_rgb, reached = _fit(used, photograph, mesh, (height, width), grid, options, place, progress)
         own: dict[str, Any] = {"fit": options.fit, "fitted": reached}
     else:
         layout = make_atlas(mesh, width, height)
@@ -235,7 +244,14 @@ def encode(
         generator=f"eigenfield {__version__}",
         colours=None if fitted is None else _colours(fitted, held),
         to_rgb=to_rgb,
+        streams=streams,
     )
+
+
+def _grid_of(coordinates: NDArray[np.float64], some: NDArray[np.int64]) -> NDArray[np.int64] | None:
+    """(rows, columns) of the cameras `some`, counted among themselves, where they stand on a grid; else None."""
+    grid = find_grid(coordinates[some])
+    return None if grid is None else grid.index.astype(np.int64)
 
 
 def _fit(
@@ -243,6 +259,7 @@ def _fit(
     photograph: Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]],
     mesh: Mesh,
     atlas: tuple[int, int],
+    grid: NDArray[np.int64] | None,
     options: Options,
     work: Path | None,
     progress: Progress | None,
@@ -251,7 +268,8 @@ def _fit(
     textures = fitted_textures(len(cameras)) if options.textures is None else options.textures
     quality = FIT_QUALITY if options.quality is None else options.quality
     with open_shots(cameras, photograph, mesh, atlas, work, progress) as shots:
-        planes, to_rgb, found = fit_planes(shots, component_count(textures, len(cameras)), quality, work, progress)
+        count = component_count(textures, len(cameras))
+        planes, to_rgb, found = fit_planes(shots, count, quality, grid, work, progress)
     reached = {name: {"uncoded": round(one.uncoded, 3), "coded": round(one.coded, 3)} for name, one in found.items()}
     return planes, to_rgb, {"quality": quality, "psnr": reached}
 

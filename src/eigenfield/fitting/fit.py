@@ -22,6 +22,7 @@ from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, whiten
 from eigenfield.fitting.start import principal_block
 from eigenfield.format.deep_code import code_basis, code_plane, with_weights
+from eigenfield.format.weight_coder import code_weights
 from eigenfield.progress import Progress
 from eigenfield.scene import Basis, Plane
 
@@ -32,6 +33,8 @@ ROUNDS = 3  # at most
 MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
 TEXTURE_STEPS = 5
 WEIGHT_STEPS = 4
+WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
+WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
 CLOSING_STEPS = 3  # for the mean, after coding
 
 
@@ -68,10 +71,12 @@ def fit_plane(
     settings: PlaneSettings,
     name: str,
     rounds: int = ROUNDS,
+    grid: NDArray[np.int64] | None = None,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Fitted:
-    """Fit and code one plane. Raises CaptureError `nothing-seen` where no camera covers a pixel."""
+    """Fit and code one plane. grid: (rows, columns) camera indices where they stand on a regular array, -1 where none
+    stands, None where they do not. Raises CaptureError `nothing-seen` where no camera covers a pixel."""
     surface = shots.surface
     finers = Finers(
         None if settings.mean == surface.size else make_finer(surface, settings.mean),
@@ -108,12 +113,27 @@ def fit_plane(
         gained, best = reached - best, max(best, reached)
         if gained < STOP:
             break
-    fitted = _code(shots, model, finers, scales, settings)
+    fitted = _code(shots, model, finers, scales, settings, grid)
     tick(last=True)
     return replace(fitted, uncoded=best)
 
 
-def _code(shots: Shots, model: Model, finers: Finers, scales: Scales, settings: PlaneSettings) -> Fitted:
+def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
+    """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
+    the root mean square over a picture's pixels."""
+    share = scales.coarse[block.window]
+    drawn = np.sqrt((np.square(block.textures) * share).sum(axis=(1, 2, 3)) / max(float(scales.coarse.sum()), 1e-12))
+    return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
+
+
+def _code(
+    shots: Shots,
+    model: Model,
+    finers: Finers,
+    scales: Scales,
+    settings: PlaneSettings,
+    grid: NDArray[np.int64] | None = None,
+) -> Fitted:
     """Closed loop: textures coded, weights and mean fitted to them, the mean coded."""
     bases: list[Basis] = []
     for block in model.blocks:
@@ -122,7 +142,9 @@ def _code(shots: Shots, model: Model, finers: Finers, scales: Scales, settings: 
         bases.append(coded)
     if bases:
         fit_weights(shots, model, finers, WEIGHT_STEPS, settings.step)
-        bases = [with_weights(basis, block.weights) for basis, block in zip(bases, model.blocks, strict=True)]
+        for number, block in enumerate(model.blocks):
+            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
+            bases[number] = with_weights(bases[number], block.weights, stream)
     fit_textures(shots, model, finers, scales, CLOSING_STEPS, settings.step, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     plane = code_plane(mean, tuple(bases), settings.mean_step, settings.preset)

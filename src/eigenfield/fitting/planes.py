@@ -39,9 +39,15 @@ def fitted_textures(cameras: int) -> int:
 
 
 def fit_planes(
-    shots: Shots, textures: int, quality: int, work: Path | None = None, progress: Progress | None = None
+    shots: Shots,
+    textures: int,
+    quality: int,
+    grid: NDArray[np.int64] | None = None,
+    work: Path | None = None,
+    progress: Progress | None = None,
 ) -> tuple[tuple[Plane, ...], NDArray[np.float32], dict[str, Fitted]]:
-    """Luma and chroma planes for `shots`, the matrix that joins them, what each reached. textures: luma's number."""
+    """Luma and chroma planes for `shots`, the matrix that joins them, what each reached. textures: luma's number.
+    grid: as `fit_plane`."""
     luma_matrix, chroma_matrix = split_matrix()
     size = shots.surface.size
     step = step_of(quality)
@@ -53,8 +59,8 @@ def fit_planes(
         2, CHROMA_MEAN_STEP * CHROMA_MEAN_SHARE * step, CHROMA_STEP * CHROMA_SHARE * step, PRESET,
     )  # fmt: skip
     found = {
-        "luma": fit_plane(shots, luma, "luma", work=work, progress=progress),
-        "chroma": fit_plane(shots, chroma, "chroma", work=work, progress=progress),
+        "luma": fit_plane(shots, luma, "luma", grid=grid, work=work, progress=progress),
+        "chroma": fit_plane(shots, chroma, "chroma", grid=grid, work=work, progress=progress),
     }
     return tuple(one.plane for one in found.values()), to_rgb(), found
 

@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from eigenfield.format.deep import FLAT, MIME, TOP, crf_of, decode_deep, encode_deep
 from eigenfield.format.quantise import Affine
-from eigenfield.format.stored import PictureFile, files_of, keep_files
+from eigenfield.format.stored import PictureFile, files_of, keep_files, keep_weights
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane
 
-STEP = 1 / 510  # of the code, in the photographs' range: half a grey level, unless a texture needs more range
+STEP = 0.002  # of the code, in the photographs' range: half a grey level, unless a texture needs more range
 ROWS = 4096  # of a picture of several textures, at most
 
 
@@ -65,9 +65,10 @@ def code_basis(basis: Basis, step: float, preset: int) -> Basis:
     return made
 
 
-def with_weights(basis: Basis, weights: NDArray[np.float32]) -> Basis:
-    """The same coded textures with other weights (Ne, N)."""
+def with_weights(basis: Basis, weights: NDArray[np.float32], stream: bytes) -> Basis:
+    """The same coded textures with other weights (Ne, N), and their coded form."""
     made = replace(basis, weights=weights)
+    keep_weights(made, stream)
     files = files_of(basis)
     if files is not None:
         keep_files(made, files)

@@ -17,16 +17,20 @@ from numpy.typing import NDArray
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
 from eigenfield.format import deep, limits, pictures
+from eigenfield.format.camera_coder import decode_cameras
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
+from eigenfield.format.mesh_coder import decode_mesh
 from eigenfield.format.quantise import Affine
 from eigenfield.format.strict_json import Value, printable, quoted
+from eigenfield.format.weight_coder import decode_weights
 from eigenfield.mesh import Mesh
 from eigenfield.viewplane import ViewPlane
 
 _LARGEST = 1e30  # of scales, zeros and lengths: squares and products stay finite
 _KEYS = {
-    "version", "needs", "planes", "toRGB", "cameras", "viewPlane", "reference", "settings", "scores", "generator"
+    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "reference", "settings", "scores",
+    "generator",
 }  # fmt: skip
 
 
@@ -60,13 +64,14 @@ class Picture:
 @dataclass(frozen=True, eq=False)
 class BasisLayout:
     """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
-    part, None: all of it. corner: row and column in it."""
+    part, None: all of it. corner: row and column in it. stream: the weights' coded form, None where they are plain."""
 
     size: tuple[int, int]
     textures: tuple[Picture, ...]
     weights: NDArray[np.float32]
     grid: tuple[int, int] | None = None
     corner: tuple[int, int] = (0, 0)
+    stream: bytes | None = None
 
     @property
     def count(self) -> int:
@@ -108,6 +113,7 @@ class Layout:
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
+    streams: Mapping[str, bytes]
 
 
 def read_layout(document: Document, findings: Findings) -> Layout | None:
@@ -138,10 +144,15 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         document.check_buffer()
     with findings.part():
         document.check_overlap()
+    streams: dict[str, bytes] = {}
     with findings.part():
         mesh = read_mesh(document)
+        if extension.has("mesh"):
+            streams["mesh"], mesh = read_coded_mesh(document, extension["mesh"])
     with findings.part():
         cameras = read_cameras(document, extension["cameras"])
+        if extension["cameras"].has("coded"):
+            streams["cameras"] = bytes(document.picture(extension["cameras"]["coded"]))
     with findings.part():
         planes = read_planes(document, extension["planes"], cameras, findings)
     with findings.part():
@@ -161,7 +172,9 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         scores = extension["scores"].mapping() if extension.has("scores") else {}
     with findings.part():
         generator = extension["generator"].text() if extension.has("generator") else ""
-    return Layout(version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator)
+    return Layout(
+        version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator, streams
+    )
 
 
 def find_extension(document: Document) -> Value:
@@ -228,6 +241,15 @@ def read_mesh(document: Document) -> Mesh:
     return Mesh(vertices, indices.astype(np.int32).reshape(-1, 3), uv)
 
 
+def read_coded_mesh(document: Document, entry: Value) -> tuple[bytes, Mesh]:
+    """The proxy itself, where meshes[0] is a coarse one for other viewers. FormatError: `coded-*`, `view-*`."""
+    data = bytes(document.picture(entry["bufferView"]))
+    mesh = decode_mesh(data, entry.where)
+    if not len(mesh.faces):
+        entry.fail("coded-damaged", "a mesh without faces")
+    return data, mesh
+
+
 def _all_finite(array: NDArray[Any], largest: float) -> bool:
     return bool((np.abs(array) <= largest).all())  # False for NaN
 
@@ -250,17 +272,27 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
             entry["heldOut"].fail("camera-held-out", "a camera is named twice")
     if held_out.all():
         entry["heldOut"].fail("camera-held-out", "every camera is held out")
-    intrinsics = _table(document, entry["intrinsics"], FLOAT, count, 5)
-    poses = _table(document, entry["poses"], FLOAT, count, 12)
-    sizes = _table(document, entry["sizes"], UINT32, count, 2).astype(np.int64)
+    if entry.has("coded"):
+        intrinsics, matrices = decode_cameras(bytes(document.picture(entry["coded"])), entry["coded"].where)
+        poses = matrices.reshape(len(matrices), 12)
+        if len(poses) != count:
+            entry["coded"].fail("camera-count", f"{len(poses)} cameras in the stream, {count} names")
+    else:
+        intrinsics = _table(document, entry["intrinsics"], FLOAT, count, 5)
+        poses = _table(document, entry["poses"], FLOAT, count, 12)
+    if entry.has("size"):
+        one = [item.integer(1, limits.MAX_CAMERA_SIDE) for item in entry["size"].items(2, 2)]
+        sizes = np.tile(np.array(one, np.int64), (count, 1))
+    else:
+        sizes = _table(document, entry["sizes"], UINT32, count, 2).astype(np.int64)
     _check_calibration(entry, names, intrinsics, poses.reshape(count, 3, 4), sizes)
     K = np.zeros((count, 3, 3))
     K[:, 0, 0], K[:, 1, 1], K[:, 0, 1], K[:, 0, 2], K[:, 1, 2] = intrinsics.T
     K[:, 2, 2] = 1
-    matrices = poses.reshape(count, 3, 4).astype(np.float64)
+    placed = poses.reshape(count, 3, 4).astype(np.float64)
     cameras = tuple(
         Camera(k, np.ascontiguousarray(m[:, :3]), m[:, 3].copy(), int(w), int(h))
-        for k, m, (w, h) in zip(K, matrices, sizes, strict=True)
+        for k, m, (w, h) in zip(K, placed, sizes, strict=True)
     )
     colours = None
     if entry.has("colour"):
@@ -387,18 +419,23 @@ def _read_basis(
 ) -> BasisLayout:
     size = _size(entry["size"], channels)
     textures: list[Picture] = []
+    total = 0
     for texture in entry["textures"].items(limits.MAX_COMPONENTS):
         with findings.part():
             count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
+            total += count  # also of a picture that is damaged: its weights are there
             textures.append(_picture(document, texture, size, channels, count, bare=False))
-    whole = len(textures) == len(entry["textures"].value)  # else only while validating
-    count = sum(picture.count for picture in textures)
     rows = 0 if cameras is None else cameras.encoded
     weights = np.zeros((rows, 0), np.float32)
-    if count and whole:
+    stream = None
+    if total:
         with findings.part():
-            weights = _read_weights(document, entry["weights"], rows, count)
-    return BasisLayout(size, tuple(textures), weights, *_region(entry, size))
+            if entry.has("codedWeights"):
+                stream = bytes(document.picture(entry["codedWeights"]))
+                weights = _decode_weights(stream, entry["codedWeights"], rows, total)
+            else:
+                weights = _read_weights(document, entry["weights"], rows, total)
+    return BasisLayout(size, tuple(textures), weights, *_region(entry, size), stream)
 
 
 def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None, tuple[int, int]]:
@@ -412,6 +449,16 @@ def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None
     if column + size[0] > columns or row + size[1] > rows:
         entry["grid"].fail("basis-region", f"{size[0]}x{size[1]} at {column}, {row} leaves a grid of {columns}x{rows}")
     return (rows, columns), (row, column)
+
+
+def _decode_weights(stream: bytes, entry: Value, rows: int, count: int) -> NDArray[np.float32]:
+    weights = decode_weights(stream, entry.where)
+    if rows == 0:  # only while validating a file whose cameras are damaged
+        return np.zeros((0, count), np.float32)
+    if weights.shape != (rows, count) or not _all_finite(weights, _LARGEST):
+        found = "x".join(map(str, weights.shape))
+        entry.fail("weights-count", f"{found} weights, {rows} encoded cameras x {count} textures expected")
+    return weights
 
 
 def _read_weights(document: Document, reference: Value, rows: int, count: int) -> NDArray[np.float32]:
@@ -443,13 +490,17 @@ def _picture(
         entry["bits"].fail("picture-type", f"{bits} bits in a picture of type {mime}")
     affine = None
     if not bare or bits != 8 or entry.has("scale") or entry.has("zero"):
-        affine = Affine(*(np.array(_affine(entry[key], channels * count)) for key in ("scale", "zero")))
+        affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
     pictures.check_header(data, mime, *size, channels, entry.where, count, bits)
     return Picture(data, mime, *size, channels, affine, entry.where, bits, count)
 
 
-def _affine(entry: Value, channels: int) -> list[float]:
-    return [item.number(_LARGEST) for item in entry.items(channels, channels)]
+def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
+    """(channels * count,): C numbers for each texture, or C that stand for all."""
+    given = [item.number(_LARGEST) for item in entry.items(channels * count, channels)]
+    if len(given) not in (channels, channels * count):
+        entry.fail("json-value", f"{len(given)} numbers, {channels} or {channels * count} expected")
+    return np.tile(np.array(given), 1 if len(given) == channels * count else count)
 
 
 def read_view_plane(entry: Value) -> ViewPlane:
@@ -470,7 +521,7 @@ def read_triangles(document: Document, entry: Value, cameras: CameraList | None)
     """(T, 3) indices of encoded cameras. FormatError: `view-plane-triangles`, `accessor-*`."""
     if not entry.has("triangles"):
         return np.zeros((0, 3), np.int32)
-    flat = document.array(entry["triangles"], "SCALAR", (UINT32,), 6 * limits.MAX_CAMERAS)
+    flat = document.array(entry["triangles"], "SCALAR", (UINT16, UINT32), 6 * limits.MAX_CAMERAS)
     if len(flat) % 3:
         entry["triangles"].fail("view-plane-triangles", f"{len(flat)} indices are no whole number of triangles")
     most = limits.MAX_CAMERAS if cameras is None else cameras.encoded

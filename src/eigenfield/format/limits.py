@@ -6,7 +6,9 @@ EXTENSION = "EIGENFIELD_eigen_textures"
 VERSION = "1.2"  # a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
-FEATURES = frozenset({"bits", "regions", "stacks", "toRGB"})  # what an entry of "needs" may be
+FEATURES = frozenset(
+    {"bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB"}
+)  # what an entry of "needs" may be
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk

@@ -94,10 +94,10 @@ def encode(codes: Codes, codec: str, quality: int) -> bytes:
     return buffer.getvalue()
 
 
-def encode_preview(codes: Codes) -> bytes:
-    """(H, W, 1 or 3) uint8 as a JPEG of at most PREVIEW_SIDE on the longer side."""
+def encode_preview(codes: Codes, side: int = PREVIEW_SIDE) -> bytes:
+    """(H, W, 1 or 3) uint8 as a JPEG of at most `side` texels on the longer side."""
     image = Image.fromarray(stacked(codes))
-    scale = min(1.0, PREVIEW_SIDE / max(image.size))
+    scale = min(1.0, side / max(image.size))
     size = (max(1, round(image.width * scale)), max(1, round(image.height * scale)))
     if size != image.size:
         image = image.resize(size, Image.Resampling.LANCZOS)

@@ -18,7 +18,7 @@ from eigenfield.format.document import Document
 from eigenfield.format.findings import Finding, Findings
 from eigenfield.format.layout import BasisLayout, Layout, Picture, PlaneLayout, read_image, read_layout
 from eigenfield.format.quantise import mean_values
-from eigenfield.format.stored import PictureFile, keep_files
+from eigenfield.format.stored import PictureFile, keep_files, keep_weights
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane, Scene
 
@@ -97,6 +97,7 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
         generator=layout.generator,
         colours=layout.cameras.colours,
         to_rgb=layout.to_rgb,
+        streams=layout.streams,
     )
 
 
@@ -130,6 +131,8 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
     parallel_map(decode, range(len(basis.textures)))
     made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
     keep_files(made, [_file(picture) for picture in basis.textures])
+    if basis.stream is not None:
+        keep_weights(made, basis.stream)
     return made
 
 

@@ -1,4 +1,4 @@
-"""Picture files that hold exactly what a plane's mean or a basis's textures are: saved as they are, never coded twice.
+"""Files that hold exactly what a mean, textures or weights are: saved as they are, never coded twice.
 
 They are kept beside the objects, not in them: whoever makes a changed copy has an object without files.
 """
@@ -26,6 +26,19 @@ class PictureFile:
 
 
 _files: weakref.WeakKeyDictionary[Basis | Plane, tuple[PictureFile, ...]] = weakref.WeakKeyDictionary()
+
+
+_weights: weakref.WeakKeyDictionary[Basis, bytes] = weakref.WeakKeyDictionary()
+
+
+def keep_weights(basis: Basis, stream: bytes) -> None:
+    """The coded form of a basis's weights."""
+    _weights[basis] = stream
+
+
+def weights_of(basis: Basis) -> bytes | None:
+    """What `keep_weights` was told; None where the weights have not been coded."""
+    return _weights.get(basis)
 
 
 def keep_files(owner: Basis | Plane, files: Sequence[PictureFile]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
@@ -21,14 +21,17 @@ from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
 from eigenfield.format.document import FLOAT, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
+from eigenfield.format.geometry import camera_numbers, checked_streams, coarse_mesh
 from eigenfield.format.layout import read_layout
-from eigenfield.format.stored import PictureFile, files_of
+from eigenfield.format.stored import PictureFile, files_of, weights_of
 from eigenfield.format.strict_json import printable
+from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
 from eigenfield.scene import Basis, Plane, Scene
 
 QUALITY = 70  # of the eigen textures, for avif
+SMALL_PREVIEW = 128  # texels of the preview beside pictures of a fit: as little as still tells what is there
 MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: there a byte gains as much (Tarot)
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
 
@@ -218,7 +221,8 @@ def _preview(scene: Scene) -> bytes:
     if not quantise.photographic(mean) and not quantise.unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
-    return pictures.encode_preview(np.rint(shown * 255).clip(0, 255).astype(np.uint8))
+    side = pictures.PREVIEW_SIDE if scene.to_rgb is None else SMALL_PREVIEW
+    return pictures.encode_preview(np.rint(shown * 255).clip(0, 255).astype(np.uint8), side)
 
 
 def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -233,21 +237,23 @@ def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
-    primitive = _primitive(scene, buffer)
+    streams = checked_streams(scene)
+    primitive = _primitive(coarse_mesh(scene.mesh) if "mesh" in streams else scene.mesh, buffer)
     first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
     planes = [
         _plane(plane, made, buffer, inline=index > 0 or coded.preview is not None)
         for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
     ]
-    needs = _needs(scene, coded)
+    needs = _needs(scene, coded, streams)
     extension: dict[str, Any] = {
         "version": limits.VERSION if needs else limits.FIRST if scene.colours is None else limits.SECOND,
         "needs": needs,
+        **({"mesh": {"bufferView": buffer.view(streams["mesh"])}} if "mesh" in streams else {}),
         "planes": planes,
         **({} if scene.to_rgb is None else {"toRGB": _shortest(scene.to_rgb.ravel())}),
-        "cameras": _cameras(scene, buffer),
-        "viewPlane": _view_plane(scene, buffer),
+        "cameras": _cameras(scene, buffer, streams.get("cameras")),
+        "viewPlane": _view_plane(scene, buffer, bool(needs)),
         "reference": int(scene.reference),
         "settings": dict(scene.settings),
         "scores": dict(scene.scores),
@@ -288,8 +294,7 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
     }
 
 
-def _primitive(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
-    mesh = scene.mesh
+def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
     assert mesh.uv is not None
     short = len(mesh.vertices) < 65_536  # 65535 itself restarts a primitive and may not be an index
     bounds = {"min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()}
@@ -315,7 +320,10 @@ def _plane(plane: Plane, coded: _CodedPlane, buffer: _Buffer, *, inline: bool) -
         entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
         if basis.grid is not None:
             entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
-        if basis.count:
+        stream = weights_of(basis)
+        if stream is not None:
+            entry["codedWeights"] = buffer.view(stream)
+        elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
         entry["textures"] = [{"bufferView": -1, **_picture(file)} for file in files]
         made["bases"].append(entry)
@@ -330,15 +338,24 @@ def _picture(file: PictureFile) -> dict[str, Any]:
     if file.count != 1:
         made["count"] = file.count
     if file.affine is not None:
-        made |= {"scale": _shortest(file.affine.scale), "zero": _shortest(file.affine.zero)}
+        made |= {"scale": _repeated(file.affine.scale, file.count), "zero": _repeated(file.affine.zero, file.count)}
     return made
 
 
-def _needs(scene: Scene, coded: _Coded) -> list[str]:
+def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
+    """The numbers of `count` textures; of one, where all have the same."""
+    each = numbers.reshape(count, -1)
+    return _shortest(each[:1] if (each == each[0]).all() else each)
+
+
+def _needs(scene: Scene, coded: _Coded, streams: Mapping[str, bytes]) -> list[str]:
     """The features that a reader must know to draw this scene rightly."""
     files = [file for plane in coded.planes for some in [[plane.mean], *plane.bases] for file in some]
     found = {
         "bits": any(file.bits != 8 for file in files),
+        "codedCameras": "cameras" in streams,
+        "codedMesh": "mesh" in streams,
+        "codedWeights": any(weights_of(basis) is not None for plane in scene.planes for basis in plane.bases),
         "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
         "stacks": any(file.count != 1 for file in files),
         "toRGB": scene.to_rgb is not None,
@@ -346,25 +363,28 @@ def _needs(scene: Scene, coded: _Coded) -> list[str]:
     return [name for name, needed in found.items() if needed]
 
 
-def _cameras(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
-    cameras = scene.cameras
-    intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
-    poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
-    sizes = np.array([[c.width, c.height] for c in cameras])
-    made = {
-        "names": list(scene.names),
-        "heldOut": np.flatnonzero(scene.held_out).tolist(),
-        "intrinsics": buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR"),
-        "poses": buffer.accessor(poses.ravel(), FLOAT, "SCALAR"),
-        "sizes": buffer.accessor(sizes.ravel(), UINT32, "SCALAR"),
-    }
+def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, Any]:
+    sizes = np.array([[c.width, c.height] for c in scene.cameras])
+    made: dict[str, Any] = {"names": list(scene.names), "heldOut": np.flatnonzero(scene.held_out).tolist()}
+    if stream is not None:
+        made["coded"] = buffer.view(stream)
+    else:
+        intrinsics, poses = camera_numbers(scene.cameras)
+        made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
+        made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
+    if stream is not None and (sizes == sizes[0]).all():
+        made["size"] = sizes[0].tolist()
+    else:
+        made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
     if scene.colours is not None:
         made["colour"] = buffer.accessor(scene.colours.ravel(), FLOAT, "SCALAR")
     return made
 
 
-def _view_plane(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
+def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:
+    """short: whether the triangles may have 16 bits, which readers of 1.1 refuse."""
     plane = scene.view_plane
+    short &= len(scene.encoded) < 65_536
     made: dict[str, Any] = {
         name: (np.asarray(value, np.float64) + 0.0).tolist()  # + 0.0: no minus zero in the file
         for name, value in (
@@ -375,7 +395,7 @@ def _view_plane(scene: Scene, buffer: _Buffer) -> dict[str, Any]:
         )
     }
     if len(scene.triangles):
-        made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT32, "SCALAR")
+        made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT16 if short else UINT32, "SCALAR")
     return made
 
 
