@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from composed import coded, composed, layered_scene
+from composed import coded, composed, flat, layered_scene, ray_weights
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from viewer_scenes import scene
 
 from eigenfield.errors import FormatError, OptionError
-from eigenfield.mesh import Mesh
 from eigenfield.rendering import OpenGLRenderer, draw_texture, view_weights, viewpoint
 from eigenfield.rendering import opengl as opengl_module
 from eigenfield.rendering.composer import Composer
@@ -84,25 +83,6 @@ def test_more_textures_than_one_draw_sums(context):
     mix = view_weights(made, (0.2, 0.6))
     for count in (84, 85, 203):
         assert np.abs(texture_of(context, made, count, mix) - composed(made, mix, count)).max() < CLOSE
-
-
-def flat(made: Scene, low: float, high: float) -> Scene:
-    """The scene with a level square for a mesh, laid out from `low` to `high` of the atlas along both axes."""
-    corners = np.array([[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0]], np.float32)
-    uv = low + (high - low) * (corners[:, :2] + 1) / 2
-    return replace(made, mesh=Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]], np.int32), uv.astype(np.float32)))
-
-
-def ray_weights(made: Scene, eye: np.ndarray, size: tuple[int, int], low: float, high: float) -> np.ndarray:
-    """(h, w, Ne): the definition for each texel of a flat scene, continued beyond the square."""
-    plane, weights = made.view_plane, np.zeros((*size, len(made.encoded)))
-    normal = np.cross(plane.right, plane.up)
-    for row, column in np.ndindex(*size):
-        u, v = (column + 0.5) / size[1], (row + 0.5) / size[0]
-        point = np.array([(u - low) / (high - low) * 2 - 1, (v - low) / (high - low) * 2 - 1, 0.0])
-        along = ((plane.origin - point) @ normal) / ((eye - point) @ normal)
-        weights[row, column] = view_weights(made, tuple(plane.coordinates(point + along * (eye - point))[0]))
-    return weights
 
 
 @pytest.mark.parametrize("eye", [(0.35, -0.2, -1.9), (-0.6, 0.3, -4.5), (0.1, 0.1, -3.0)])
