@@ -158,7 +158,7 @@ def write(folder: Path) -> None:
 
 
 def save_layered(made: Scene, path: Path) -> None:
-    """Write the file of a scene of 8-bit codes as format 1.2 has it, PNG: the first texture of a basis alone, the rest in
+    """Write a scene of 8-bit codes as format 1.2 has it, in PNG: the first texture of a basis alone, the rest in
     one picture."""
     plain = replace(made, planes=(Plane(np.zeros((SIDE, SIDE, 3), np.float32), ()),), to_rgb=None)
     save(plain, path, codec="png", overwrite=True)

@@ -64,6 +64,7 @@ async function measure(url: string, width: number, height: number, seconds: numb
   mean.minFilter = THREE.LinearMipmapLinearFilter;
   mean.needsUpdate = true;
   field.mesh.material = new THREE.MeshBasicMaterial({ map: mean, side: THREE.DoubleSide });
+  field.mesh.onBeforeRender = () => undefined; // nothing is to be composed
   figures.plain = frames(0);
   return figures;
 }

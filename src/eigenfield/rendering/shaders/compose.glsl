@@ -65,21 +65,5 @@ vec3 sumTextures(vec2 own) {
   return sum;
 }
 
-// The value of the grid `coarse` at texture coordinates of the atlas: Catmull-Rom, taps clamped to the border.
-vec3 finerValue(vec2 uv) {
-  ivec2 last = textureSize(coarse, 0) - 1;
-  vec2 texel = uv * vec2(last + 1) - 0.5;
-  ivec2 base = ivec2(floor(texel));
-  vec2 f = texel - vec2(base);
-  vec4 across = catmullRom(f.x), down = catmullRom(f.y);
-  vec3 sum = vec3(0.0);
-  for (int row = 0; row < 4; row++) {
-    vec3 line = vec3(0.0);
-    for (int column = 0; column < 4; column++) {
-      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);
-      line += across[column] * texelFetch(coarse, at, 0).rgb;
-    }
-    sum += down[row] * line;
-  }
-  return sum;
-}
+// The value of the grid `coarse` at texture coordinates of the atlas.
+vec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }

@@ -4300,10 +4300,18 @@ vec3 sumTextures(vec2 own) {
   return sum;
 }
 
-// The value of the grid \`coarse\` at texture coordinates of the atlas: Catmull-Rom, taps clamped to the border.
-vec3 finerValue(vec2 uv) {
-  ivec2 last = textureSize(coarse, 0) - 1;
-  vec2 texel = uv * vec2(last + 1) - 0.5;
+// The value of the grid \`coarse\` at texture coordinates of the atlas.
+vec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }
+`,bf=`// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.
+vec4 catmullRom(float f) {
+  float f2 = f * f, f3 = f2 * f;
+  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);
+}
+
+// A texture's finest level at \`texel\`, whole at texel centres, taps clamped to the border. Sixteen texels are read one
+// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.
+vec3 readCubic(sampler2D source, vec2 texel) {
+  ivec2 last = textureSize(source, 0) - 1;
   ivec2 base = ivec2(floor(texel));
   vec2 f = texel - vec2(base);
   vec4 across = catmullRom(f.x), down = catmullRom(f.y);
@@ -4312,16 +4320,11 @@ vec3 finerValue(vec2 uv) {
     vec3 line = vec3(0.0);
     for (int column = 0; column < 4; column++) {
       ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);
-      line += across[column] * texelFetch(coarse, at, 0).rgb;
+      line += across[column] * texelFetch(source, at, 0).rgb;
     }
     sum += down[row] * line;
   }
   return sum;
-}
-`,bf=`// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.
-vec4 catmullRom(float f) {
-  float f2 = f * f, f3 = f2 * f;
-  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);
 }
 `,xf=2,Sf=`
 precision highp float;
@@ -4365,30 +4368,17 @@ uniform float finest;       // texels a pixel up to which the finest level is re
 uniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured
 uniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0
 
-#if BICUBIC == 1
-// Sixteen taps as nine bilinear ones: of the two middle taps of an axis one between them.
+// R, G, B at texture coordinates; nothing is cut off.
 vec3 surfaceValue(vec2 uv) {
-  vec2 size = vec2(textureSize(composed, 0));
   vec3 plain = texture(composed, uv, -log2(finest)).rgb;
+#if BICUBIC == 1
+  vec2 size = vec2(textureSize(composed, 0));
   vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;
-  if (max(dot(across, across), dot(down, down)) > finest * finest) return plain;
-  vec2 texel = clamp(uv * size, vec2(0.5), size - 0.5) - 0.5;
-  vec2 base = floor(texel);
-  vec4 wx = catmullRom(texel.x - base.x), wy = catmullRom(texel.y - base.y);
-  vec2 middle = vec2(wx[1] + wx[2], wy[1] + wy[2]);
-  vec2 first = (base - 0.5) / size, second = (base + 0.5 + vec2(wx[2], wy[2]) / middle) / size;
-  vec2 third = (base + 2.5) / size;
-  float x[3] = float[3](first.x, second.x, third.x), y[3] = float[3](first.y, second.y, third.y);
-  float wide[3] = float[3](wx[0], middle.x, wx[3]), high[3] = float[3](wy[0], middle.y, wy[3]);
-  vec3 sum = vec3(0.0);
-  for (int row = 0; row < 3; row++)
-    for (int column = 0; column < 3; column++)
-      sum += wide[column] * high[row] * textureLod(composed, vec2(x[column], y[row]), 0.0).rgb;
-  return sum;
-}
-#else
-vec3 surfaceValue(vec2 uv) { return texture(composed, uv, -log2(finest)).rgb; }
+  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;
+  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);
 #endif
+  return plain;
+}
 
 // What the surface shows at texture coordinates.
 vec3 surfaceColour(vec2 uv) {
