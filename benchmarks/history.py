@@ -52,8 +52,8 @@ PANELS: dict[tuple[str, str], tuple[Series, ...]] = {
     ),
     ("Drawing 40 eigen textures", "frames per second"): (
         ("software, bicubic", "render", "relief/40/bicubic/fps"),
-        ("OpenGL, mixed", "render-opengl", "counts/40/mono_mixed/fps"),
-        ("browser, mixed", "render-browser", "counts/40/eye_mixed/milliseconds"),
+        ("OpenGL, bicubic", "render-opengl", "counts/40/mono_bicubic/fps"),
+        ("browser, bicubic", "render-browser", "counts/40/eye_bicubic/milliseconds"),
     ),
 }
 SCALES = {"bytes": 1e-6, "total": 1e-6}  # by the last word of a path

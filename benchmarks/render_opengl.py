@@ -5,7 +5,7 @@
 The scene is that of render.py: a relief of 29,282 triangles that fills the view, atlas 1024², random 8-bit textures. A
 frame is a novel camera, its weights, and all that the GPU does until it has finished; pictures stay there. At 1920x1080
 the viewpoint moves on the view plane, with one set of weights a frame; in stereo two eyes of 1832x1920 move in front of
-and behind it, and each fragment looks its own weights up. Beside each, in the same run, the same mesh with one plain
+and behind it, and each texel looks its own weights up. Beside each, in the same run, the same mesh with one plain
 texture (N = 0). Which driver draws is in the results: Mesa's llvmpipe is the processor, no GPU.
 """
 

@@ -176,8 +176,8 @@ def shaded() -> str:
     for count in opengl["counts"]:
         mine, theirs = opengl["counts"][count], browser["counts"].get(count, {})
         cells = [cell(mine.get(key), mine.get(key, {}).get("fps")) for key in
-                 ("mono_bilinear", "mono_mixed", "mono_bicubic", "stereo_bilinear")]  # fmt: skip
-        for key in ("eye_mixed", "ray_mixed"):
+                 ("mono_bilinear", "mono_bicubic", "stereo_bicubic")]  # fmt: skip
+        for key in ("eye_bicubic", "ray_bicubic"):
             entry = theirs.get(key)
             cells.append(cell(entry, None if entry is None else 1e3 / entry["milliseconds"]))
         rows.append([count, *cells])
@@ -187,10 +187,10 @@ def shaded() -> str:
     return (
         "The shader that browsers and the OpenGL renderer share, frames per second and in brackets how many times as long"
         f" a frame takes as with one plain texture on the same mesh. OpenGL at {width}x{height} and in stereo (2 x {eye},"
-        f" each fragment with weights of its own) on {opengl['driver']}; {browser['browser']} at {page} on"
+        f" each texel with weights of its own) on {opengl['driver']}; {browser['browser']} at {page} on"
         f" {driver(browser['driver'])}: **both draw on the processor, no GPU was there**; N = 0 is the plain texture."
-        " `mixed` reads the mean with a cubic filter, the eigen textures with a linear one.\n\n"
-        + table(["N", "OpenGL bilinear", "mixed", "bicubic", "stereo bilinear", "browser mixed", "by the ray"], rows)
+        " The atlas has 1024² texels.\n\n"
+        + table(["N", "OpenGL bilinear", "bicubic", "stereo", "browser", "by the ray"], rows)
         + "\n![Frames per second against the number of eigen textures](docs/frames.png)\n\n"
         f"The viewer's script is {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js in it; the demo scene's first"
         f" picture needs {browser['first_picture_bytes'] / 1e3:.0f} of its {browser['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import composed
 import pytest
 import viewer_scenes
 
@@ -34,6 +35,7 @@ pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
 def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("viewer")
     viewer_scenes.write(made)
+    composed.write(made)
     return made
 
 

@@ -2,7 +2,7 @@
 //
 // Environment:
 //   EIGENFIELD_CHROMIUM   the browser; else /usr/bin/chromium, or `chromium` on the PATH
-//   EIGENFIELD_SCENES     the folder that `python tests/viewer_scenes.py FOLDER` made
+//   EIGENFIELD_SCENES     the folder that `viewer_scenes.write` and `composed.write` of tests/ made
 
 import assert from "node:assert/strict";
 import { existsSync, readFileSync } from "node:fs";
@@ -37,7 +37,7 @@ const TYPES = {
 /** A file of the test scenes' folder. */
 export function scenePath(name) {
   const folder = process.env.EIGENFIELD_SCENES;
-  assert.ok(folder, "EIGENFIELD_SCENES must name the folder that `python tests/viewer_scenes.py FOLDER` made");
+  assert.ok(folder, "EIGENFIELD_SCENES must name the folder that tests/test_viewer_browser.py makes");
   return join(folder, name);
 }
 

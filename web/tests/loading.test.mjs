@@ -85,18 +85,14 @@ test("the mean is drawn first, and the picture improves as textures arrive", asy
     window.field = field;
     window.lab.show(gltf);
     window.lab.drawView(field, window.lab.novelCamera(field, 0.3, -0.2));
-    return { loaded: field.loaded, total: field.total, count: field.mesh.material.uniforms.count.value };
+    return { loaded: field.loaded, total: field.total };
   });
-  assert.deepEqual(start, { loaded: 0, total: 6, count: 0 });
+  assert.deepEqual(start, { loaded: 0, total: 6 });
   const pictures = [await canvasPixels(page)];
   for (const [j, end] of ends.entries()) {
     await slow.sendTo(j + 1 < ends.length ? end : bytes.length);
     await page.waitForFunction((count) => window.field.loaded === count, j + 1);
-    const summed = await page.evaluate(() => {
-      window.lab.draw();
-      return window.field.mesh.material.uniforms.count.value;
-    });
-    assert.equal(summed, j + 1);
+    await page.evaluate(() => window.lab.draw());
     pictures.push(await canvasPixels(page));
   }
   await slow.finish();
@@ -231,17 +227,52 @@ const CHANGES = {
   "names that are a prototype": (e) => (e.cameras.names = { __proto__: [] }),
 };
 
+const LAYERED_CHANGES = {
+  "colours of too few channels": (e) => e.toRGB.pop(),
+  "colours of no number": (e) => (e.toRGB[4] = "1"),
+  "textures beyond their grid": (e) => (e.planes[0].bases[0].corner = [40, 8]),
+  "a corner of no whole number": (e) => (e.planes[0].bases[0].corner = [0.5, 8]),
+  "a corner before the grid": (e) => (e.planes[0].bases[0].corner = [-1, 8]),
+  "a grid smaller than its textures": (e) => (e.planes[0].bases[0].grid = [16, 16]),
+  "no textures in a picture": (e) => (e.planes[0].bases[0].textures[1].count = 0),
+  "textures without number": (e) => (e.planes[0].bases[0].textures[1].count = "5"),
+  "more textures than scales": (e) => (e.planes[0].bases[0].textures[1].count = 6),
+  "fewer textures than weights": (e) => e.planes[0].bases[0].textures.pop(),
+  "more rows than a picture may have": (e) => {
+    const [, stack] = e.planes[0].bases[0].textures;
+    const numbers = Array(4000).fill(1);
+    Object.assign(stack, { count: 4000, scale: numbers, zero: numbers });
+  },
+  "a plane too many": (e) => (e.planes = Array(17).fill(e.planes[0])),
+  "a plane of no channels": (e) => (e.planes[1].channels = 0),
+  "a second plane without a mean": (e) => delete e.planes[1].mean,
+};
+
 test("a document that cannot be is refused by name", async () => {
   const { page, close } = await lab.open();
-  const { json, binary } = readGlb(sceneBytes("avif.glb"));
-  for (const [what, change] of Object.entries(CHANGES)) {
-    const changed = structuredClone(json);
-    change(find(changed), changed);
-    routes["/changed.glb"] = { body: writeGlb({ json: changed, binary }) };
-    const found = await tryLoad(page, "changed.glb");
-    assert.equal(found.code, "damaged", `${what}: ${JSON.stringify(found)}`);
-    assert.match(found.message, /^The file is damaged \(.+\); make or download it again\.$/, what);
+  for (const [scene, changes] of [["avif.glb", CHANGES], ["layered.glb", LAYERED_CHANGES]]) {
+    const { json, binary } = readGlb(sceneBytes(scene));
+    for (const [what, change] of Object.entries(changes)) {
+      const changed = structuredClone(json);
+      change(find(changed), changed);
+      routes["/changed.glb"] = { body: writeGlb({ json: changed, binary }) };
+      const found = await tryLoad(page, "changed.glb");
+      assert.equal(found.code, "damaged", `${what}: ${JSON.stringify(found)}`);
+      assert.match(found.message, /^The file is damaged \(.+\); make or download it again\.$/, what);
+    }
   }
+  await close();
+});
+
+test("a picture of several textures has their size", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("layered.glb"));
+  const [, { bases }] = find(json).planes;
+  Object.assign(bases[1], { size: [11, 19] });
+  routes["/sizes.glb"] = { body: writeGlb({ json, binary }) };
+  const { later } = await tryLoad(page, "sizes.glb");
+  assert.equal(later.code, "damaged");
+  assert.match(later.message, /a picture of 11 x 40, not of 11 x 38/);
   await close();
 });
 
@@ -293,12 +324,16 @@ test("JSON that is nested too deep, not UTF-8 or too long is refused", async () 
 
 test("layouts that this viewer does not draw are named", async () => {
   const { page, close } = await lab.open();
-  const { json, binary } = readGlb(sceneBytes("scene.glb"));
+  const { json, binary } = readGlb(sceneBytes("layered.glb"));
+  delete find(json).toRGB;
   const two = structuredClone(json);
-  find(two).planes.push(find(two).planes[0]);
+  find(two).planes.shift();
   const channels = structuredClone(json);
-  find(channels).planes[0].channels = 4;
-  for (const changed of [two, channels]) {
+  find(channels).planes.pop();
+  find(channels).planes[0].bases = [];
+  Object.assign(find(channels).planes[0], { channels: 4 });
+  Object.assign(find(channels).planes[0].mean, { scale: [1, 1, 1, 1], zero: [0, 0, 0, 0] });
+  for (const changed of [json, two, channels]) {
     routes["/layout.glb"] = { body: writeGlb({ json: changed, binary }) };
     const found = await tryLoad(page, "layout.glb");
     assert.equal(found.code, "unsupported", JSON.stringify(found));

@@ -23,7 +23,7 @@ def picture_options(function: F) -> F:
         click.option("--weights", default="delaunay", show_default=True, metavar="delaunay|nearest3|bilinear",
                      help="How cameras near the viewpoint are mixed."),
         click.option("--filter", default="bicubic", show_default=True, metavar="bicubic|bilinear",
-                     help="Texel filter; with OpenGL also mixed."),
+                     help="Texel filter."),
         click.option("--textures", "-n", type=int, metavar="N", help="Eigen textures to sum.  [default: all]"),
         click.option("--samples", type=int, metavar="K",
                      help="K x K samples a pixel.  [default: as the density asks for]"),

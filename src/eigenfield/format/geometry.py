@@ -49,7 +49,8 @@ def code_mesh(mesh: Mesh, cameras: Sequence[Camera], reference: int) -> tuple[by
 def code_cameras_of(
     cameras: Sequence[Camera], mesh: Mesh, grid: NDArray[np.int64] | None
 ) -> tuple[bytes, tuple[Camera, ...]]:
-    """The stream, and the cameras that it holds, each number within CAMERA_STEP / 2 pixels at the mesh's median depth."""
+    """The stream, and the cameras that it holds: each number is off by at most CAMERA_STEP / 2 pixels at the mesh's
+    median depth."""
     focal = float(np.median([camera.K[0, 0] for camera in cameras]))
     depth = np.concatenate(
         [camera.project(mesh.vertices[:: max(1, len(mesh.vertices) // 200)])[1] for camera in cameras]

@@ -15,7 +15,7 @@ SLACK = 1e-9  # by which a node may lie outside a triangle and count as within
 def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDArray[np.float32]:
     """(nodes, nodes, N) float32: ω(j) of equation 7 at X, Y of -1..1, first index Y, nodes on the edges.
 
-    N counts the components of all bases of the first plane. Raises OptionError as `view_weights`.
+    N counts the components of all bases of all planes. Raises OptionError as `view_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
     rows = component_rows(scene)
@@ -30,11 +30,9 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDAr
 
 
 def component_rows(scene: Scene) -> NDArray[np.float64]:
-    """(Ne, N) float64: the weights of all bases of the first plane, side by side."""
-    bases = scene.planes[0].bases
-    if not bases:
-        return np.zeros((len(scene.encoded), 0))
-    return np.concatenate([basis.weights for basis in bases], axis=1).astype(np.float64)
+    """(Ne, N) float64: the weights of all bases of all planes, side by side."""
+    parts = [basis.weights for plane in scene.planes for basis in plane.bases]
+    return np.concatenate([np.zeros((len(scene.encoded), 0)), *parts], axis=1, dtype=np.float64)
 
 
 def _fill_triangles(

@@ -1,6 +1,6 @@
 // Pictures of codes, decoded by the browser with colour management off.
 
-import type { Picture } from "./document.js";
+import { rowsOf, type Picture } from "./planes.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
 import * as limits from "./limits.js";
@@ -26,7 +26,7 @@ export function checkPicture(bytes: ArrayBuffer, picture: Picture, size: [number
     throw damaged(picture.where, `a picture of ${width} x ${height}, not of ${size[0]} x ${size[1]}`);
   }
   const texels = width * height;
-  if (!texels || Math.max(width, height) > limits.MAX_SIDE || texels > limits.MAX_TEXELS) {
+  if (!texels || width > limits.MAX_SIDE || height > limits.MAX_STACKED || texels > limits.MAX_TEXELS) {
     throw damaged(picture.where, `a picture of ${width} x ${height}`);
   }
   return [width, height];
@@ -52,6 +52,43 @@ export async function decodePicture(
   if (bitmap.width === w && bitmap.height === h) return bitmap;
   bitmap.close();
   throw damaged(picture.where, `decoded to ${bitmap.width} x ${bitmap.height}, not to ${w} x ${h}`);
+}
+
+/** Part of a picture: `rows` of `bitmap` from `row`. */
+export interface Piece {
+  bitmap: ImageBitmap;
+  row: number;
+  rows: number;
+}
+
+/** Decodes a mean or eigen textures of `channels` into pieces in their order: a whole texture of R, G and B, or one
+ * channel of a texture. Whoever takes them closes them. */
+export async function decodePieces(
+  bytes: ArrayBuffer,
+  picture: Picture,
+  channels: number,
+  size: [number, number] | null,
+  down = 1,
+): Promise<Piece[]> {
+  const count = rowsOf(channels, 1, picture.textures);
+  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
+  const bitmap = await decodePicture(bytes, picture, [width, rows], count === 1 ? down : 1);
+  if (count === 1) return [{ bitmap, row: 0, rows: bitmap.height }];
+  const height = rows / count;
+  const pieces = Array.from({ length: count }, (_, i) => ({ bitmap, row: i * height, rows: height }));
+  if (down === 1) return pieces;
+  // one by one: what lies below each other must not run together
+  const [w, h] = [Math.ceil(width / down), Math.ceil(height / down)];
+  const smaller = { ...OPTIONS, resizeWidth: w, resizeHeight: h, resizeQuality: "high" } as const;
+  const parts = await Promise.all(
+    pieces.map(({ row }) => createImageBitmap(bitmap, 0, row, width, height, smaller)),
+  );
+  bitmap.close();
+  return parts.map((part) => ({ bitmap: part, row: 0, rows: h }));
+}
+
+export function closePieces(pieces: Piece[]): void {
+  for (const { bitmap } of pieces) bitmap.close();
 }
 
 async function canDecode(type: string): Promise<boolean> {

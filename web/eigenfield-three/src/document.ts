@@ -3,6 +3,7 @@
 import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
+import { FLOAT, readColours, readPlanes, type Plane } from "./planes.js";
 
 export interface View {
   offset: number;
@@ -20,23 +21,11 @@ export interface Accessor {
   where: string;
 }
 
-export interface Picture {
-  view: number;
-  mimeType: string;
-  scale: number[]; // of R, G, B: value = (code - zero) * scale
-  zero: number[];
-  where: string;
-}
-
 export interface SceneDocument {
   version: string;
   generator: string;
-  channels: 1 | 3;
-  mean: Picture;
-  meanSize: [number, number] | null; // null: `images[0]`, whose header says it
-  size: [number, number];
-  textures: Picture[];
-  weights: Accessor[]; // one a basis, side by side
+  planes: Plane[];
+  colours: [number, number, number][]; // R, G, B of the value 1 of each channel of all planes
   names: string[];
   heldOut: boolean[];
   reference: number;
@@ -61,7 +50,6 @@ export interface SceneDocument {
 type ComponentType = 5121 | 5123 | 5125 | 5126;
 const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
 const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
-const FLOAT = 5126;
 const UINT = 5125;
 
 /** Whether a glTF document says that it is a scene of ours. */
@@ -85,17 +73,15 @@ export function readDocument(json: Json): SceneDocument {
 
   checkNodes(root);
   const preview = previewOf(root, pictureView);
-  const plane = onlyPlane(extension);
-  const channels = channelsOf(plane);
   const cameras = extension.key("cameras");
   const names = namesOf(cameras);
   const heldOut = heldOutOf(cameras, names.length);
   const encoded = heldOut.filter((out) => !out).length;
-  const basis = readBases(plane, channels, encoded, accessor, pictureView);
-  const { mean, meanSize } = readMean(plane, channels, preview, pictureView);
+  const planes = readPlanes(extension, encoded, preview, accessor, pictureView);
+  const colours = readColours(extension, planes);
   const count = names.length;
   const colour = cameras.key("colour");
-  if (colour.exists && channels !== 3) throw colour.wrong("needs a plane of three channels");
+  if (colour.exists && colours.length < 3) throw colour.wrong("needs three channels");
 
   const viewPlane = extension.key("viewPlane");
   const triangles = viewPlane.key("triangles");
@@ -104,17 +90,11 @@ export function readDocument(json: Json): SceneDocument {
   if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
   const attributes = primitive.key("attributes");
   const generator = extension.key("generator");
-  const decoded = basis.size[0] * basis.size[1] * channels * basis.textures.length;
-  const meanTexels = meanSize ? meanSize[0] * meanSize[1] : 0;
-  if (decoded + 4 * channels * meanTexels > limits.MAX_DECODED) throw plane.wrong("too large when it is decoded");
-
   return {
     version,
     generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
-    channels,
-    mean,
-    meanSize,
-    ...basis,
+    planes,
+    colours,
     names,
     heldOut,
     reference: extension.key("reference").integer(0, count - 1),
@@ -146,7 +126,7 @@ function checkVersion(extension: Value): string {
   const needs = extension.key("needs");
   for (const need of needs.exists ? needs.items(limits.MAX_VIEWS) : []) {
     const feature = need.text(limits.MAX_NAME);
-    if (!limits.FEATURES.has(feature)) {
+    if (!limits.KNOWN_NEEDS.has(feature)) {
       const message = `The scene needs "${feature.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`;
       throw new SceneError("needs", message, need.where);
     }
@@ -192,7 +172,7 @@ function checkNodes(root: Value): void {
   }
 }
 
-type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
+export type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
 
 /** Reads accessors by their index; those with a `count` must have it, and lie packed. */
 function accessorReader(root: Value, views: View[]): AccessorReader {
@@ -237,94 +217,6 @@ function previewOf(root: Value, pictureView: (value: Value) => number): number |
   if (!images.exists) return null;
   const view = images.at(0).key("bufferView");
   return view.exists ? pictureView(view) : null;
-}
-
-function onlyPlane(extension: Value): Value {
-  const planes = extension.key("planes").items(limits.MAX_VIEWS);
-  const [plane] = planes;
-  if (!plane) throw extension.key("planes").wrong("no plane");
-  if (planes.length > 1) throw unsupported(`${planes.length} planes`, plane.where);
-  return plane;
-}
-
-function channelsOf(plane: Value): 1 | 3 {
-  const channels = plane.key("channels").integer(1, 64);
-  if (channels !== 1 && channels !== 3) throw unsupported(`${channels} channels`, plane.where);
-  return channels;
-}
-
-function unsupported(what: string, where: string): SceneError {
-  const message = `The scene has ${what}, which this viewer does not draw; draw it with "eigenfield render".`;
-  return new SceneError("unsupported", message, where);
-}
-
-function readSize(value: Value): [number, number] {
-  const [width = 0, height = 0] = value.items(2).map((item) => item.integer(1, limits.MAX_SIDE));
-  if (!width || !height) throw value.wrong("two numbers are needed");
-  if (width * height > limits.MAX_TEXELS) throw value.wrong(`more than ${limits.MAX_TEXELS} texels`);
-  return [width, height];
-}
-
-function readPicture(value: Value, channels: number, pictureView: (value: Value) => number): Picture {
-  const mimeType = value.key("mimeType").text(limits.MAX_NAME);
-  if (!/^image\/(png|jpeg|webp|avif)$/.test(mimeType)) throw value.key("mimeType").wrong("an unknown type");
-  const triple = (name: string): number[] => {
-    const read = value.key(name).numbers(channels);
-    return channels === 3 ? read : [read[0] ?? 0, read[0] ?? 0, read[0] ?? 0];
-  };
-  return {
-    view: pictureView(value.key("bufferView")),
-    mimeType,
-    scale: triple("scale"),
-    zero: triple("zero"),
-    where: value.where,
-  };
-}
-
-function readMean(
-  plane: Value,
-  channels: number,
-  preview: number | null,
-  pictureView: (value: Value) => number,
-): { mean: Picture; meanSize: [number, number] | null } {
-  const own = plane.key("mean");
-  const plain = { scale: [1 / 255, 1 / 255, 1 / 255], zero: [0, 0, 0] };
-  if (!own.exists) {
-    if (preview === null) throw own.wrong("no mean");
-    return { mean: { view: preview, mimeType: "image/png", ...plain, where: "/images/0" }, meanSize: null };
-  }
-  const meanSize = readSize(own.key("size"));
-  if (own.key("scale").exists || own.key("zero").exists) {
-    return { mean: readPicture(own, channels, pictureView), meanSize };
-  }
-  const none = Array<number>(channels).fill(0);
-  const coded = new Value({ ...own.object(), scale: none, zero: none }, own.where);
-  return { mean: { ...readPicture(coded, channels, pictureView), ...plain }, meanSize };
-}
-
-function readBases(
-  plane: Value,
-  channels: number,
-  encoded: number,
-  accessor: AccessorReader,
-  pictureView: (value: Value) => number,
-): { size: [number, number]; textures: Picture[]; weights: Accessor[] } {
-  const textures: Picture[] = [];
-  const weights: Accessor[] = [];
-  let size: [number, number] | null = null;
-  for (const basis of plane.key("bases").items(limits.MAX_BASES)) {
-    const own = readSize(basis.key("size"));
-    const pictures = basis.key("textures").items(limits.MAX_COMPONENTS);
-    if (!pictures.length) continue;
-    if (size && (own[0] !== size[0] || own[1] !== size[1])) {
-      throw unsupported("eigen textures of several sizes", basis.where);
-    }
-    size = own;
-    textures.push(...pictures.map((picture) => readPicture(picture, channels, pictureView)));
-    if (textures.length > limits.MAX_COMPONENTS) throw basis.wrong(`more than ${limits.MAX_COMPONENTS} textures`);
-    weights.push(accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * pictures.length));
-  }
-  return { size: size ?? [1, 1], textures, weights };
 }
 
 function namesOf(cameras: Value): string[] {

@@ -9,15 +9,17 @@ import {
   type Mesh,
   type WebGLRenderer,
 } from "three";
-import type { SceneDocument } from "./document.js";
 import { SceneError, asSceneError } from "./errors.js";
 import { medianFootprint } from "./footprint.js";
-import { planeCoordinates, type SceneInfo, type Vector, type ViewBytes } from "./info.js";
+import { Composer, type Recipe } from "./composer.js";
+import { basesOf, planeCoordinates, ranksOf, type SceneInfo, type Vector } from "./info.js";
 import { makeMaps } from "./maps.js";
-import { FILTERS, VIEWS, makeMaterial, resizeMaterial, type Filter, type SurfaceMaterial } from "./material.js";
+import { FILTERS, VIEWS, makeMaterial, type Filter, type SurfaceMaterial } from "./material.js";
 import type { EigenfieldOptions } from "./options.js";
+import { partsOf } from "./parts.js";
+import { onPlane } from "./passes.js";
 import { eigenGain } from "./strength.js";
-import { Textures } from "./textures.js";
+import { Textures, type TextureParts } from "./textures.js";
 import type { Blend, Mixing, ViewWeights } from "./weights.js";
 
 const ONE_SAMPLE = 1.5; // photograph pixels a pixel up to which the finest level is read
@@ -31,14 +33,11 @@ export interface FieldEvents {
 }
 
 /** What the plug-in has read and checked when a field is made of it. */
-export interface FieldParts {
-  scene: SceneDocument;
+export interface FieldParts extends TextureParts {
   info: SceneInfo;
   meshes: Mesh[]; // at least one
-  mean: ImageBitmap;
-  omega: Float32Array; // (encoded cameras) x (eigen textures)
+  omega: Float32Array; // (encoded cameras) x (eigen textures of all bases)
   weights: ViewWeights;
-  bytes: ViewBytes;
 }
 
 /**
@@ -54,6 +53,8 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   weightMode: "ray" | "eye";
   mixing: Mixing = "delaunay";
   filter: Filter;
+  /** What is composed has its side over this: for slow devices, while something moves. */
+  coarser: 1 | 2 | 4 = 1;
   camera: number | null = null;
   exposure: number | null = null;
   view: keyof typeof VIEWS = "picture";
@@ -62,15 +63,18 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 
   /** Eigen-texture weights of the last frame, one entry for each eye that was drawn. */
   lastWeights: Float64Array[] = [];
+  /** Whether in the last draw each texel looked its own weights up. */
+  lastByRay = false;
   /** All eigen textures are there; rejects with the SceneError of the `error` event. */
   readonly complete: Promise<void>;
 
   private readonly material: SurfaceMaterial;
   private readonly textures: Textures;
+  private readonly counts: number[]; // eigen textures of each basis
+  private readonly composers = new Map<number, Composer>(); // by `coarser`, each when it is first asked for
   private readonly rowOf: Int32Array; // of each camera among the encoded, -1 if it is held out
   private readonly gains = new Map<number, number>();
   private readonly detail: number; // of an atlas, along a side of the photographs' pixels
-  private readonly meanSize: [number, number];
   private maps: { texture: DataArrayTexture; mixing: Mixing; usable: number } | null = null;
   private frame = -1;
 
@@ -80,19 +84,20 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     options: EigenfieldOptions = {},
   ) {
     super();
-    const { scene, info, meshes, mean } = parts;
+    const { scene, info, meshes } = parts;
     const [mesh] = meshes;
     if (!mesh) throw new Error("a field needs a mesh");
     this.mesh = mesh;
     this.info = info;
-    this.total = scene.textures.length;
-    this.filter = options.filter ?? "mixed";
+    this.total = ranksOf(scene);
+    this.counts = basesOf(scene).map(({ count }) => count);
+    this.filter = options.filter ?? "bicubic";
     this.weightMode = info.facesPlane ? "ray" : "eye";
     let row = 0;
     this.rowOf = Int32Array.from(scene.heldOut, (out) => (out ? -1 : row++));
     this.textures = new Textures(parts, geometryBytes(mesh), options);
     const doubleSided = [mesh.material].flat().some((material) => material.side !== FrontSide);
-    this.material = makeMaterial(scene, this.textures.mean, this.textures.eigen, doubleSided);
+    this.material = makeMaterial(doubleSided);
     this.complete = new Promise((resolve, reject) => {
       this.addEventListener("complete", () => resolve());
       this.addEventListener("error", ({ error }) => reject(error));
@@ -100,7 +105,6 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.complete.catch(() => undefined); // who does not wait for it hears of it by the event
     const reference = info.cameras[info.reference];
     this.detail = reference ? medianFootprint(mesh.geometry, reference, [1, 1]) : 0;
-    this.meanSize = [mean.width, mean.height];
     this.listen();
     for (const each of meshes) {
       each.material = this.material;
@@ -109,12 +113,12 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     if (options.renderer) this.textures.attach(options.renderer);
   }
 
-  /** Eigen textures for which memory and limits of the device have room. */
+  /** Eigen textures of each basis for which memory and limits of the device have room. */
   get usable(): number {
     return this.textures.plan?.usable ?? this.total;
   }
 
-  /** Eigen textures on the GPU. */
+  /** Eigen textures of each basis on the GPU, up to the first that is not. */
   get loaded(): number {
     return this.textures.loaded;
   }
@@ -129,7 +133,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     return this.textures.plan?.limitation ?? null;
   }
 
-  /** Bytes on the GPU: textures with their mips, maps of weights, geometry. */
+  /** Bytes on the GPU: textures, what is composed of them, maps of weights, geometry. */
   get gpuBytes(): number {
     return this.textures.plan?.bytes ?? 0;
   }
@@ -142,7 +146,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     return weights;
   }
 
-  /** Weights of the eigen textures at view-plane coordinates. */
+  /** Weights of the eigen textures, of one basis after the other, at view-plane coordinates. */
   componentWeights(x: number, y: number): Float64Array {
     return this.mix(this.parts.weights.at(x, y, this.mixing));
   }
@@ -151,7 +155,8 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   cameraWeights(index: number): Float64Array {
     const row = this.rowOf[index] ?? -1;
     const camera = this.info.cameras[index];
-    if (row >= 0) return Float64Array.from(this.parts.omega.subarray(row * this.total, (row + 1) * this.total));
+    const all = this.columns;
+    if (row >= 0) return Float64Array.from(this.parts.omega.subarray(row * all, (row + 1) * all));
     if (!camera) throw new RangeError(`no camera ${index}`);
     return this.componentWeights(...planeCoordinates(this.info.viewPlane, camera.centre));
   }
@@ -164,17 +169,15 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 
   dispose(): void {
     this.textures.dispose();
+    this.freeComposers();
     this.maps?.texture.dispose();
     this.material.dispose();
     this.mesh.geometry.dispose();
   }
 
   private listen(): void {
-    this.textures.onPlan = ({ usable, meanDown, scaleDown, limitation }) => {
-      const { scene } = this.parts;
-      resizeMaterial(this.material, scene.textures, usable);
-      this.material.uniforms.finest.value = this.finestOf(this.meanSize, meanDown);
-      this.material.uniforms.finestEigen.value = this.finestOf(scene.size, scaleDown);
+    this.textures.onPlan = ({ limitation }) => {
+      this.freeComposers();
       if (limitation) queueMicrotask(() => this.dispatchEvent({ type: "limited" })); // not within a draw
     };
     this.textures.onTexture = () => this.dispatchEvent({ type: "texture" });
@@ -182,19 +185,25 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     this.textures.onError = (reason) => this.fail(reason);
   }
 
-  /** Texels a pixel up to which the finest level of a texture on the GPU is read. */
+  /** Texels a pixel up to which the finest level of what is composed is read. */
   private finestOf([width, height]: [number, number], down: number): number {
     return ONE_SAMPLE * Math.max(1, (this.detail * Math.sqrt(width * height)) / down);
   }
 
+  /** Eigen textures of all bases: columns of the weights. */
+  private get columns(): number {
+    return this.counts.reduce((a, b) => a + b, 0);
+  }
+
   private mix({ camera, weight }: Blend): Float64Array {
     const { omega } = this.parts;
-    const mixed = new Float64Array(this.total);
+    const all = this.columns;
+    const mixed = new Float64Array(all);
     for (let i = 0; i < 4; i++) {
       const part = weight[i] ?? 0;
       if (!part) continue;
-      const row = (camera[i] ?? 0) * this.total;
-      for (let j = 0; j < this.total; j++) mixed[j] = (mixed[j] ?? 0) + part * (omega[row + j] ?? 0);
+      const row = (camera[i] ?? 0) * all;
+      for (let j = 0; j < all; j++) mixed[j] = (mixed[j] ?? 0) + part * (omega[row + j] ?? 0);
     }
     return mixed;
   }
@@ -203,17 +212,11 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 
   private prepare(renderer: WebGLRenderer, camera: Camera, mesh: Mesh): void {
     if (!this.textures.attached) this.textures.attach(renderer);
-    const { uniforms } = this.material;
-    const eye = eyeOf(camera, mesh, uniforms.eye.value);
+    const eye = eyeOf(camera, mesh);
     const [x, y] = planeCoordinates(this.info.viewPlane, eye);
     const captured = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null;
     const weights = captured === null ? this.componentWeights(x, y) : this.cameraWeights(captured);
-    uniforms.viewWeights.value.fill(0);
-    uniforms.viewWeights.value.set(weights.subarray(0, this.usable));
-    uniforms.rayWeights.value =
-      captured === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(eye);
-    if (uniforms.rayWeights.value) uniforms.weightMaps.value = this.mapsOf(this.mixing);
-    uniforms.count.value = Math.min(this.loaded, Math.max(0, Math.floor(this.count)));
+    const rays = captured === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(eye);
     this.setView();
     const bicubic = FILTERS[this.filter];
     if (this.material.defines.BICUBIC !== bicubic) {
@@ -221,9 +224,46 @@ export class EigenField extends EventDispatcher<FieldEvents> {
       this.material.needsUpdate = true;
     }
     this.material.uniformsNeedUpdate = true;
+    this.compose(renderer, camera, this.recipe(weights, rays ? eye : null));
     if (renderer.info.render.frame !== this.frame) this.lastWeights = [];
     this.frame = renderer.info.render.frame;
     this.lastWeights.push(weights);
+    this.lastByRay = rays;
+  }
+
+  private compose(renderer: WebGLRenderer, camera: Camera, recipe: Recipe): void {
+    const { plan } = this.textures;
+    const { size, viewPlane } = this.info;
+    if (!plan) return;
+    const down = plan.meanDown * this.coarser;
+    let composer = this.composers.get(down);
+    if (!composer) {
+      composer = new Composer(size, partsOf(this.parts.scene, this.textures, plan), down, this.mesh, viewPlane);
+      this.composers.set(down, composer);
+    }
+    composer.compose(renderer, camera, recipe);
+    this.material.uniforms.composed.value = composer.texture;
+    this.material.uniforms.finest.value = this.finestOf(size, down);
+  }
+
+  private freeComposers(): void {
+    for (const composer of this.composers.values()) composer.dispose();
+    this.composers.clear();
+  }
+
+  /** What is to be composed. `eye`: each texel looks its weights up. */
+  private recipe(weights: Float64Array, eye: Vector | null): Recipe {
+    const shown = this.material.uniforms.shown.value;
+    const one = shown === VIEWS.eigen ? this.shownEigen : null;
+    return {
+      version: this.textures.version,
+      mean: this.textures.hasMeans && one === null,
+      only: one,
+      count: shown === VIEWS.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+      weights,
+      eye: eye && onPlane(this.info.viewPlane, eye),
+      maps: eye && this.mapsOf(this.mixing),
+    };
   }
 
   private setView(): void {
@@ -235,11 +275,15 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     uniforms.exposureScale.value.fromArray(scale);
     uniforms.exposureBias.value.fromArray(scale.map((value, i) => -(offset?.[i] ?? 0) * value));
     const shown = this.view === "error" && !errors ? "picture" : this.view;
-    const one = Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
+    const one = this.shownEigen;
     uniforms.shown.value = VIEWS[shown === "eigen" && one >= this.loaded ? "mean" : shown];
-    uniforms.shownEigen.value = Math.max(0, one);
     if (shown === "eigen") uniforms.shownGain.value = this.gainOf(one);
     if (errors) this.aimPhotograph();
+  }
+
+  /** The eigen texture that is shown alone, of each basis; -1 if there is none. */
+  private get shownEigen(): number {
+    return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
   }
 
   private aimPhotograph(): void {
@@ -260,17 +304,20 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   private gainOf(one: number): number {
     const known = this.gains.get(one);
     if (known !== undefined) return known;
-    const picture = this.parts.scene.textures[one];
     this.gains.set(one, 1);
-    if (picture) {
-      this.parts
-        .bytes(picture.view)
-        .then((bytes) => eigenGain(bytes, picture))
+    const { scene, bytes } = this.parts;
+    let channel = 0;
+    for (const { channels, bases } of scene.planes) {
+      const colours = scene.colours.slice(channel, (channel += channels));
+      const basis = bases.find(({ count }) => count > one);
+      if (!basis || one < 0) continue;
+      eigenGain(basis, one, colours, bytes)
         .then((gain) => {
           this.gains.set(one, gain);
           this.dispatchEvent({ type: "texture" });
         })
         .catch(() => undefined); // drawing has told of it already
+      break;
     }
     return 1;
   }
@@ -285,7 +332,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     const { usable } = this;
     if (this.maps?.mixing === mixing && this.maps.usable === usable) return this.maps.texture;
     this.maps?.texture.dispose();
-    const texture = makeMaps(this.parts.weights, mixing, this.parts.omega, this.total, usable);
+    const texture = makeMaps(this.parts.weights, mixing, this.parts.omega, this.counts, usable);
     this.maps = { texture, mixing, usable };
     return texture;
   }
@@ -301,10 +348,9 @@ export class EigenField extends EventDispatcher<FieldEvents> {
 const toMesh = new Matrix4();
 const place = new Vector3();
 
-/** The camera's place in the mesh's own axes, also put into `target`. */
-function eyeOf(camera: Camera, mesh: Mesh, target: Vector3): Vector {
+/** The camera's place in the mesh's own axes. */
+function eyeOf(camera: Camera, mesh: Mesh): Vector {
   place.setFromMatrixPosition(camera.matrixWorld).applyMatrix4(toMesh.copy(mesh.matrixWorld).invert());
-  target.copy(place);
   return [place.x, place.y, place.z];
 }
 

@@ -9,36 +9,38 @@ export function deviceLimits(gl: GL, memory: number): DeviceLimits {
   return {
     side: gl.getParameter(gl.MAX_TEXTURE_SIZE) as number,
     layers: gl.getParameter(gl.MAX_ARRAY_TEXTURE_LAYERS) as number,
-    vectors: gl.getParameter(gl.MAX_FRAGMENT_UNIFORM_VECTORS) as number,
     memory,
   };
 }
 
-/** A picture as a texture with mips. */
-export function makeTexture(gl: GL, picture: ImageBitmap): WebGLTexture {
-  const texture = gl.createTexture();
-  bound(gl, gl.TEXTURE_2D, texture, () => {
-    gl.texStorage2D(gl.TEXTURE_2D, levels(picture.width, picture.height), gl.RGBA8, picture.width, picture.height);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-    gl.generateMipmap(gl.TEXTURE_2D);
-    clampEdges(gl, gl.TEXTURE_2D);
-    useMips(gl, gl.TEXTURE_2D);
+/** Layers of zeros, or null if there is no memory; texels are read one by one, or if `between` linearly. */
+export function makeArray(
+  gl: GL,
+  [width, height]: [number, number],
+  layers: number,
+  between: boolean,
+): WebGLTexture | null {
+  return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA8, width, height, layers);
+    for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, edge, gl.CLAMP_TO_EDGE);
+    }
+    for (const filter of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) {
+      gl.texParameteri(gl.TEXTURE_2D_ARRAY, filter, between ? gl.LINEAR : gl.NEAREST);
+    }
   });
-  return texture;
 }
 
-/** Layers of zeros, or null if there is no memory. Filters linearly until `finishArray`. */
-export function makeArray(gl: GL, width: number, height: number, layers: number): WebGLTexture | null {
-  return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
-    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, levels(width, height), gl.RGBA8, width, height, layers);
-    clampEdges(gl, gl.TEXTURE_2D_ARRAY);
-    gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
-    gl.texParameteri(gl.TEXTURE_2D_ARRAY, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
-  });
+/** A picture into the first layer of an array of its size. */
+export function putPicture(gl: GL, array: WebGLTexture, picture: ImageBitmap): void {
+  const { width, height } = picture;
+  bound(gl, gl.TEXTURE_2D_ARRAY, array, () =>
+    gl.texSubImage3D(gl.TEXTURE_2D_ARRAY, 0, 0, 0, 0, width, height, 1, gl.RGBA, gl.UNSIGNED_BYTE, picture),
+  );
 }
 
 /** Room for a picture to be read texel by texel, or null. */
-export function makeRoom(gl: GL, width: number, height: number): WebGLTexture | null {
+export function makeRoom(gl: GL, [width, height]: [number, number]): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D, () => {
     gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
@@ -52,28 +54,6 @@ function allocated(gl: GL, target: GLenum, store: () => void): WebGLTexture | nu
   if (gl.getError() !== gl.OUT_OF_MEMORY) return texture;
   gl.deleteTexture(texture);
   return null;
-}
-
-/** Makes the mips of an array whose layers are all there, and filters with them from now on. */
-export function finishArray(gl: GL, texture: WebGLTexture): void {
-  bound(gl, gl.TEXTURE_2D_ARRAY, texture, () => {
-    gl.generateMipmap(gl.TEXTURE_2D_ARRAY);
-    useMips(gl, gl.TEXTURE_2D_ARRAY);
-  });
-}
-
-function levels(width: number, height: number): number {
-  return 1 + Math.floor(Math.log2(Math.max(width, height)));
-}
-
-function clampEdges(gl: GL, target: GLenum): void {
-  gl.texParameteri(target, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-  gl.texParameteri(target, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-}
-
-function useMips(gl: GL, target: GLenum): void {
-  gl.texParameteri(target, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
-  gl.texParameteri(target, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
 }
 
 /** Calls `work` with the texture bound and pictures taken as they are, then puts everything back. */

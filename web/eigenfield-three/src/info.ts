@@ -5,6 +5,7 @@ import { SceneError, damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
+import type { Basis } from "./planes.js";
 
 export type Vector = [number, number, number];
 export type Matrix3rows = [Vector, Vector, Vector];
@@ -43,11 +44,19 @@ export interface SceneInfo {
   settings: JsonObject;
   scores: JsonObject;
   metresPerUnit: number | null;
-  bytes: { total: number; mesh: number; mean: number; weights: number; other: number; textures: number[] };
-  size: [number, number];
+  bytes: { total: number; mesh: number; mean: number; weights: number; other: number; textures: number[] }; // by rank
+  size: [number, number]; // of the atlas that is drawn
+  planes: PlaneInfo[];
   vertices: number;
   triangles: number;
   facesPlane: boolean; // the cameras look across the view plane; else weights by the ray make no sense
+}
+
+/** Channels that share a mean and bases: what `info.planes` says of each. */
+export interface PlaneInfo {
+  channels: number;
+  mean: [number, number];
+  bases: { textures: number; size: [number, number]; grid: [number, number] }[];
 }
 
 /** Bytes of a buffer view. */
@@ -121,11 +130,13 @@ function coloursOf(numbers: number[], scene: SceneDocument, name: string): [numb
   return [gain, offset];
 }
 
-/** The (encoded cameras) x (eigen textures) weights, row by row, bases side by side. */
+/** The (encoded cameras) x (eigen textures) weights, row by row, the bases of all planes side by side. */
 export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promise<Float32Array> {
-  const parts = await Promise.all(scene.weights.map((accessor) => readNumbers(accessor, scene, bytes)));
+  const bases = basesOf(scene);
+  const accessors = bases.flatMap(({ weights }) => (weights ? [weights] : []));
+  const parts = await Promise.all(accessors.map((accessor) => readNumbers(accessor, scene, bytes)));
   const rows = scene.heldOut.filter((out) => !out).length;
-  const total = scene.textures.length;
+  const total = bases.reduce((sum, { count }) => sum + count, 0);
   const merged = new Float32Array(rows * total);
   let column = 0;
   for (const part of parts) {
@@ -136,6 +147,22 @@ export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promi
     column += width;
   }
   return merged;
+}
+
+/** The bases of all planes, in the order of the weights' columns. */
+export function basesOf(scene: SceneDocument): Basis[] {
+  return scene.planes.flatMap(({ bases }) => bases);
+}
+
+/** Eigen textures of the largest basis. */
+export function ranksOf(scene: SceneDocument): number {
+  return Math.max(0, ...basesOf(scene).map(({ count }) => count));
+}
+
+/** Columns and rows of the texture that is drawn: the most of any mean and any grid. */
+export function atlasOf(scene: SceneDocument, means: [number, number][]): [number, number] {
+  const sizes = [...means, ...basesOf(scene).map(({ grid }) => grid)];
+  return [Math.max(...sizes.map(([width]) => width)), Math.max(...sizes.map(([, height]) => height))];
 }
 
 /** Triangles of the view plane, as indices of encoded cameras. */
@@ -155,6 +182,7 @@ export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Pro
 export function sceneInfo(
   scene: SceneDocument,
   cameras: CaptureCamera[],
+  means: [number, number][],
   grid: Grid | null,
   total: number,
 ): SceneInfo {
@@ -176,7 +204,12 @@ export function sceneInfo(
     scores: scene.scores,
     metresPerUnit: typeof metres === "number" && metres > 0 && metres <= limits.MAX_NUMBER ? metres : null,
     bytes: countBytes(scene, total),
-    size: scene.size,
+    size: atlasOf(scene, means),
+    planes: scene.planes.map(({ channels, bases }, i) => ({
+      channels,
+      mean: means[i] ?? [1, 1],
+      bases: bases.map(({ count, size, grid }) => ({ textures: count, size, grid })),
+    })),
     vertices: scene.position.count,
     triangles: scene.indices.count / 3,
     facesPlane: Math.abs(dot(forward, normal)) > 0.7,
@@ -191,9 +224,20 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
     return scene.views[view]?.length ?? 0;
   };
   const sum = (views: number[]): number => views.reduce((bytes, view) => bytes + lengthOf(view), 0);
-  const mean = sum(scene.preview === null ? [scene.mean.view] : [scene.preview, scene.mean.view]);
-  const textures = scene.textures.map((picture) => lengthOf(picture.view));
-  const weights = sum(scene.weights.map((accessor) => accessor.view));
+  const means = scene.planes.map((plane) => plane.mean.view);
+  const mean = sum(scene.preview === null ? means : [scene.preview, ...means]);
+  const textures = Array<number>(ranksOf(scene)).fill(0);
+  for (const { pictures } of basesOf(scene)) {
+    let rank = 0;
+    for (const { view, textures: count } of pictures) {
+      const length = lengthOf(view);
+      for (let i = 0; i < count; i++) {
+        const share = Math.floor((length * (i + 1)) / count) - Math.floor((length * i) / count);
+        textures[rank] = (textures[rank++] ?? 0) + share;
+      }
+    }
+  }
+  const weights = sum(basesOf(scene).flatMap((basis) => (basis.weights ? [basis.weights.view] : [])));
   const mesh = sum([scene.position.view, scene.uv.view, scene.indices.view]);
   const other = total - mean - weights - mesh - textures.reduce((a, b) => a + b, 0);
   return { total, mesh, mean, weights, other, textures };

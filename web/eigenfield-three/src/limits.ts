@@ -1,14 +1,17 @@
 // What a file may announce: docs/format.md, "Limits". Checked before anything is allocated.
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
-export const FEATURES: ReadonlySet<string> = new Set(); // what an entry of `needs` may be
+export const KNOWN_NEEDS: ReadonlySet<string> = new Set(["toRGB", "regions", "stacks"]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes
 export const MAX_DEPTH = 64;
 export const MAX_CHUNKS = 64;
 export const MAX_VIEWS = 16_384;
 export const MAX_SIDE = 16_384;
+export const MAX_STACKED = 32_768; // rows of a picture of stacked channels or textures
 export const MAX_TEXELS = 2 ** 27;
+export const MAX_CHANNELS = 64;
+export const MAX_PLANES = 16;
 export const MAX_BASES = 64;
 export const MAX_COMPONENTS = 4_096;
 export const MAX_DECODED = 8 * 2 ** 30; // bytes: 4 for each number of the mean, 1 for those of the textures

@@ -1,28 +1,31 @@
 // What fits on the GPU: smaller eigen textures first, then fewer.
 
 const MIPS = 4 / 3; // a texture with all its mips, relative to its largest level
+const CODES = 4; // bytes of a texel of codes
+const HALVES = 8; // bytes of a texel of half-floats
 export const MAP_SIDE = 129; // nodes of a weight map along X and Y
 const MIB = 2 ** 20;
+
+type Size = [number, number];
 
 export interface DeviceLimits {
   side: number; // MAX_TEXTURE_SIZE
   layers: number; // MAX_ARRAY_TEXTURE_LAYERS
-  vectors: number; // MAX_FRAGMENT_UNIFORM_VECTORS
   memory: number; // bytes
 }
 
 export interface Needs {
-  mean: [number, number];
-  size: [number, number];
-  channels: 1 | 3;
-  total: number;
+  atlas: Size;
+  means: { size: Size; channels: number }[];
+  bases: { size: Size; grid: Size; channels: number; count: number }[];
+  rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
 }
 
 export interface Plan {
-  meanDown: number;
-  scaleDown: number;
-  usable: number;
+  meanDown: number; // the mean and what is composed have their side over this
+  scaleDown: number; // eigen textures
+  usable: number; // of each basis
   bytes: number;
   limitation: string | null;
 }
@@ -40,55 +43,100 @@ function hasTouch(device: Navigator | undefined): boolean {
   return (device?.maxTouchPoints ?? 0) > 1; // an iPad that calls itself a Macintosh
 }
 
-/** Bytes of an RGBA8 texture with its mips. */
-export function textureBytes([width, height]: [number, number], down = 1): number {
-  return Math.round(4 * MIPS * Math.ceil(width / down) * Math.ceil(height / down));
+/** A size `down` times smaller along each side. */
+export function smaller([width, height]: Size, down: number): Size {
+  return [Math.ceil(width / down), Math.ceil(height / down)];
 }
 
-/** Layers of RGBA8 that hold `textures` of `channels`, four to a texel; at least those of one. */
-export function layersOf(textures: number, channels: 1 | 3): number {
-  return channels * Math.max(1, Math.ceil(textures / 4));
+function texels(size: Size, down: number): number {
+  const [width, height] = smaller(size, down);
+  return width * height;
 }
 
-/** Bytes of the maps that hold the weights of `textures`. */
-export function mapBytes(textures: number): number {
-  return Math.max(1, Math.ceil(textures / 4)) * MAP_SIDE * MAP_SIDE * 8;
+/** Layers that hold a mean of `channels`, four to a texel. */
+export function meanLayers(channels: number): number {
+  return Math.ceil(channels / 4);
+}
+
+/** Layers that hold `textures` of `channels`, four to a texel; at least those of one. */
+export function layersOf(textures: number, channels: number): number {
+  return channels * groupsOf(textures);
+}
+
+/** Layers of the maps that hold the weights of `textures`. */
+export function groupsOf(textures: number): number {
+  return Math.max(1, Math.ceil(textures / 4));
+}
+
+/** The sizes at which sums are taken, each once, that of the atlas among them. */
+export function gridsOf({ atlas, means, bases }: Pick<Needs, "atlas" | "means" | "bases">): Size[] {
+  const sizes = [atlas, ...means.map(({ size }) => size), ...bases.map(({ grid }) => grid)];
+  return [...new Map(sizes.map((size) => [size.join(), size])).values()];
 }
 
 /** The largest choice within the limits. */
 export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
-  const uniforms = Math.floor((limits.vectors - 40) / (2 * needs.channels + 1)); // scales, biases, weights of four
-  const groups = Math.min(uniforms, Math.floor(limits.layers / needs.channels));
-  const most = Math.max(0, Math.min(needs.total, 4 * groups));
+  const total = Math.max(0, ...needs.bases.map(({ count }) => count));
+  const channels = Math.max(1, ...needs.bases.map((basis) => basis.channels));
+  const most = Math.min(total, 4 * Math.floor(limits.layers / channels));
   const meanDown = [1, 2, 4, 8, 16].find(
-    (down) => Math.max(...needs.mean) / down <= limits.side && textureBytes(needs.mean, down) <= limits.memory / 2,
+    (down) => Math.max(...needs.atlas) / down <= limits.side && composing(needs, down) <= limits.memory / 2,
   ) ?? 16;
-  const fixed = textureBytes(needs.mean, meanDown) + needs.geometry;
-  const bytes = (down: number, count: number): number =>
-    fixed + (count && layersOf(count, needs.channels) * textureBytes(needs.size, down)) + mapBytes(count);
+  const fixed = composing(needs, meanDown) + needs.geometry;
+  const bytes = (down: number, count: number): number => fixed + stored(needs, down, count);
   const hasRoom = (down: number, count: number): boolean =>
     bytes(down, count) + onTheWay(needs, down) <= limits.memory;
-  const fits = (down: number): boolean => Math.max(...needs.size) / down <= limits.side;
+  const largest = Math.max(1, ...needs.bases.flatMap(({ size }) => size));
+  const fits = (down: number): boolean => largest / down <= limits.side;
   const scaleDown = [1, 2, 4].find((down) => fits(down) && hasRoom(down, most)) ?? 4;
   let usable = fits(scaleDown) ? most : 0;
   while (usable > 0 && !hasRoom(scaleDown, usable)) usable--;
   const plan = { meanDown, scaleDown, usable, bytes: bytes(scaleDown, usable) };
-  return { ...plan, limitation: sentence(plan, needs, limits) };
+  return { ...plan, limitation: sentence(plan, total, needs, limits) };
 }
 
-/** Bytes of the picture that is being packed while textures arrive. */
-function onTheWay({ size, total }: Needs, down: number): number {
-  return total && 4 * Math.ceil(size[0] / down) * Math.ceil(size[1] / down);
+/** Bytes of the means and of what is composed: the atlas with its mips, sums that are coarser, where texels lie. */
+function composing(needs: Needs, down: number): number {
+  const means = needs.means.map(({ size, channels }) => CODES * meanLayers(channels) * texels(size, down));
+  const sums = gridsOf(needs).map((size) => {
+    const mips = size.join() === needs.atlas.join() ? MIPS : 1;
+    const places = needs.rays && needs.bases.some(({ grid }) => grid.join() === size.join());
+    return HALVES * texels(size, down) * (mips + (places ? 1 : 0));
+  });
+  return Math.round([...means, ...sums].reduce((a, b) => a + b, 0));
 }
 
-function sentence(plan: Omit<Plan, "limitation">, needs: Needs, limits: DeviceLimits): string | null {
+/** Bytes of the first `count` textures of each basis and of the maps of their weights. */
+function stored({ bases, rays }: Needs, down: number, count: number): number {
+  return bases.reduce((sum, basis) => {
+    const used = Math.min(count, basis.count);
+    if (!used) return sum;
+    const maps = rays ? groupsOf(used) * MAP_SIDE * MAP_SIDE * HALVES : 0;
+    return sum + CODES * layersOf(used, basis.channels) * texels(basis.size, down) + maps;
+  }, 0);
+}
+
+/** Columns and rows of the largest piece of a picture that is packed while textures arrive. */
+export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDown: number, scaleDown: number): Size {
+  const sizes = [
+    ...means.filter(({ channels }) => channels !== 1 && channels !== 3).map(({ size }) => smaller(size, meanDown)),
+    ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
+  ];
+  return [Math.max(1, ...sizes.map(([width]) => width)), Math.max(1, ...sizes.map(([, height]) => height))];
+}
+
+function onTheWay(needs: Needs, down: number): number {
+  const [width, height] = roomFor({ means: [], bases: needs.bases }, 1, down);
+  return CODES * width * height;
+}
+
+function sentence(plan: Omit<Plan, "limitation">, total: number, needs: Needs, limits: DeviceLimits): string | null {
   const parts: string[] = [];
-  if (plan.usable < needs.total) parts.push(`${plan.usable} of ${needs.total} eigen textures are drawn`);
+  if (plan.usable < total) parts.push(`${plan.usable} of ${total} eigen textures are drawn`);
   if (plan.usable && plan.scaleDown > 1) parts.push(`eigen textures have 1/${plan.scaleDown} of their size`);
   if (plan.meanDown > 1) parts.push(`the mean texture has 1/${plan.meanDown} of its size`);
   if (!parts.length) return null;
-  const textures = textureBytes(needs.mean) + layersOf(needs.total, needs.channels) * textureBytes(needs.size);
-  const all = textures + onTheWay(needs, 1) + needs.geometry + mapBytes(needs.total);
+  const all = composing(needs, 1) + stored(needs, 1, total) + onTheWay(needs, 1) + needs.geometry;
   const why =
     all > limits.memory
       ? `the scene needs ${megabytes(all)} MB of graphics memory and ${megabytes(limits.memory)} MB may be used`

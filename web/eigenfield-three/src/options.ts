@@ -14,8 +14,8 @@ export interface EigenfieldOptions {
   renderer?: WebGLRenderer | undefined;
   /** GPU bytes that may be used; else `defaultMemory()`. */
   memory?: number | undefined;
-  /** How textures are read where pixels are no larger than the photographs' own: Catmull-Rom for all, for the mean
-   * alone (the default: nearly as sharp, at a quarter of the cost), or what the GPU does. */
+  /** How the texture is read where pixels are no larger than the photographs' own: Catmull-Rom (`bicubic`, the
+   * default), or what the GPU does. */
   filter?: Filter | undefined;
   stream?: ByteStream | undefined;
 }

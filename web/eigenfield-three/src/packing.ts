@@ -1,6 +1,7 @@
-// Pictures come one eigen texture at a time; on the GPU four share a texel. Each is drawn into its component of its
-// layers, code by code, and what three.js and others have set is put back.
+// Pictures come one at a time; on the GPU four eigen textures, or four channels of a mean, share a texel. Each is drawn
+// into its component of its layer, code by code, and what three.js and others have set is put back.
 
+import type { Piece } from "./decode.js";
 import { bound } from "./gpu.js";
 
 type GL = WebGL2RenderingContext;
@@ -20,25 +21,31 @@ void main() {
 }
 `;
 
+/** Where a channel of a picture goes: a component of a layer. */
+export interface Slot {
+  channel: number;
+  layer: number;
+  component: number;
+}
+
 export interface Packer {
-  put(bitmap: ImageBitmap, index: number): void;
+  put(piece: Piece, array: WebGLTexture, slots: Slot[]): void;
   free(): void;
 }
 
-/** Puts pictures of one size into `array` as surface.glsl reads it, by way of the texture `picture`, which it owns. */
-export function makePacker(gl: GL, array: WebGLTexture, picture: WebGLTexture, channels: 1 | 3): Packer {
+/** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the texture `picture`, which it owns. */
+export function makePacker(gl: GL, picture: WebGLTexture): Packer {
   const program = link(gl);
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
   const channelAt = gl.getUniformLocation(program, "channel");
 
-  const draw = ({ width, height }: ImageBitmap, index: number): void => {
+  const draw = ({ bitmap, rows }: Piece, array: WebGLTexture, slots: Slot[]): void => {
     gl.useProgram(program); // its sampler reads unit 0
     gl.bindVertexArray(vertices);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
-    gl.viewport(0, 0, width, height);
-    gl.colorMask(index % 4 === 0, index % 4 === 1, index % 4 === 2, index % 4 === 3);
-    for (let channel = 0; channel < channels; channel++) {
-      const layer = channels * Math.floor(index / 4) + channel;
+    gl.viewport(0, 0, bitmap.width, rows);
+    for (const { channel, layer, component } of slots) {
+      gl.colorMask(component === 0, component === 1, component === 2, component === 3);
       gl.framebufferTextureLayer(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, array, 0, layer);
       gl.uniform1i(channelAt, channel);
       gl.drawArrays(gl.TRIANGLES, 0, 3);
@@ -46,11 +53,13 @@ export function makePacker(gl: GL, array: WebGLTexture, picture: WebGLTexture, c
   };
 
   return {
-    put(bitmap, index) {
+    put(piece, array, slots) {
+      const { bitmap, row, rows } = piece;
       onFirstUnit(gl, () =>
         bound(gl, gl.TEXTURE_2D, picture, () => {
-          gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
-          untouched(gl, () => draw(bitmap, index));
+          gl.pixelStorei(gl.UNPACK_SKIP_ROWS, row);
+          gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, bitmap.width, rows, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+          untouched(gl, () => draw(piece, array, slots));
         }),
       );
     },

@@ -1,6 +1,6 @@
 import { MeshBasicMaterial, type BufferGeometry, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
-import { decodePicture } from "./decode.js";
+import { decodePieces } from "./decode.js";
 import { isScene, readDocument, type SceneDocument } from "./document.js";
 import { SceneError, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
@@ -60,9 +60,13 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
       return data;
     };
-    const meanBytes = await bytes(scene.mean.view);
-    const [mean, cameras, omega, triangles] = await Promise.all([
-      decodePicture(meanBytes, scene.mean, scene.meanSize),
+    const meanBytes = await Promise.all(scene.planes.map(({ mean }) => bytes(mean.view)));
+    const [means, cameras, omega, triangles] = await Promise.all([
+      Promise.all(
+        scene.planes.map(({ mean, channels, meanSize }, i) =>
+          decodePieces(meanBytes[i] ?? new ArrayBuffer(0), mean, channels, meanSize),
+        ),
+      ),
       readCameras(scene, bytes),
       readWeights(scene, bytes),
       readTriangles(scene, bytes),
@@ -70,8 +74,11 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const encoded = cameras.filter((_, i) => !scene.heldOut[i]);
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
-    const info = sceneInfo(scene, cameras, weights.grid, this.fileBytes());
-    gltf.userData["eigenfield"] = new EigenField({ scene, info, meshes, mean, omega, weights, bytes }, this.options);
+    const meanSizes = means.map(([first]): [number, number] => [first?.bitmap.width ?? 1, first?.rows ?? 1]);
+    const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes());
+    const rays = info.facesPlane;
+    const parts = { scene, info, meshes, means, meanSizes, rays, omega, weights, bytes };
+    gltf.userData["eigenfield"] = new EigenField(parts, this.options);
   }
 
   private fileBytes(): number {

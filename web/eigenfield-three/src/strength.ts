@@ -1,27 +1,43 @@
 // How strong an eigen texture is, to show one by itself.
 
-import { decodePicture } from "./decode.js";
-import type { Picture } from "./document.js";
+import { closePieces, decodePieces } from "./decode.js";
+import type { Basis } from "./planes.js";
 
 const SIDE = 128; // of the thumbnail that is looked at
 const SHARE = 0.98; // of the values that shall fit around mid grey
 
-/** The factor that spreads nearly all values of an eigen texture over -0.5..0.5. */
-export async function eigenGain(bytes: ArrayBuffer, picture: Picture): Promise<number> {
-  const bitmap = await decodePicture(bytes, picture, null);
+/** The factor that spreads nearly all values of eigen texture `rank` of a basis over -0.5..0.5. `colours`: of the value
+ * 1 of its channels; `read`: the bytes of a view. */
+export async function eigenGain(
+  basis: Basis,
+  rank: number,
+  colours: [number, number, number][],
+  read: (view: number) => Promise<ArrayBuffer>,
+): Promise<number> {
+  const channels = colours.length;
+  let first = 0;
+  const picture = basis.pictures.find(({ textures }) => (first += textures) > rank);
+  if (!picture) return 1;
+  const within = rank - (first - picture.textures);
+  const each = channels === 3 ? 1 : channels; // pieces of a texture
+  const pieces = await decodePieces(await read(picture.view), picture, channels, basis.size);
   const canvas = new OffscreenCanvas(SIDE, SIDE);
   const context = canvas.getContext("2d", { willReadFrequently: true });
   if (!context) return 1;
   context.imageSmoothingEnabled = false; // single texels: averages would be weaker
-  context.drawImage(bitmap, 0, 0, SIDE, SIDE);
-  bitmap.close();
-  const { data } = context.getImageData(0, 0, SIDE, SIDE);
   const values: number[] = [];
-  for (let i = 0; i < data.length; i++) {
-    const channel = i & 3;
-    const value = ((data[i] ?? 0) - (picture.zero[channel] ?? 0)) * (picture.scale[channel] ?? 0);
-    if (channel < 3) values.push(Math.abs(value));
-  }
+  pieces.slice(each * within, each * (within + 1)).forEach(({ bitmap, row, rows }, i) => {
+    context.drawImage(bitmap, 0, row, bitmap.width, rows, 0, 0, SIDE, SIDE);
+    const { data } = context.getImageData(0, 0, SIDE, SIDE);
+    (channels === 3 ? [0, 1, 2] : [i]).forEach((channel) => {
+      const [scale, zero] = [picture.scale, picture.zero].map((own) => own[channels * within + channel] ?? 0);
+      const colour = Math.max(...(colours[channel] ?? [0]).map(Math.abs)) * (scale ?? 0);
+      for (let at = channels === 3 ? channel : 0; at < data.length; at += 4) {
+        values.push(Math.abs(((data[at] ?? 0) - (zero ?? 0)) * colour));
+      }
+    });
+  });
+  closePieces(pieces);
   values.sort((a, b) => a - b);
   const strong = values[Math.floor(SHARE * values.length)] ?? 0;
   return strong > 0 ? 0.45 / strong : 1;

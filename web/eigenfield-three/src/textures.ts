@@ -1,45 +1,89 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
-import { decodePicture } from "./decode.js";
+import { closePieces, decodePieces, type Piece } from "./decode.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
-import type { ViewBytes } from "./info.js";
-import { defaultMemory, layersOf, makePlan, type Plan } from "./memory.js";
+import { atlasOf, type ViewBytes } from "./info.js";
+import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
-import { makePacker, type Packer } from "./packing.js";
+import { makePacker, type Packer, type Slot } from "./packing.js";
+import type { Basis, Picture } from "./planes.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
+/** What the textures of a field are read from. */
+export interface TextureParts {
+  scene: SceneDocument;
+  bytes: ViewBytes;
+  means: Piece[][]; // of each plane
+  meanSizes: [number, number][];
+  rays: boolean; // weights may be looked up texel by texel
+}
+
+/** A picture of eigen textures: those from `first` of basis `basis`, counted over all planes. */
+interface Entry {
+  basis: Basis;
+  number: number;
+  channels: number;
+  picture: Picture;
+  first: number;
+}
+
 /**
- * The textures of a scene on a GPU: as many as fit, the mean first, eigen textures in order. Compressed pictures stay
+ * The textures of a scene on a GPU: as many as fit, the means first, eigen textures by rank. Compressed pictures stay
  * in memory, decoded ones do not, and are decoded again when a lost context comes back.
  */
 export class Textures {
-  readonly mean = new ExternalTexture();
-  readonly eigen = new ExternalTexture();
-  plan: Plan | null = null;
-  loaded = 0;
+  readonly means: ExternalTexture[]; // of each plane
+  readonly bases: ExternalTexture[]; // of all planes
+  readonly ready: boolean[][]; // each texture of each basis
+  plan: memory.Plan | null = null;
+  hasMeans = false;
+  version = 0; // grows with what is there to be summed
 
-  onPlan: (plan: Plan) => void = () => undefined;
+  onPlan: (plan: memory.Plan) => void = () => undefined;
   onTexture: () => void = () => undefined;
   onComplete: () => void = () => undefined;
   onError: (reason: unknown) => void = () => undefined;
 
+  readonly needs: memory.Needs;
+  private readonly entries: Entry[]; // by rank
   private renderer: WebGLRenderer | null = null;
-  private packer: Packer | null = null; // while eigen textures arrive
-  private bitmap: ImageBitmap | null; // the mean, until it is on the GPU
-  private readonly meanSize: [number, number];
+  private packer: Packer | null = null; // while textures arrive
+  private decoded: Piece[][] | null; // the means, until they are on the GPU
   private turn = 0; // of loading: an older one stops
   private disposed = false;
 
   /** `geometry`: bytes of the mesh, which count too. */
   constructor(
-    private readonly parts: { scene: SceneDocument; bytes: ViewBytes; mean: ImageBitmap },
-    private readonly geometry: number,
+    private readonly parts: TextureParts,
+    geometry: number,
     private readonly options: EigenfieldOptions,
   ) {
-    this.bitmap = parts.mean;
-    this.meanSize = [parts.mean.width, parts.mean.height];
+    const { scene, meanSizes, rays } = parts;
+    this.decoded = parts.means;
+    const bases = scene.planes.flatMap(({ channels, bases }) => bases.map((basis) => ({ ...basis, channels })));
+    const means = scene.planes.map(({ channels }, i) => ({ size: meanSizes[i] ?? [1, 1], channels }) as const);
+    this.needs = { atlas: atlasOf(scene, meanSizes), means: [...means], bases, rays, geometry };
+    this.means = means.map(() => new ExternalTexture());
+    this.bases = bases.map(() => new ExternalTexture());
+    this.ready = bases.map(({ count }) => Array<boolean>(count).fill(false));
+    this.entries = bases.flatMap((basis, number) => {
+      let next = 0;
+      return basis.pictures.map((picture) => {
+        const first = next;
+        next += picture.textures;
+        return { basis, number, channels: basis.channels, picture, first };
+      });
+    });
+    this.entries.sort((a, b) => a.first - b.first || a.number - b.number);
+  }
+
+  /** Eigen textures of each basis that are there, as far as none of a smaller rank is missing. */
+  get loaded(): number {
+    const first = this.ready.map((own) => own.indexOf(false)).filter((rank) => rank >= 0);
+    const most = Math.max(0, ...this.ready.map((own) => own.length));
+    return Math.min(most, ...first);
   }
 
   /** Whether there is nothing to attach any more. */
@@ -67,106 +111,160 @@ export class Textures {
   dispose(): void {
     this.detach();
     this.disposed = true;
-    this.bitmap?.close();
-    this.bitmap = null;
+    this.decoded?.forEach(closePieces);
+    this.decoded = null;
   }
 
   private detach(): void {
-    this.turn += 1;
-    this.loaded = 0;
     const gl = this.renderer?.getContext();
-    this.freePacker();
-    for (const texture of [this.mean, this.eigen]) {
-      if (gl && texture.sourceTexture instanceof WebGLTexture) gl.deleteTexture(texture.sourceTexture);
-      texture.sourceTexture = null;
-    }
+    this.packer?.free();
     this.renderer?.domElement.removeEventListener("webglcontextlost", this.onLost);
     this.renderer?.domElement.removeEventListener("webglcontextrestored", this.onRestored);
     this.renderer = null;
+    for (const { sourceTexture } of [...this.means, ...this.bases]) {
+      if (gl && sourceTexture instanceof WebGLTexture) gl.deleteTexture(sourceTexture);
+    }
+    this.forget();
   }
 
-  private readonly onLost = (): void => {
+  /** What was on the GPU is there no more. */
+  private readonly forget = (): void => {
     this.turn += 1;
-    this.loaded = 0;
-    this.mean.sourceTexture = this.eigen.sourceTexture = null;
-    this.packer = null; // its objects went with the context
+    this.version += 1;
+    this.packer = null;
+    this.hasMeans = false;
+    this.ready.forEach((own) => own.fill(false));
+    for (const texture of [...this.means, ...this.bases]) texture.sourceTexture = null;
   };
+
+  private readonly onLost = this.forget;
 
   private readonly onRestored = (): void => {
     if (this.renderer) this.attach(this.renderer);
   };
 
   private async load(gl: WebGL2RenderingContext, turn: number): Promise<void> {
-    const { array, packer, plan } = this.makeRoom(gl);
+    if (!gl.getExtension("EXT_color_buffer_float") && !gl.getExtension("EXT_color_buffer_half_float")) {
+      throw new SceneError("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
+    }
+    const { packer, plan } = this.makeRoom(gl);
     this.plan = plan;
     this.packer = packer;
-    this.eigen.sourceTexture = array;
     this.onPlan(plan);
-    await this.loadMean(gl, turn, plan.meanDown);
-    const queue: Promise<ImageBitmap>[] = [];
+    await this.loadMeans(gl, turn, plan.meanDown);
+    if (turn !== this.turn) return;
+    const wanted = this.entries.filter(({ first }) => first < plan.usable);
+    const queue: Promise<Piece[]>[] = [];
+    let next = 0;
     try {
-      for (let j = 0; j < plan.usable; j++) {
-        while (queue.length < AHEAD && j + queue.length < plan.usable) {
-          queue.push(this.decode(j + queue.length, plan.scaleDown));
-        }
-        const bitmap = await queue[0];
+      for (const entry of wanted) {
+        while (queue.length < AHEAD && next < wanted.length) queue.push(this.decode(wanted[next++], plan.scaleDown));
+        const pieces = (await queue[0]) ?? [];
         queue.shift();
-        if (turn === this.turn && bitmap) packer.put(bitmap, j);
-        bitmap?.close();
+        if (turn === this.turn) this.pack(pieces, entry, packer, plan.usable);
+        closePieces(pieces);
         if (turn !== this.turn) return;
-        this.loaded = j + 1;
         this.onTexture();
       }
     } finally {
-      for (const left of queue) left.then((bitmap) => bitmap.close()).catch(() => undefined);
+      for (const left of queue) left.then(closePieces).catch(() => undefined);
     }
-    if (turn !== this.turn) return;
-    this.freePacker();
-    gpu.finishArray(gl, array);
+    packer.free();
+    this.packer = null;
     this.onComplete();
   }
 
-  /** Room for the eigen textures, within the memory that may be used and that there is. */
-  private makeRoom(gl: WebGL2RenderingContext): { array: WebGLTexture; packer: Packer; plan: Plan } {
-    const { size, textures, channels } = this.parts.scene;
-    const needs = { mean: this.meanSize, size, channels, total: textures.length, geometry: this.geometry };
-    for (let memory = this.options.memory ?? defaultMemory(); ; memory /= 2) {
-      const plan = makePlan(needs, gpu.deviceLimits(gl, memory));
-      const [width, height] = plan.usable ? size : [1, 1];
-      const [w, h] = [Math.ceil(width / plan.scaleDown), Math.ceil(height / plan.scaleDown)];
-      const [array, picture] = [gpu.makeArray(gl, w, h, layersOf(plan.usable, channels)), gpu.makeRoom(gl, w, h)];
-      if (array && picture) return { array, packer: makePacker(gl, array, picture, channels), plan };
-      gl.deleteTexture(array);
-      gl.deleteTexture(picture);
-      if (!plan.usable) {
+  private pack(pieces: Piece[], entry: Entry, packer: Packer, usable: number): void {
+    const { number, channels, first, picture } = entry;
+    const array = this.bases[number]?.sourceTexture;
+    const ready = this.ready[number];
+    if (!(array instanceof WebGLTexture) || !ready) return;
+    const each = channels === 3 ? 1 : channels; // pieces of a texture
+    for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
+      for (let i = 0; i < each; i++) {
+        const layer = (channel: number): number => channels * Math.floor(j / 4) + channel;
+        const own = channels === 3 ? [0, 1, 2] : [i];
+        const slots = own.map((channel): Slot => {
+          return { channel: channels === 3 ? channel : 0, layer: layer(channel), component: j % 4 };
+        });
+        const piece = pieces[(j - first) * each + i];
+        if (piece) packer.put(piece, array, slots);
+      }
+      ready[j] = true;
+    }
+    this.version += 1;
+  }
+
+  /** Room for all textures, within the memory that may be used and that there is. */
+  private makeRoom(gl: WebGL2RenderingContext): { packer: Packer; plan: memory.Plan } {
+    const { means, bases } = this.needs;
+    for (let allowed = this.options.memory ?? memory.defaultMemory(); ; allowed /= 2) {
+      const plan = memory.makePlan(this.needs, gpu.deviceLimits(gl, allowed));
+      const { meanDown, scaleDown, usable } = plan;
+      const between = meanDown > 1 || scaleDown > 1; // texels of what is composed are none of what is stored
+      const made = [
+        ...means.map(({ size, channels }) =>
+          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between),
+        ),
+        ...bases.map(({ size, channels, count }) => {
+          const used = Math.min(count, usable);
+          return gpu.makeArray(
+            gl,
+            used ? memory.smaller(size, scaleDown) : [1, 1],
+            used ? memory.layersOf(used, channels) : 1,
+            between,
+          );
+        }),
+      ];
+      const room = gpu.makeRoom(gl, memory.roomFor(this.needs, meanDown, scaleDown));
+      if (room && made.every((texture) => texture !== null)) {
+        [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
+        return { packer: makePacker(gl, room), plan };
+      }
+      for (const texture of [...made, room]) gl.deleteTexture(texture);
+      if (!usable) {
         throw new SceneError("unsupported", "The graphics memory is full; close other pages and try again.");
       }
     }
   }
 
-  private freePacker(): void {
-    this.packer?.free();
-    this.packer = null;
-  }
-
-  /** At once if it is decoded and needs no resizing: the first draw shows it. */
-  private async loadMean(gl: WebGL2RenderingContext, turn: number, down: number): Promise<void> {
-    const { scene, bytes } = this.parts;
-    let { bitmap } = this;
-    this.bitmap = null;
-    if (!bitmap || down > 1) {
-      bitmap?.close();
-      bitmap = await decodePicture(await bytes(scene.mean.view), scene.mean, scene.meanSize, down);
+  /** At once if they are decoded and need no resizing: the first draw shows them. */
+  private async loadMeans(gl: WebGL2RenderingContext, turn: number, down: number): Promise<void> {
+    const { scene, bytes, meanSizes } = this.parts;
+    let { decoded } = this;
+    this.decoded = null;
+    if (!decoded || down > 1) {
+      decoded?.forEach(closePieces);
+      decoded = await Promise.all(
+        scene.planes.map(async ({ mean, channels }, i) =>
+          decodePieces(await bytes(mean.view), mean, channels, meanSizes[i] ?? null, down),
+        ),
+      );
     }
-    if (turn === this.turn) this.mean.sourceTexture = gpu.makeTexture(gl, bitmap);
-    bitmap.close();
+    decoded.forEach((pieces, i) => {
+      const [first] = pieces;
+      const array = this.means[i]?.sourceTexture;
+      if (turn === this.turn && first && array instanceof WebGLTexture) {
+        if (pieces.length === 1) gpu.putPicture(gl, array, first.bitmap);
+        else {
+          pieces.forEach((piece, channel) => {
+            this.packer?.put(piece, array, [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }]);
+          });
+        }
+      }
+      closePieces(pieces);
+    });
+    if (turn !== this.turn) return;
+    this.hasMeans = true;
+    this.version += 1;
   }
 
-  private decode(index: number, down: number): Promise<ImageBitmap> {
-    const { scene, bytes } = this.parts;
-    const picture = scene.textures[index];
-    if (!picture) return Promise.reject(new RangeError(`no eigen texture ${index}`));
-    const decoded = bytes(picture.view).then((data) => decodePicture(data, picture, scene.size, down));
+  private decode(entry: Entry | undefined, down: number): Promise<Piece[]> {
+    if (!entry) return Promise.reject(new RangeError("no such eigen texture"));
+    const { basis, channels, picture } = entry;
+    const decoded = this.parts
+      .bytes(picture.view)
+      .then((data) => decodePieces(data, picture, channels, basis.size, down));
     decoded.catch(() => undefined); // awaited later, or not at all
     return decoded;
   }

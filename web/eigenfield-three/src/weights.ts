@@ -18,6 +18,7 @@ type Rule = (x: number, y: number) => Blend;
 
 const FLAT = 1e-6; // triangles whose area is below this part of their longest side squared count as a line
 const BINS = 32;
+const SLACK = 1e-9; // by which a place on an edge may lie outside both its triangles, or cells, and count as within
 
 /** Weights over n cameras at view-plane places (X, Y, X, Y, ...), by the triangles of the scene. */
 export class ViewWeights {
@@ -92,7 +93,7 @@ function delaunayRule(places: Float64Array, triangles: Uint32Array): Rule {
       const smallest = Math.min(...inside);
       if (smallest > least) [best, least, found] = [t, smallest, inside];
     }
-    if (least < 0) return onSegments(x, y, places, hull);
+    if (least < -SLACK) return onSegments(x, y, places, hull);
     return blend(found.map((weight, i) => [corner(triangles, best, i), weight]));
   };
 }
@@ -239,7 +240,7 @@ function bilinearRule(places: Float64Array, grid: Grid): Rule {
       const depth = cell ? insideness(x, y, places, cell) : -Infinity;
       if (cell && depth > deepest) [best, deepest] = [cell, depth];
     }
-    if (!best || deepest < 0) return onSegments(x, y, places, segments);
+    if (!best || deepest < -SLACK) return onSegments(x, y, places, segments);
     const [s, t] = inCell(x, y, places, best);
     return { camera: best, weight: [(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t] };
   };

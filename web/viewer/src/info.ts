@@ -95,11 +95,19 @@ function facts(info: SceneInfo): Rows {
     ["cameras", `${info.cameras.length}${grid}${held > 0 ? `, ${held} held out` : ""}`],
     ...(view ? [["photographs", `${view.width} × ${view.height}`] as [string, string]] : []),
     ["texels", `${info.size[0]} × ${info.size[1]}`],
+    ...(info.planes.length > 1 ? info.planes.map(plane) : []),
     ["vertices", whole(info.vertices)],
     ["triangles", whole(info.triangles)],
     ["format", info.version],
     ...(info.generator === "" ? [] : [["made by", info.generator] as [string, string]]),
   ];
+}
+
+/** Channels of a plane, and where its mean and eigen textures have other sizes than the atlas. */
+function plane({ channels, mean, bases }: SceneInfo["planes"][number], index: number): [string, string] {
+  const kinds = bases.map(({ textures, grid }) => `${textures} eigen textures of ${grid[0]} × ${grid[1]}`);
+  const parts = [channels === 1 ? "1 channel" : `${channels} channels`, `mean of ${mean[0]} × ${mean[1]}`, ...kinds];
+  return [`plane ${index + 1}`, parts.join(", ")];
 }
 
 function settings({ info }: EigenField): Node[] {

@@ -23,7 +23,7 @@ export const DEFAULTS: Options = {
   count: Infinity,
   weights: "ray",
   mixing: "delaunay",
-  filter: "mixed",
+  filter: "bicubic",
   wireframe: false,
   background: "#15171a",
 };

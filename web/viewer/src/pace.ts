@@ -12,7 +12,7 @@ const ENOUGH = 3; // frames that tell how long one takes
 const STUCK = 400; // milliseconds after which fewer do
 const PATIENCE = 20_000; // milliseconds until a level that was too slow is tried again
 const COARSEST = 0.5; // device pixels a CSS pixel
-const WORK: Readonly<Record<Filter, number>> = { bilinear: 1, mixed: 1.3, bicubic: 4 }; // of a pixel
+const WORK: Readonly<Record<Filter, number>> = { bilinear: 1, bicubic: 1.5 }; // of a pixel
 
 export interface Detail {
   scale: number; // of the canvas's own resolution

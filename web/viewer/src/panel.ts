@@ -66,7 +66,7 @@ export function createPanel(viewer: Viewer): Panel {
   );
   const filter = choice(
     "Texels",
-    [["bilinear", "Bilinear"], ["mixed", "Mean cubic"], ["bicubic", "All cubic"]],
+    [["bilinear", "Bilinear"], ["bicubic", "Bicubic"]],
     (value) => viewer.set({ filter: value }),
   );
   const wireframe = tick("Wireframe", (on) => viewer.set({ wireframe: on }));

@@ -38,6 +38,7 @@ export function createPicture(session: Session, stage: Stage, places: Places, ca
         field.eigen = options.eigen;
         field.mixing = options.mixing;
         field.filter = linear ? "bilinear" : options.filter;
+        field.coarser = scale > 0.7 ? 1 : scale > 0.3 ? 2 : 4;
         field.photograph = picture;
         field.view = options.view === "error" && !picture ? "picture" : options.view;
         // On the plane both ways mean the same; one set of weights needs no map and is the paper's to the last digit.

@@ -104,6 +104,7 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
     field.photograph = null;
     if (field.view === "error") field.view = "picture";
     field.filter = "bilinear"; // two eyes, ninety times a second
+    field.coarser = 1;
     field.weightMode = field.info.facesPlane ? viewer.options().weights : "eye";
     viewer.stage.draw(null, null);
   };

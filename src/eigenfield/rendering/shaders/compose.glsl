@@ -1,0 +1,69 @@
+// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,
+// which surface.glsl then draws (decision 15).
+//
+// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever
+// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All
+// draw into textures whose row 0 is v = 0, and the second and third add to what is there:
+//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies
+//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B
+//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there
+// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a
+// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.
+
+#define LAYERS 64  // most that one draw sums
+#define LEVEL 1e-4 // a height of no more than this is as good as none
+#define MOST 6e4   // halves end at 65504
+
+uniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)
+uniform int firstLayer;
+uniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one
+uniform int channels;
+uniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS
+uniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed
+uniform vec4 bias[LAYERS];
+uniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel
+
+uniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`
+uniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges
+uniform int firstGroup;
+uniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface
+uniform vec3 eye;              // X, Y and height above the view plane
+
+uniform sampler2D coarse;      // a grid's sum
+
+// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over
+// the height. Halves keep that well enough for points near and far.
+vec4 placeOf(vec3 point) {
+  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);
+  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);
+}
+
+// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is
+// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.
+vec2 viewCoordinates(vec4 place) {
+  float part = 1.0 - eye.z * place.z;
+  bool meets = place.w > 0.0 && part > 1e-5;
+  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);
+}
+
+// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.
+vec3 sumTextures(vec2 own) {
+  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);
+  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);
+  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;
+  vec4 weights = vec4(1.0);
+  vec3 sum = vec3(0.0);
+  int entry = 0;
+  for (int group = firstGroup; entry < entries; group++) {
+    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);
+    for (int channel = 0; channel < channels; channel++) {
+      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
+      sum += colours[channel] * dot(weights, four);
+      entry++;
+    }
+  }
+  return sum;
+}
+
+// The value of the grid `coarse` at texture coordinates of the atlas.
+vec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }

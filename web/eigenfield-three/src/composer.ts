@@ -1,0 +1,218 @@
+import {
+  Camera,
+  Color,
+  Scene,
+  Vector3,
+  type BufferGeometry,
+  type DataArrayTexture,
+  type Mesh,
+  type RawShaderMaterial,
+  type Texture,
+  type WebGLRenderTarget,
+  type WebGLRenderer,
+} from "three";
+import type { ViewPlane } from "./info.js";
+import { gridsOf, smaller } from "./memory.js";
+import type { Part } from "./parts.js";
+import { FINER, LAYERS, SUM, makePlacing, makeQuad, makeTarget } from "./passes.js";
+
+/** What is summed: everything that makes a difference to it. */
+export interface Recipe {
+  version: number; // of what is there
+  mean: boolean;
+  only: number | null; // one eigen texture of each basis, as it is; else the first `count`, weighted
+  count: number;
+  weights: Float64Array; // of all textures of all bases
+  eye: [number, number, number] | null; // X, Y, height: each texel looks its weights up in `maps`
+  maps: DataArrayTexture | null;
+}
+
+type Quad = Mesh<BufferGeometry, RawShaderMaterial>;
+
+/** A part's draw of some of its groups. */
+interface Step {
+  part: Part;
+  first: number; // group
+  groups: number;
+  quad: Quad;
+}
+
+interface Grid {
+  target: WebGLRenderTarget;
+  scene: Scene;
+  steps: Step[];
+  places: WebGLRenderTarget | null; // where its texels lie, once weights are looked up
+}
+
+/** Sums means and eigen textures into one texture of the whole atlas, for one viewpoint after the other. */
+export class Composer {
+  private readonly grids: Grid[]; // that of the whole atlas last
+  private composed: Recipe | null = null;
+  private readonly camera = new Camera();
+
+  /** `down`: what is composed has the atlas's side over this. */
+  constructor(
+    atlas: [number, number],
+    parts: Part[],
+    down: number,
+    private readonly mesh: Mesh,
+    private readonly plane: ViewPlane,
+  ) {
+    const means = parts.filter(({ basis }) => !basis).map(({ grid }) => ({ size: grid, channels: 1 }));
+    const bases = parts.filter(({ basis }) => basis).map(({ grid }) => ({ size: grid, grid, channels: 1, count: 1 }));
+    const [own, ...coarser] = gridsOf({ atlas, means, bases });
+    const make = (size: [number, number], mips: boolean): Grid => {
+      const steps = parts.filter(({ grid }) => grid.join() === size.join()).flatMap(stepsOf);
+      const scene = new Scene();
+      steps.forEach(({ quad }, i) => scene.add(Object.assign(quad, { renderOrder: i })));
+      return { target: makeTarget(smaller(size, down), mips), scene, steps, places: null };
+    };
+    const whole = make(own ?? atlas, true);
+    this.grids = coarser.map((size) => make(size, false));
+    for (const { target } of this.grids) {
+      const quad = makeQuad(FINER, [0, 0, 1, 1], { coarse: { value: target.texture } });
+      whole.scene.add(Object.assign(quad, { renderOrder: whole.scene.children.length }));
+    }
+    this.grids.push(whole);
+  }
+
+  /** R, G, B of half-floats with mips, v = 0 in row 0. */
+  get texture(): Texture | null {
+    return this.grids.at(-1)?.target.texture ?? null;
+  }
+
+  /** Fills `texture`, unless it holds that already. To be called before a draw by `camera`, or within one. */
+  compose(renderer: WebGLRenderer, camera: Camera, recipe: Recipe): void {
+    if (this.composed && isSame(this.composed, recipe)) return;
+    this.composed = recipe;
+    within(renderer, camera, () => {
+      for (const grid of this.grids) {
+        if (recipe.eye && !grid.places && grid.steps.some(({ part }) => part.basis)) this.findPlaces(renderer, grid);
+        for (const step of grid.steps) setStep(step, grid, recipe);
+        this.draw(renderer, grid.scene, grid.target);
+      }
+    });
+  }
+
+  dispose(): void {
+    for (const { target, places, scene } of this.grids) {
+      target.dispose();
+      places?.dispose();
+      for (const quad of scene.children as Quad[]) {
+        quad.geometry.dispose();
+        quad.material.dispose();
+      }
+    }
+  }
+
+  private findPlaces(renderer: WebGLRenderer, grid: Grid): void {
+    grid.places = makeTarget([grid.target.width, grid.target.height], false);
+    const { scene, free } = makePlacing(this.mesh, this.plane, grid.places);
+    this.draw(renderer, scene, grid.places);
+    free();
+  }
+
+  private draw(renderer: WebGLRenderer, scene: Scene, target: WebGLRenderTarget): void {
+    renderer.setRenderTarget(target);
+    renderer.state.buffers.color.setMask(true); // whatever the material before had
+    renderer.clear(true, false, false);
+    renderer.render(scene, this.camera);
+  }
+}
+
+function stepsOf(part: Part): Step[] {
+  const channels = part.colours.length;
+  const [all, most] = [part.scale.length / (4 * channels), Math.floor(LAYERS / channels)];
+  const steps: Step[] = [];
+  for (let first = 0; first < all; first += most) {
+    const colours = Array.from({ length: LAYERS }, (_, i) => new Vector3(...(part.colours[i] ?? [0, 0, 0])));
+    const sharing = part.basis ? 1 : 4;
+    const quad = makeQuad(SUM, part.rectangle, {
+      stored: { value: part.stored },
+      firstLayer: { value: Math.floor((first * channels) / sharing) },
+      sharing: { value: sharing },
+      channels: { value: channels },
+      entries: { value: 0 },
+      scale: { value: new Float32Array(4 * LAYERS) },
+      bias: { value: new Float32Array(4 * LAYERS) },
+      colours: { value: colours },
+      rayWeights: { value: false },
+      weightMaps: { value: null },
+      firstGroup: { value: (part.basis?.group ?? 0) + first },
+      places: { value: null },
+      eye: { value: new Vector3() },
+    });
+    steps.push({ part, first, groups: Math.min(most, all - first), quad });
+  }
+  return steps;
+}
+
+/** Gives a step the numbers of what is to be summed; those of other textures are zero. */
+function setStep({ part, first, groups, quad }: Step, { places }: Grid, recipe: Recipe): void {
+  const { basis, colours } = part;
+  const { uniforms } = quad.material;
+  const set = (name: string, value: unknown): void => {
+    const uniform = uniforms[name];
+    if (uniform) uniform.value = value;
+  };
+  const rays = basis !== null && recipe.eye !== null && recipe.only === null;
+  const factors = Array.from({ length: 4 * groups }, (_, i) => factorOf(basis, 4 * first + i, recipe, rays));
+  const used = Math.ceil((factors.findLastIndex((factor) => factor !== 0) + 1) / 4);
+  const [scale, bias] = [uniforms["scale"]?.value as Float32Array, uniforms["bias"]?.value as Float32Array];
+  const channels = colours.length;
+  for (let i = 0; i < 4 * channels * used; i++) {
+    const factor = factors[4 * Math.floor(i / (4 * channels)) + (i % 4)] ?? 0;
+    scale[i] = factor * (part.scale[4 * channels * first + i] ?? 0);
+    bias[i] = factor * (part.bias[4 * channels * first + i] ?? 0);
+  }
+  set("entries", channels * used);
+  set("rayWeights", rays);
+  set("weightMaps", rays ? recipe.maps : null);
+  set("places", rays ? (places?.texture ?? null) : null);
+  if (recipe.eye) (uniforms["eye"]?.value as Vector3).set(...recipe.eye);
+  quad.visible = used > 0;
+  quad.material.uniformsNeedUpdate = true;
+}
+
+/** What texture j of a part is multiplied with before its values are made: 0 if it is not summed. */
+function factorOf(basis: Part["basis"], j: number, recipe: Recipe, rays: boolean): number {
+  if (!basis) return recipe.mean ? 1 : 0;
+  if (!basis.ready[j]) return 0;
+  if (recipe.only !== null) return j === recipe.only ? 1 : 0;
+  if (j >= recipe.count) return 0;
+  return rays ? 1 : (recipe.weights[basis.column + j] ?? 0);
+}
+
+function isSame(one: Recipe, other: Recipe): boolean {
+  const { weights, eye, ...rest } = one;
+  const same = Object.entries(rest).every(([name, value]) => other[name as keyof Recipe] === value);
+  if (!same || (eye === null) !== (other.eye === null)) return false;
+  if (one.only !== null) return true; // as it is, wherever the eye
+  if (eye) return eye.every((value, i) => value === other.eye?.[i]);
+  return weights.every((value, i) => value === other.weights[i]);
+}
+
+const black = new Color(0);
+const kept = new Color();
+
+/** Calls `work`, which draws into targets, within a draw of `camera`, and puts back what three.js has set. */
+function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
+  const target = renderer.getRenderTarget();
+  const [face, level] = [renderer.getActiveCubeFace(), renderer.getActiveMipmapLevel()];
+  const { autoClear, info } = renderer;
+  const [presenting, shadows, alpha] = [renderer.xr.enabled, renderer.shadowMap.autoUpdate, renderer.getClearAlpha()];
+  const [frame, autoReset] = [info.render.frame, info.autoReset];
+  renderer.getClearColor(kept);
+  renderer.setClearColor(black, 0);
+  renderer.autoClear = renderer.xr.enabled = renderer.shadowMap.autoUpdate = info.autoReset = false;
+  work();
+  info.render.frame = frame; // it is one frame to whoever counts them
+  Object.assign(info, { autoReset });
+  Object.assign(renderer, { autoClear });
+  renderer.xr.enabled = presenting;
+  renderer.shadowMap.autoUpdate = shadows;
+  renderer.setClearColor(kept, alpha);
+  renderer.setRenderTarget(target, face, level);
+  const { viewport } = camera as { viewport?: Parameters<WebGLRenderer["state"]["viewport"]>[0] };
+  if (viewport) renderer.state.viewport(viewport); // one eye of two
+}

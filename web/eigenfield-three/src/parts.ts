@@ -1,0 +1,85 @@
+// Means and bases as compose.glsl takes them: where they lie, and the numbers that make values of what is stored.
+
+import type { Texture } from "three";
+import type { SceneDocument } from "./document.js";
+import { groupsOf, type Plan } from "./memory.js";
+import type { Textures } from "./textures.js";
+
+/** A mean, or the textures of a basis. */
+export interface Part {
+  stored: Texture;
+  grid: [number, number];
+  rectangle: [number, number, number, number]; // of the grid: left, top, right, bottom in 0..1
+  colours: [number, number, number][]; // of the value 1 of each channel
+  scale: Float32Array; // four numbers for each channel of each group of textures: value = stored * scale + bias
+  bias: Float32Array;
+  basis: BasisPart | null; // null: a mean
+}
+
+interface BasisPart {
+  ready: boolean[];
+  column: number; // of its first texture in the weights
+  group: number; // its first layer in the maps of weights
+}
+
+/** All parts of a scene, of each basis as many textures as the plan has room for. */
+export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): Part[] {
+  const parts: Part[] = [];
+  let [channel, number, column, group] = [0, 0, 0, 0];
+  scene.planes.forEach(({ channels, mean, bases }, i) => {
+    const colours = scene.colours.slice(channel, channel + channels);
+    channel += channels;
+    const grid = textures.needs.means[i]?.size ?? [1, 1];
+    const stored = textures.means[i];
+    const numbers = meanNumbers(mean, channels);
+    if (stored) parts.push({ stored, grid, rectangle: [0, 0, 1, 1], colours, ...numbers, basis: null });
+    for (const { size, grid, corner, pictures, count } of bases) {
+      const stored = textures.bases[number];
+      const ready = textures.ready[number++] ?? [];
+      const used = Math.min(count, plan.usable);
+      if (used && stored) {
+        const [left, top] = [corner[0] / grid[0], corner[1] / grid[1]];
+        const scale = pictures.flatMap((picture) => picture.scale);
+        const zero = pictures.flatMap((picture) => picture.zero);
+        parts.push({
+          stored,
+          grid,
+          rectangle: [left, top, left + size[0] / grid[0], top + size[1] / grid[1]],
+          colours,
+          ...basisNumbers(scale, zero, channels, used),
+          basis: { ready, column, group },
+        });
+      }
+      column += count;
+      group += used ? groupsOf(used) : 0;
+    }
+  });
+  return parts;
+}
+
+type Numbers = Pick<Part, "scale" | "bias">;
+
+/** Of a mean channel c is component c % 4, so that three of four scales are zero; grey pictures are the first. */
+function meanNumbers({ scale, zero }: { scale: number[]; zero: number[] }, channels: number): Numbers {
+  const numbers = { scale: new Float32Array(4 * channels), bias: new Float32Array(4 * channels) };
+  for (let channel = 0; channel < channels; channel++) {
+    const at = 4 * channel + (channel % 4);
+    numbers.scale[at] = 255 * (scale[channel] ?? 0);
+    numbers.bias[at] = -(zero[channel] ?? 0) * (scale[channel] ?? 0);
+  }
+  return numbers;
+}
+
+function basisNumbers(scale: number[], zero: number[], channels: number, used: number): Numbers {
+  const length = 4 * channels * groupsOf(used);
+  const numbers = { scale: new Float32Array(length), bias: new Float32Array(length) };
+  for (let j = 0; j < used; j++) {
+    for (let channel = 0; channel < channels; channel++) {
+      const at = 4 * (channels * Math.floor(j / 4) + channel) + (j % 4);
+      const own = scale[channels * j + channel] ?? 0;
+      numbers.scale[at] = 255 * own;
+      numbers.bias[at] = -(zero[channels * j + channel] ?? 0) * own;
+    }
+  }
+  return numbers;
+}

@@ -1,0 +1,157 @@
+// The passes of compose.glsl as three.js draws them: quads that add to a target, and the mesh laid out in the atlas.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  CustomBlending,
+  DoubleSide,
+  GLSL3,
+  HalfFloatType,
+  InstancedBufferGeometry,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Mesh,
+  NearestFilter,
+  NoBlending,
+  OneFactor,
+  RawShaderMaterial,
+  Scene,
+  Sphere,
+  Vector2,
+  Vector4,
+  WebGLRenderTarget,
+  type IUniform,
+} from "three";
+import compose from "../../../src/eigenfield/rendering/shaders/compose.glsl?raw";
+import cubic from "../../../src/eigenfield/rendering/shaders/cubic.glsl?raw";
+import { cross, dot, planeCoordinates, type Vector, type ViewPlane } from "./info.js";
+
+export const LAYERS = 64; // that the shader sums in one draw
+const REACH = 2; // texels beside a chart that the widest filter reads
+
+const HEAD = `
+precision highp float;
+precision highp int;
+precision highp sampler2D;
+precision highp sampler2DArray;
+${cubic}${compose}`;
+const QUAD = `
+precision highp float;
+uniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1
+in vec3 position;
+out vec2 own;
+void main() {
+  own = position.xy;
+  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);
+}
+`;
+const SPREAD = `
+precision highp float;
+uniform vec2 texel;     // of the target, in clip space
+uniform vec2 shifts[SHIFTS];
+in vec2 position;       // texture coordinates
+in vec3 onPlane;
+out vec3 point;
+void main() {
+  point = onPlane;
+  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);
+}
+`;
+const PLACE = `${HEAD}
+in vec3 point;
+out vec4 place;
+void main() { place = placeOf(point); }
+`;
+export const SUM = "sumTextures";
+export const FINER = "finerValue";
+
+/** A quad over a rectangle of what is drawn into; it adds `value`, a function of compose.glsl, of its coordinates. */
+export function makeQuad(
+  value: typeof SUM | typeof FINER,
+  rectangle: [number, number, number, number],
+  uniforms: Record<string, IUniform>,
+): Mesh<BufferGeometry, RawShaderMaterial> {
+  const material = new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: QUAD,
+    fragmentShader: `${HEAD}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${value}(own), 1.0); }\n`,
+    uniforms: { rectangle: { value: new Vector4(...rectangle) }, ...uniforms },
+    side: DoubleSide,
+    blending: CustomBlending,
+    blendSrc: OneFactor,
+    blendDst: OneFactor,
+    depthTest: false,
+    depthWrite: false,
+  });
+  const geometry = new BufferGeometry();
+  const corners = [0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0];
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(corners), 3));
+  geometry.setIndex([0, 1, 2, 2, 1, 3]);
+  geometry.boundingSphere = new Sphere(); // asked for, and not needed
+  const quad = new Mesh(geometry, material);
+  quad.frustumCulled = false;
+  return quad;
+}
+
+/** Half-floats to draw into: with mips for what is drawn from, texel by texel else. */
+export function makeTarget([width, height]: [number, number], mips: boolean): WebGLRenderTarget {
+  return new WebGLRenderTarget(width, height, {
+    type: HalfFloatType,
+    depthBuffer: false,
+    generateMipmaps: mips,
+    minFilter: mips ? LinearMipmapLinearFilter : NearestFilter,
+    magFilter: mips ? LinearFilter : NearestFilter,
+  });
+}
+
+/** X, Y and height of a point of the capture's world above the view plane, the height in half widths of the array. */
+export function onPlane(plane: ViewPlane, point: Vector): Vector {
+  const normal = cross(plane.right, plane.up);
+  const from: Vector = [point[0] - plane.origin[0], point[1] - plane.origin[1], point[2] - plane.origin[2]];
+  return [...planeCoordinates(plane, point), dot(from, normal) / (Math.max(...plane.extent) || 1)];
+}
+
+/** A scene that draws where each texel of a target lies. The mesh is drawn beside itself, too, for the texels beside
+ * its charts; the nearest comes last, and stays. */
+export function makePlacing(
+  mesh: Mesh,
+  plane: ViewPlane,
+  target: WebGLRenderTarget,
+): { scene: Scene; free: () => void } {
+  const position = mesh.geometry.getAttribute("position");
+  const uv = mesh.geometry.getAttribute("uv");
+  const places = new Float32Array(3 * position.count);
+  const coordinates = new Float32Array(2 * position.count);
+  for (let i = 0; i < position.count; i++) {
+    places.set(onPlane(plane, [position.getX(i), position.getY(i), position.getZ(i)]), 3 * i);
+    coordinates.set([uv.getX(i), uv.getY(i)], 2 * i);
+  }
+  const steps = Array.from({ length: 2 * REACH + 1 }, (_, i) => i - REACH);
+  const shifts = steps.flatMap((y) => steps.map((x) => new Vector2(x, y)));
+  shifts.sort((a, b) => b.lengthSq() - a.lengthSq());
+  const geometry = new InstancedBufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(coordinates, 2));
+  geometry.setAttribute("onPlane", new BufferAttribute(places, 3));
+  geometry.setIndex(mesh.geometry.index ? new BufferAttribute(mesh.geometry.index.array, 1) : null);
+  geometry.instanceCount = shifts.length;
+  geometry.boundingSphere = new Sphere();
+  const material = new RawShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: SPREAD.replace("SHIFTS", String(shifts.length)),
+    fragmentShader: PLACE,
+    uniforms: { texel: { value: new Vector2(2 / target.width, 2 / target.height) }, shifts: { value: shifts } },
+    side: DoubleSide,
+    blending: NoBlending,
+    depthTest: false,
+    depthWrite: false,
+  });
+  const spread = new Mesh(geometry, material);
+  spread.frustumCulled = false;
+  const scene = new Scene();
+  scene.add(spread);
+  const free = (): void => {
+    geometry.dispose();
+    material.dispose();
+  };
+  return { scene, free };
+}
