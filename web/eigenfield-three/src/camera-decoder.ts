@@ -31,7 +31,7 @@ export function decodeCameras(bytes: Uint8Array, where = "cameras"): CodedCamera
   const decoder = tableDecoder(bytes.subarray(body));
   const grid = gridded ? readGrid(decoder, rows * columns, count, where) : null;
   const table = readLines(decoder, count, NUMBERS, (kind & FROM_BEFORE) !== 0);
-  decoder.checkEnd();
+  decoder.checkEnd(where);
   const made = { intrinsics: new Float32Array(5 * count), poses: new Float32Array(12 * count) };
   const base = [...doubles.subarray(7, 12), 0, 0, 0, ...doubles.subarray(12)];
   const first = rotation(doubles[3]!, doubles[4]!, doubles[5]!, doubles[6]!);

@@ -58,8 +58,8 @@ export class Composer {
     private readonly mesh: Mesh,
     private readonly plane: ViewPlane,
   ) {
-    const means = parts.filter(({ basis }) => !basis).map(({ grid }) => ({ size: grid, channels: 1 }));
-    const bases = parts.filter(({ basis }) => basis).map(({ grid }) => ({ size: grid, grid, channels: 1, count: 1 }));
+    const means = parts.filter(({ basis }) => !basis).map(({ grid }) => ({ size: grid }));
+    const bases = parts.filter(({ basis }) => basis);
     const [own, ...coarser] = gridsOf({ atlas, means, bases });
     const make = (size: [number, number], mips: boolean): Grid => {
       const steps = parts.filter(({ grid }) => grid.join() === size.join()).flatMap(stepsOf);

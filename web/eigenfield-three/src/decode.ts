@@ -1,9 +1,9 @@
 // Pictures of codes, decoded by the browser with colour management off.
 
-import { rowsOf, type Picture } from "./planes.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
 import * as limits from "./limits.js";
+import type { Picture } from "./planes.js";
 
 const OPTIONS: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
 
@@ -21,10 +21,11 @@ const PROBES: Record<string, string> = {
 export function checkPicture(bytes: ArrayBuffer, picture: Picture, size: [number, number] | null): [number, number] {
   const header = readHeader(bytes);
   if (!header) throw damaged(picture.where, "no picture");
-  const { width, height } = header;
+  const { width, height, bits } = header;
   if (size && (width !== size[0] || height !== size[1])) {
     throw damaged(picture.where, `a picture of ${width} x ${height}, not of ${size[0]} x ${size[1]}`);
   }
+  if (picture.bits !== 8 && picture.bits !== bits) throw damaged(picture.where, `no picture of ${picture.bits} bits`);
   const texels = width * height;
   if (!texels || width > limits.MAX_SIDE || height > limits.MAX_STACKED || texels > limits.MAX_TEXELS) {
     throw damaged(picture.where, `a picture of ${width} x ${height}`);
@@ -61,16 +62,15 @@ export interface Piece {
   rows: number;
 }
 
-/** Decodes a mean or eigen textures of `channels` into pieces in their order: a whole texture of R, G and B, or one
- * channel of a texture. Whoever takes them closes them. */
+/** Decodes a mean or eigen textures into pieces in their order: a whole texture of R, G and B, or one channel of a
+ * texture. Whoever takes them closes them. */
 export async function decodePieces(
   bytes: ArrayBuffer,
   picture: Picture,
-  channels: number,
   size: [number, number] | null,
   down = 1,
 ): Promise<Piece[]> {
-  const count = rowsOf(channels, 1, picture.textures);
+  const count = picture.pieces * picture.textures;
   const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
   const bitmap = await decodePicture(bytes, picture, [width, rows], count === 1 ? down : 1);
   if (count === 1) return [{ bitmap, row: 0, rows: bitmap.height }];

@@ -21,6 +21,12 @@ export interface Accessor {
   where: string;
 }
 
+/** Bytes that a decoder of ours reads: docs/coding.md. */
+export interface Stream {
+  view: number;
+  where: string;
+}
+
 export interface SceneDocument {
   version: string;
   generator: string;
@@ -29,9 +35,8 @@ export interface SceneDocument {
   names: string[];
   heldOut: boolean[];
   reference: number;
-  intrinsics: Accessor;
-  poses: Accessor;
-  sizes: Accessor;
+  calibration: Stream | { intrinsics: Accessor; poses: Accessor };
+  sizes: Accessor | [number, number]; // of each photograph, or of all
   colour: Accessor | null;
   origin: [number, number, number];
   right: [number, number, number];
@@ -41,6 +46,7 @@ export interface SceneDocument {
   settings: JsonObject;
   scores: JsonObject;
   views: View[];
+  mesh: Stream | null; // the proxy, of which what follows is then a coarse form for other viewers
   position: Accessor;
   uv: Accessor;
   indices: Accessor;
@@ -50,6 +56,7 @@ export interface SceneDocument {
 type ComponentType = 5121 | 5123 | 5125 | 5126;
 const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
 const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
+const USHORT = 5123;
 const UINT = 5125;
 
 /** Whether a glTF document says that it is a scene of ours. */
@@ -69,15 +76,15 @@ export function readDocument(json: Json): SceneDocument {
   const version = checkVersion(extension);
   const views = readViews(root);
   const accessor = accessorReader(root, views);
-  const pictureView = (value: Value): number => value.integer(0, views.length - 1);
+  const viewOf: ViewReader = (value) => value.integer(0, views.length - 1);
 
   checkNodes(root);
-  const preview = previewOf(root, pictureView);
+  const preview = previewOf(root, viewOf);
   const cameras = extension.key("cameras");
   const names = namesOf(cameras);
   const heldOut = heldOutOf(cameras, names.length);
   const encoded = heldOut.filter((out) => !out).length;
-  const planes = readPlanes(extension, encoded, preview, accessor, pictureView);
+  const planes = readPlanes(extension, encoded, preview, accessor, viewOf);
   const colours = readColours(extension, planes);
   const count = names.length;
   const colour = cameras.key("colour");
@@ -88,8 +95,9 @@ export function readDocument(json: Json): SceneDocument {
   const primitive = root.key("meshes").at(0).key("primitives").at(0);
   const mode = primitive.key("mode");
   if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
-  const attributes = primitive.key("attributes");
+  const [attributes, indices] = [primitive.key("attributes"), primitive.key("indices")];
   const generator = extension.key("generator");
+  const mesh = extension.key("mesh");
   return {
     version,
     generator: generator.exists ? generator.text(limits.MAX_NAME) : "",
@@ -98,18 +106,20 @@ export function readDocument(json: Json): SceneDocument {
     names,
     heldOut,
     reference: extension.key("reference").integer(0, count - 1),
-    intrinsics: accessor(cameras.key("intrinsics"), "SCALAR", [FLOAT], 5 * count),
-    poses: accessor(cameras.key("poses"), "SCALAR", [FLOAT], 12 * count),
-    sizes: accessor(cameras.key("sizes"), "SCALAR", [UINT], 2 * count),
+    calibration: calibrationOf(cameras, count, accessor, viewOf),
+    sizes: sizesOf(cameras, count, accessor),
     colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
     ...readViewPlane(viewPlane),
-    triangles: triangles.exists ? trianglesOf(accessor(triangles, "SCALAR", [UINT], null)) : null,
+    triangles: triangles.exists
+      ? trianglesOf(accessor(triangles, "SCALAR", [USHORT, UINT], null), 2 * limits.MAX_CAMERAS)
+      : null,
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
     views,
+    mesh: mesh.exists ? streamOf(mesh, mesh.key("bufferView"), viewOf) : null,
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
-    indices: trianglesOf(accessor(primitive.key("indices"), "SCALAR", [5121, 5123, UINT], null)),
+    indices: trianglesOf(accessor(indices, "SCALAR", [5121, USHORT, UINT], null), limits.MAX_TRIANGLES),
     preview,
   };
 }
@@ -172,6 +182,8 @@ function checkNodes(root: Value): void {
   }
 }
 
+/** The buffer view that a value names. */
+export type ViewReader = (value: Value) => number;
 export type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
 
 /** Reads accessors by their index; those with a `count` must have it, and lie packed. */
@@ -207,16 +219,20 @@ function limited(accessor: Accessor, most: number): Accessor {
   return accessor;
 }
 
-function trianglesOf(accessor: Accessor): Accessor {
+function trianglesOf(accessor: Accessor, most: number): Accessor {
   if (accessor.count % 3) throw damaged(accessor.where, "torn triangles");
-  return limited(accessor, 3 * limits.MAX_TRIANGLES);
+  return limited(accessor, 3 * most);
 }
 
-function previewOf(root: Value, pictureView: (value: Value) => number): number | null {
+export function streamOf(entry: Value, view: Value, viewOf: ViewReader): Stream {
+  return { view: viewOf(view), where: entry.where };
+}
+
+function previewOf(root: Value, viewOf: ViewReader): number | null {
   const images = root.key("images");
   if (!images.exists) return null;
   const view = images.at(0).key("bufferView");
-  return view.exists ? pictureView(view) : null;
+  return view.exists ? viewOf(view) : null;
 }
 
 function namesOf(cameras: Value): string[] {
@@ -239,6 +255,28 @@ function heldOutOf(cameras: Value, count: number): boolean[] {
   }
   if (flags.every((out) => out)) throw held.wrong("all cameras are held out");
   return flags;
+}
+
+function calibrationOf(
+  cameras: Value,
+  count: number,
+  accessor: AccessorReader,
+  viewOf: ViewReader,
+): SceneDocument["calibration"] {
+  const coded = cameras.key("coded");
+  if (coded.exists) return streamOf(coded, coded, viewOf);
+  return {
+    intrinsics: accessor(cameras.key("intrinsics"), "SCALAR", [FLOAT], 5 * count),
+    poses: accessor(cameras.key("poses"), "SCALAR", [FLOAT], 12 * count),
+  };
+}
+
+function sizesOf(cameras: Value, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
+  const one = cameras.key("size");
+  if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT], 2 * count);
+  const [width = 0, height = 0] = one.numbers(2, 1, limits.MAX_CAMERA_SIDE);
+  if (!Number.isInteger(width) || !Number.isInteger(height)) throw one.wrong("no whole numbers");
+  return [width, height];
 }
 
 function readViewPlane(value: Value): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {

@@ -36,6 +36,11 @@ export function truncated(has: number, needed: number): SceneError {
   );
 }
 
+/** A part of the file that ends before it should. */
+export function cutOff(where: string): SceneError {
+  return new SceneError("truncated", `The file is cut off (${where}); download or copy it again.`, where);
+}
+
 /** Whatever was thrown, as an error for people. */
 export function asSceneError(reason: unknown, where = ""): SceneError {
   if (reason instanceof SceneError) return reason;

@@ -4,6 +4,7 @@ export interface PictureHeader {
   type: string;
   width: number;
   height: number;
+  bits: number | null; // of a sample of an AVIF
 }
 
 /** The header of a PNG, JPEG, WebP or AVIF picture, or null. */
@@ -23,7 +24,7 @@ function fourCC(data: DataView, at: number): string {
 
 function png(data: DataView): PictureHeader | null {
   if (data.getUint32(0) !== 0x89504e47 || data.getUint32(4) !== 0x0d0a1a0a || fourCC(data, 12) !== "IHDR") return null;
-  return { type: "image/png", width: data.getUint32(16), height: data.getUint32(20) };
+  return { type: "image/png", width: data.getUint32(16), height: data.getUint32(20), bits: null };
 }
 
 function jpeg(data: DataView): PictureHeader | null {
@@ -35,7 +36,8 @@ function jpeg(data: DataView): PictureHeader | null {
       continue;
     }
     const frame = marker >= 0xffc0 && marker <= 0xffcf && ![0xffc4, 0xffc8, 0xffcc].includes(marker);
-    if (frame) return { type: "image/jpeg", height: data.getUint16(at + 5), width: data.getUint16(at + 7) };
+    const side = (from: number): number => data.getUint16(at + from);
+    if (frame) return { type: "image/jpeg", width: side(7), height: side(5), bits: null };
     if (marker < 0xff01 || marker === 0xffda || marker === 0xffd9) return null;
     at += 2 + data.getUint16(at + 2);
   }
@@ -43,22 +45,23 @@ function jpeg(data: DataView): PictureHeader | null {
 
 function webp(data: DataView): PictureHeader | null {
   if (fourCC(data, 0) !== "RIFF" || fourCC(data, 8) !== "WEBP") return null;
-  const type = "image/webp";
+  const kept = { type: "image/webp", bits: null };
   const kind = fourCC(data, 12);
   const uint24 = (at: number): number => data.getUint16(at, true) + 65536 * data.getUint8(at + 2);
-  if (kind === "VP8X") return { type, width: 1 + uint24(24), height: 1 + uint24(27) };
+  if (kind === "VP8X") return { ...kept, width: 1 + uint24(24), height: 1 + uint24(27) };
   if (kind === "VP8L") {
     const bits = data.getUint32(21, true);
-    return { type, width: 1 + (bits & 0x3fff), height: 1 + ((bits >>> 14) & 0x3fff) };
+    return { ...kept, width: 1 + (bits & 0x3fff), height: 1 + ((bits >>> 14) & 0x3fff) };
   }
   if (kind !== "VP8 ") return null;
-  return { type, width: data.getUint16(26, true) & 0x3fff, height: data.getUint16(28, true) & 0x3fff };
+  return { ...kept, width: data.getUint16(26, true) & 0x3fff, height: data.getUint16(28, true) & 0x3fff };
 }
 
-/** The largest `ispe` of the file: the picture's own, or that of the grid it is put together from. */
+/** The largest `ispe` of the file: the picture's own, or that of the grid it is put together from; the first `av1C`. */
 function avif(data: DataView): PictureHeader | null {
   if (fourCC(data, 4) !== "ftyp") return null;
-  let found: PictureHeader | null = null;
+  let found: { width: number; height: number } | null = null;
+  let bits: number | null = null;
   const walk = (from: number, to: number): void => {
     for (let at = from; at + 8 <= to; ) {
       const size = data.getUint32(at);
@@ -69,11 +72,15 @@ function avif(data: DataView): PictureHeader | null {
       if (kind === "iprp" || kind === "ipco") walk(at + 8, end);
       if (kind === "ispe") {
         const [width, height] = [data.getUint32(at + 12), data.getUint32(at + 16)];
-        if (!found || width * height > found.width * found.height) found = { type: "image/avif", width, height };
+        if (!found || width * height > found.width * found.height) found = { width, height };
+      }
+      if (kind === "av1C") {
+        const flags = data.getUint8(at + 10);
+        bits ??= flags & 0x40 ? (flags & 0x20 ? 12 : 10) : 8;
       }
       at = end;
     }
   };
   walk(0, data.byteLength);
-  return found;
+  return found && { type: "image/avif", ...(found as { width: number; height: number }), bits };
 }

@@ -1,11 +1,15 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
+import { decodeCameras } from "./camera-decoder.js";
 import type { Accessor, SceneDocument } from "./document.js";
-import { SceneError, damaged } from "./errors.js";
+import { cutOff, damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import type { Basis } from "./planes.js";
+import { decodeWeights } from "./weight-decoder.js";
+
+const SHORTEST = 1e-6; // of focal lengths, in pixels
 
 export type Vector = [number, number, number];
 export type Matrix3rows = [Vector, Vector, Vector];
@@ -62,49 +66,79 @@ export interface PlaneInfo {
 /** Bytes of a buffer view. */
 export type ViewBytes = (view: number) => Promise<ArrayBuffer>;
 
+type Numbers = Float32Array | Uint32Array | Uint16Array;
+
 /** The numbers of an accessor, read whole. */
-export async function readNumbers(
-  accessor: Accessor,
-  scene: SceneDocument,
-  bytes: ViewBytes,
-): Promise<Float32Array | Uint32Array> {
+export async function readNumbers(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Numbers> {
   const view = await bytes(accessor.view);
   const needed = scene.views[accessor.view]?.length ?? Infinity;
   if (view.byteLength < needed) throw cutOff(accessor.where);
   const count = accessor.count * accessor.items;
-  const copy = view.slice(accessor.offset, accessor.offset + 4 * count);
+  const copy = view.slice(accessor.offset, accessor.offset + (accessor.type === 5123 ? 2 : 4) * count);
   if (accessor.type === 5125) return new Uint32Array(copy);
-  const numbers = new Float32Array(copy);
+  if (accessor.type === 5123) return new Uint16Array(copy);
+  return limited(new Float32Array(copy), accessor.where);
+}
+
+function limited<T extends Numbers>(numbers: T, where: string): T {
   for (const number of numbers) {
-    if (!(Math.abs(number) <= limits.MAX_NUMBER)) throw damaged(accessor.where, `${number} among its numbers`);
+    if (!(Math.abs(number) <= limits.MAX_NUMBER)) throw damaged(where, `${number} among its numbers`);
   }
   return numbers;
 }
 
-export function cutOff(where: string): SceneError {
-  return new SceneError("truncated", `The file is cut off (${where}); download or copy it again.`, where);
-}
-
 export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promise<CaptureCamera[]> {
-  const [intrinsics, poses, sizes, colour] = await Promise.all([
-    readNumbers(scene.intrinsics, scene, bytes),
-    readNumbers(scene.poses, scene, bytes),
-    readNumbers(scene.sizes, scene, bytes),
+  const [{ lenses, poses }, sizes, colour] = await Promise.all([
+    readCalibration(scene, bytes),
+    readSizes(scene, bytes),
     scene.colour ? readNumbers(scene.colour, scene, bytes) : null,
   ]);
   return scene.names.map((name, i) => {
-    const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = intrinsics.subarray(5 * i, 5 * i + 5);
-    if (!(fx > 0 && fy > 0)) throw damaged(scene.intrinsics.where, `focal lengths of "${name}"`);
-    const { R, t } = poseOf([...poses.subarray(12 * i, 12 * i + 12)], scene.poses.where, name);
-    const [width = 0, height = 0] = sizes.subarray(2 * i, 2 * i + 2);
+    const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
+    if (!(fx > SHORTEST && fy > SHORTEST)) throw damaged(lenses.where, `focal lengths of "${name}"`);
+    const { R, t } = poseOf([...poses.numbers.subarray(12 * i, 12 * i + 12)], poses.where, name);
+    const [width = 0, height = 0] = sizes.numbers.subarray(2 * i, 2 * i + 2);
     const largest = Math.max(width, height);
     if (!width || !height || largest > limits.MAX_CAMERA_SIDE || width * height > limits.MAX_CAMERA_PIXELS) {
-      throw damaged(scene.sizes.where, `"${name}" is ${width} x ${height} pixels`);
+      throw damaged(sizes.where, `"${name}" is ${width} x ${height} pixels`);
     }
     const K: Matrix3rows = [[fx, skew, cx], [0, fy, cy], [0, 0, 1]];
     const [gain, offset] = colour ? coloursOf([...colour.subarray(6 * i, 6 * i + 6)], scene, name) : [null, null];
     return { name, K, R, t, centre: centreOf(R, t), width, height, gain, offset };
   });
+}
+
+/** Numbers and where the file has them. */
+interface Table {
+  numbers: Numbers;
+  where: string;
+}
+
+async function readTable(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Table> {
+  return { numbers: await readNumbers(accessor, scene, bytes), where: accessor.where };
+}
+
+/** Five numbers of each camera's lens, twelve of its pose. */
+async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<{ lenses: Table; poses: Table }> {
+  const { calibration, names } = scene;
+  if ("intrinsics" in calibration) {
+    const { intrinsics, poses } = calibration;
+    return { lenses: await readTable(intrinsics, scene, bytes), poses: await readTable(poses, scene, bytes) };
+  }
+  const { view, where } = calibration;
+  const coded = decodeCameras(new Uint8Array(await bytes(view)), where);
+  const count = coded.poses.length / 12;
+  if (count !== names.length) throw damaged(where, `${count} cameras in it, and ${names.length} names`);
+  const table = (numbers: Float32Array): Table => ({ numbers: limited(numbers, where), where });
+  return { lenses: table(coded.intrinsics), poses: table(coded.poses) };
+}
+
+/** Width and height of each photograph. */
+async function readSizes(scene: SceneDocument, bytes: ViewBytes): Promise<Table> {
+  if (!Array.isArray(scene.sizes)) return readTable(scene.sizes, scene, bytes);
+  const [width, height] = scene.sizes;
+  const numbers = Uint32Array.from({ length: 2 * scene.names.length }, (_, i) => (i % 2 ? height : width));
+  return { numbers, where: "its cameras' size" };
 }
 
 function poseOf(p: number[], where: string, name: string): { R: Matrix3rows; t: Vector } {
@@ -133,9 +167,8 @@ function coloursOf(numbers: number[], scene: SceneDocument, name: string): [numb
 /** The (encoded cameras) x (eigen textures) weights, row by row, the bases of all planes side by side. */
 export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promise<Float32Array> {
   const bases = basesOf(scene);
-  const accessors = bases.flatMap(({ weights }) => (weights ? [weights] : []));
-  const parts = await Promise.all(accessors.map((accessor) => readNumbers(accessor, scene, bytes)));
   const rows = scene.heldOut.filter((out) => !out).length;
+  const parts = await Promise.all(bases.map((basis) => readOwnWeights(basis, rows, scene, bytes)));
   const total = bases.reduce((sum, { count }) => sum + count, 0);
   const merged = new Float32Array(rows * total);
   let column = 0;
@@ -147,6 +180,20 @@ export async function readWeights(scene: SceneDocument, bytes: ViewBytes): Promi
     column += width;
   }
   return merged;
+}
+
+async function readOwnWeights(
+  { weights, count }: Basis,
+  rows: number,
+  scene: SceneDocument,
+  bytes: ViewBytes,
+): Promise<Numbers> {
+  if (!weights) return new Float32Array(0);
+  if ("type" in weights) return readNumbers(weights, scene, bytes);
+  const { view, where } = weights;
+  const { cameras, components, values } = decodeWeights(new Uint8Array(await bytes(view)), where);
+  if (cameras === rows && components === count) return limited(values, where);
+  throw damaged(where, `${cameras} x ${components} weights, and ${rows} encoded cameras x ${count} textures`);
 }
 
 /** The bases of all planes, in the order of the weights' columns. */
@@ -185,6 +232,7 @@ export function sceneInfo(
   means: [number, number][],
   grid: Grid | null,
   total: number,
+  mesh: { vertices: number; triangles: number },
 ): SceneInfo {
   const { right, up } = scene;
   const normal = cross(right, up);
@@ -210,8 +258,7 @@ export function sceneInfo(
       mean: means[i] ?? [1, 1],
       bases: bases.map(({ count, size, grid }) => ({ textures: count, size, grid })),
     })),
-    vertices: scene.position.count,
-    triangles: scene.indices.count / 3,
+    ...mesh,
     facesPlane: Math.abs(dot(forward, normal)) > 0.7,
   };
 }
@@ -238,7 +285,8 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
     }
   }
   const weights = sum(basesOf(scene).flatMap((basis) => (basis.weights ? [basis.weights.view] : [])));
-  const mesh = sum([scene.position.view, scene.uv.view, scene.indices.view]);
+  const { position, uv, indices } = scene;
+  const mesh = sum([position, uv, indices, ...(scene.mesh ? [scene.mesh] : [])].map(({ view }) => view));
   const other = total - mean - weights - mesh - textures.reduce((a, b) => a + b, 0);
   return { total, mesh, mean, weights, other, textures };
 }

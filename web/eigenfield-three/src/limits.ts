@@ -1,7 +1,9 @@
 // What a file may announce: docs/format.md, "Limits". Checked before anything is allocated.
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
-export const KNOWN_NEEDS: ReadonlySet<string> = new Set(["toRGB", "regions", "stacks"]); // what `needs` may hold
+export const KNOWN_NEEDS: ReadonlySet<string> = new Set([
+  "bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB",
+]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes
 export const MAX_DEPTH = 64;
@@ -14,7 +16,7 @@ export const MAX_CHANNELS = 64;
 export const MAX_PLANES = 16;
 export const MAX_BASES = 64;
 export const MAX_COMPONENTS = 4_096;
-export const MAX_DECODED = 8 * 2 ** 30; // bytes: 4 for each number of the mean, 1 for those of the textures
+export const MAX_DECODED = 8 * 2 ** 30; // bytes: 4 for each number of a mean, 1 for those of textures, 2 of 10 bits
 export const MAX_CAMERAS = 100_000;
 export const MAX_CAMERA_SIDE = 65_535;
 export const MAX_CAMERA_PIXELS = 2 ** 29;

@@ -16,7 +16,7 @@ export interface DeviceLimits {
 
 export interface Needs {
   atlas: Size;
-  means: { size: Size; channels: number }[];
+  means: { size: Size; channels: number; pieces: number }[]; // pieces: pictures one below the other
   bases: { size: Size; grid: Size; channels: number; count: number }[];
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
@@ -69,7 +69,8 @@ export function groupsOf(textures: number): number {
 }
 
 /** The sizes at which sums are taken, each once, that of the atlas among them. */
-export function gridsOf({ atlas, means, bases }: Pick<Needs, "atlas" | "means" | "bases">): Size[] {
+export function gridsOf(needs: { atlas: Size; means: { size: Size }[]; bases: { grid: Size }[] }): Size[] {
+  const { atlas, means, bases } = needs;
   const sizes = [atlas, ...means.map(({ size }) => size), ...bases.map(({ grid }) => grid)];
   return [...new Map(sizes.map((size) => [size.join(), size])).values()];
 }
@@ -119,7 +120,7 @@ function stored({ bases, rays }: Needs, down: number, count: number): number {
 /** Columns and rows of the largest piece of a picture that is packed while textures arrive. */
 export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDown: number, scaleDown: number): Size {
   const sizes = [
-    ...means.filter(({ channels }) => channels !== 1 && channels !== 3).map(({ size }) => smaller(size, meanDown)),
+    ...means.filter(({ pieces }) => pieces > 1).map(({ size }) => smaller(size, meanDown)),
     ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
   ];
   return [Math.max(1, ...sizes.map(([width]) => width)), Math.max(1, ...sizes.map(([, height]) => height))];

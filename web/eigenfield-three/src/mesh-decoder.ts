@@ -29,14 +29,14 @@ export function decodeMesh(bytes: Uint8Array, where = "mesh"): DecodedMesh {
     throw damaged(where, "a lattice that cannot be");
   const decoder = new RangeDecoder(bytes.subarray(HEADER), CONTEXTS, MIXTURES);
   const built = readFaces(decoder, places, faces, { flat: flat === 1, fine }, where);
-  decoder.checkEnd();
+  decoder.checkEnd(where);
   const around = cornerLists(built.faces, places);
   if (flat) readDepths(decoder, built, around.first, around.corners);
   const vertices = readCorners(decoder, built, count, around.first, around.corners, where);
   const world = worldPositions(built.points, matrix);
   const lists = cornerLists(vertices.faces, count);
   const codes = readTextures(decoder, vertices, world, lists.first, lists.corners);
-  decoder.checkEnd();
+  decoder.checkEnd(where);
   return checked(assembled(built, vertices, world, codes, 2 ** digits), where);
 }
 

@@ -1,18 +1,23 @@
 // Planes of a scene's document, checked: means, bases, and the pictures that hold them.
 
-import type { Accessor, AccessorReader } from "./document.js";
+import { streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./document.js";
 import { SceneError } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
 
 export const FLOAT = 5126; // the component type of accessors
 
+const DEEP = 10; // bits of a code that may have more than 8
+
+/** Codes as a browser decodes them, 0..255, be they of 8 bits or more. */
 export interface Picture {
   view: number;
   mimeType: string;
+  bits: number; // of the codes in the file
   scale: number[]; // of each channel of each texture: value = (code - zero) * scale
   zero: number[];
   textures: number; // in this picture, one below the other
+  pieces: number; // of each texture: one of R, G and B, or its channels, one below the other
   where: string;
 }
 
@@ -23,7 +28,7 @@ export interface Basis {
   corner: [number, number]; // column and row of the grid at which the textures begin
   pictures: Picture[];
   count: number; // textures
-  weights: Accessor | null; // null: no textures
+  weights: Accessor | Stream | null; // null: no textures
   where: string;
 }
 
@@ -33,9 +38,6 @@ export interface Plane {
   meanSize: [number, number] | null; // null: `images[0]`, whose header says it
   bases: Basis[];
 }
-
-/** The buffer view that a value names. */
-type PictureView = (value: Value) => number;
 
 function unsupported(what: string, where: string): SceneError {
   const message = `The scene has ${what}, which this viewer does not draw; draw it with "eigenfield render".`;
@@ -54,22 +56,23 @@ export function readPlanes(
   encoded: number,
   preview: number | null,
   accessor: AccessorReader,
-  pictureView: PictureView,
+  viewOf: ViewReader,
 ): Plane[] {
   const listed = extension.key("planes").items(limits.MAX_PLANES);
   if (!listed.length) throw extension.key("planes").wrong("no plane");
   const planes = listed.map((plane, i): Plane => {
     const channels = plane.key("channels").integer(1, limits.MAX_CHANNELS);
-    const mean = readMean(plane, channels, i === 0 ? preview : null, pictureView);
+    const mean = readMean(plane, channels, i === 0 ? preview : null, viewOf);
     const bases = plane.key("bases").items(limits.MAX_BASES);
-    const read = (basis: Value): Basis => readBasis(basis, channels, encoded, accessor, pictureView);
+    const read = (basis: Value): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
     return { channels, ...mean, bases: bases.map(read) };
   });
   let [decoded, textures] = [0, 0];
   for (const { channels, meanSize, bases } of planes) {
     decoded += 4 * channels * (meanSize ? meanSize[0] * meanSize[1] : 0);
-    for (const { size, count } of bases) {
-      decoded += size[0] * size[1] * channels * count;
+    for (const { size, count, pictures } of bases) {
+      const bytes = pictures.reduce((sum, { textures, bits }) => sum + textures * (bits === 8 ? 1 : 2), 0);
+      decoded += size[0] * size[1] * channels * bytes;
       textures += count;
     }
   }
@@ -95,39 +98,59 @@ export function readColours(extension: Value, planes: Plane[]): [number, number,
   throw unsupported(`${what} and no colours for them`, `${extension.where}/planes`);
 }
 
-/** A picture of one or `textures` textures: as many scales and zeros as they have channels. */
-function readPicture(value: Value, channels: number, textures: number, pictureView: PictureView): Picture {
+/** A picture of one or `textures` textures of `size`, if that is known. `plain`: code / 255 unless it says more. */
+function readPicture(
+  value: Value,
+  channels: number,
+  textures: number,
+  size: [number, number] | null,
+  viewOf: ViewReader,
+  plain = false,
+): Picture {
   const mimeType = value.key("mimeType").text(limits.MAX_NAME);
   if (!/^image\/(png|jpeg|webp|avif)$/.test(mimeType)) throw value.key("mimeType").wrong("an unknown type");
+  const depth = value.key("bits");
+  const bits = depth.exists ? depth.integer(8, DEEP) : 8;
+  if (bits !== 8 && (bits !== DEEP || mimeType !== "image/avif")) throw depth.wrong(`${bits} bits of ${mimeType}`);
+  const pieces = channels === 3 && bits === 8 ? 1 : channels;
+  if (size) checkRows(value, pieces * textures, size);
+  const [scale, zero] = [value.key("scale"), value.key("zero")];
+  const made = { view: viewOf(value.key("bufferView")), mimeType, bits, textures, pieces, where: value.where };
+  if (plain && bits === 8 && !scale.exists && !zero.exists) return { ...made, ...asTheyAre(channels) };
+  const step = (2 ** bits - 1) / 255; // from one code of the browser to the next
   return {
-    view: pictureView(value.key("bufferView")),
-    mimeType,
-    scale: value.key("scale").numbers(channels * textures),
-    zero: value.key("zero").numbers(channels * textures),
-    textures,
-    where: value.where,
+    ...made,
+    scale: numbersOf(scale, channels, textures).map((number) => number * step),
+    zero: numbersOf(zero, channels, textures).map((number) => number / step),
   };
+}
+
+function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
+  return { scale: Array<number>(channels).fill(1 / 255), zero: Array<number>(channels).fill(0) };
+}
+
+/** A number of each channel of each texture, or of each channel of all. */
+function numbersOf(value: Value, channels: number, textures: number): number[] {
+  const given = value.items(channels * textures).map((item) => item.number());
+  if (given.length === channels * textures) return given;
+  if (given.length !== channels) throw value.wrong(`${channels} or ${channels * textures} numbers are needed`);
+  return Array<number[]>(textures).fill(given).flat();
 }
 
 function readMean(
   plane: Value,
   channels: number,
   preview: number | null,
-  pictureView: PictureView,
+  viewOf: ViewReader,
 ): { mean: Picture; meanSize: [number, number] | null } {
   const own = plane.key("mean");
-  const plain = { scale: Array<number>(channels).fill(1 / 255), zero: Array<number>(channels).fill(0) };
   if (!own.exists) {
     if (preview === null || (channels !== 1 && channels !== 3)) throw own.wrong("no mean");
-    const mean = { view: preview, mimeType: "image/png", ...plain, textures: 1, where: "/images/0" };
-    return { mean, meanSize: null };
+    const mean = { view: preview, mimeType: "image/png", bits: 8, textures: 1, pieces: 1, where: "/images/0" };
+    return { mean: { ...mean, ...asTheyAre(channels) }, meanSize: null };
   }
   const meanSize = readSize(own.key("size"));
-  const coded = own.key("scale").exists || own.key("zero").exists;
-  const complete = coded ? own : new Value({ ...own.object(), ...plain }, own.where);
-  const mean = readPicture(complete, channels, 1, pictureView);
-  checkRows(own, channels, meanSize, 1);
-  return { mean, meanSize };
+  return { mean: readPicture(own, channels, 1, meanSize, viewOf, true), meanSize };
 }
 
 function readBasis(
@@ -135,7 +158,7 @@ function readBasis(
   channels: number,
   encoded: number,
   accessor: AccessorReader,
-  pictureView: PictureView,
+  viewOf: ViewReader,
 ): Basis {
   const size = readSize(basis.key("size"));
   const [grid, corner] = [basis.key("grid"), basis.key("corner")];
@@ -148,21 +171,18 @@ function readBasis(
     const several = picture.key("count");
     const textures = several.exists ? several.integer(1, limits.MAX_COMPONENTS) : 1;
     count += textures;
-    checkRows(picture, channels, size, textures);
-    return readPicture(picture, channels, textures, pictureView);
+    return readPicture(picture, channels, textures, size, viewOf);
   });
   if (count > limits.MAX_COMPONENTS) throw basis.wrong(`more than ${limits.MAX_COMPONENTS} textures`);
-  const weights = count ? accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * count) : null;
+  const coded = basis.key("codedWeights");
+  const plain = (): Accessor => accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * count);
+  const weights = count ? (coded.exists ? streamOf(coded, coded, viewOf) : plain()) : null;
   return { size, grid: whole, corner: [column, row], pictures, count, weights, where: basis.where };
 }
 
-/** Rows of a picture of textures of `height`: three channels are R, G and B, others lie one below the other. */
-export function rowsOf(channels: number, height: number, textures: number): number {
-  return (channels === 3 ? 1 : channels) * height * textures;
-}
-
-function checkRows(picture: Value, channels: number, [width, height]: [number, number], textures: number): void {
-  const rows = rowsOf(channels, height, textures);
-  if (rows > height && rows > limits.MAX_STACKED) throw picture.wrong(`a picture of ${rows} rows`);
+/** Checks a picture of so many pieces of width x height, one below the other. */
+function checkRows(picture: Value, pieces: number, [width, height]: [number, number]): void {
+  const rows = pieces * height;
+  if (pieces > 1 && rows > limits.MAX_STACKED) throw picture.wrong(`a picture of ${rows} rows`);
   if (width * rows > limits.MAX_TEXELS) throw picture.wrong(`more than ${limits.MAX_TEXELS} texels`);
 }

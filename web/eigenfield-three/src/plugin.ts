@@ -1,13 +1,14 @@
-import { MeshBasicMaterial, type BufferGeometry, type Material, type Mesh, type Object3D } from "three";
+import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
 import { decodePieces } from "./decode.js";
 import { isScene, readDocument, type SceneDocument } from "./document.js";
-import { SceneError, damaged } from "./errors.js";
+import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
-import { cutOff, planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
+import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
 import type { ViewBytes } from "./info.js";
-import { EXTENSION, MAX_NUMBER } from "./limits.js";
+import { EXTENSION } from "./limits.js";
 import type { EigenfieldOptions } from "./options.js";
+import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
 import { ViewWeights } from "./weights.js";
 
 /**
@@ -61,10 +62,15 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       return data;
     };
     const meanBytes = await Promise.all(scene.planes.map(({ mean }) => bytes(mean.view)));
+    const proxy = scene.mesh && (await readCodedMesh(scene.mesh, bytes));
+    if (proxy) {
+      mesh.geometry.dispose();
+      for (const each of meshes) each.geometry = proxy;
+    }
     const [means, cameras, omega, triangles] = await Promise.all([
       Promise.all(
-        scene.planes.map(({ mean, channels, meanSize }, i) =>
-          decodePieces(meanBytes[i] ?? new ArrayBuffer(0), mean, channels, meanSize),
+        scene.planes.map(({ mean, meanSize }, i) =>
+          decodePieces(meanBytes[i] ?? new ArrayBuffer(0), mean, meanSize),
         ),
       ),
       readCameras(scene, bytes),
@@ -75,7 +81,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
     const meanSizes = means.map(([first]): [number, number] => [first?.bitmap.width ?? 1, first?.rows ?? 1]);
-    const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes());
+    const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
     const rays = info.facesPlane;
     const parts = { scene, info, meshes, means, meanSizes, rays, omega, weights, bytes };
     gltf.userData["eigenfield"] = new EigenField(parts, this.options);
@@ -103,22 +109,4 @@ function proxiesOf(gltf: GLTF, parser: GLTFParser): Mesh[] {
 
 function isMesh(object: Object3D): object is Mesh {
   return (object as Partial<Mesh>).isMesh === true;
-}
-
-function checkGeometry(geometry: BufferGeometry, scene: SceneDocument): void {
-  const position = geometry.getAttribute("position");
-  const uv = geometry.getAttribute("uv");
-  const { index } = geometry;
-  if (!index) throw new SceneError("damaged", "The proxy mesh has no triangles; make or download the file again.");
-  if (uv.count < position.count) throw damaged(scene.uv.where, "too few texture coordinates");
-  for (let i = 0; i < position.count; i++) {
-    const largest = Math.max(Math.abs(position.getX(i)), Math.abs(position.getY(i)), Math.abs(position.getZ(i)));
-    if (!(largest <= MAX_NUMBER)) throw damaged(scene.position.where, `vertex ${i} is not finite`);
-    if (!(Math.max(Math.abs(uv.getX(i)), Math.abs(uv.getY(i))) <= MAX_NUMBER)) {
-      throw damaged(scene.uv.where, `texture coordinates of vertex ${i} are not finite`);
-    }
-  }
-  for (const vertex of index.array) {
-    if (vertex >= position.count) throw damaged(scene.indices.where, `no vertex ${vertex}`);
-  }
 }

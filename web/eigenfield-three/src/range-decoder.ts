@@ -1,7 +1,7 @@
 // The adaptive binary code of meshes, weights and cameras, and whole numbers on top of it: `docs/coding.md`. All of it is
 // in whole numbers below 2^53, so that every decoder finds the same.
 
-import { damaged, truncated } from "./errors.js";
+import { cutOff, damaged } from "./errors.js";
 
 const ONE = 65536;
 const LIMIT = 126; // bits that a slot remembers
@@ -45,8 +45,8 @@ export class RangeDecoder {
   }
 
   /** Throws if more was read than there is. */
-  checkEnd(): void {
-    if (this.at > this.bytes.length + AHEAD) throw truncated(this.bytes.length, this.at - AHEAD);
+  checkEnd(where: string): void {
+    if (this.at > this.bytes.length + AHEAD) throw cutOff(where);
   }
 
   /** A bit in contexts a, b and c. */
@@ -134,7 +134,7 @@ export class RangeDecoder {
 
 /** The header's view of a coded part of at least `size` bytes, its version checked. */
 export function codedHeader(bytes: Uint8Array, size: number, where: string): DataView {
-  if (bytes.length < size) throw truncated(bytes.length, size);
+  if (bytes.length < size) throw cutOff(where);
   if (bytes[0] !== 1) throw damaged(where, `coded numbers of version ${bytes[0]}`);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
 }

@@ -19,20 +19,20 @@ export async function eigenGain(
   const picture = basis.pictures.find(({ textures }) => (first += textures) > rank);
   if (!picture) return 1;
   const within = rank - (first - picture.textures);
-  const each = channels === 3 ? 1 : channels; // pieces of a texture
-  const pieces = await decodePieces(await read(picture.view), picture, channels, basis.size);
+  const together = picture.pieces < channels; // R, G and B
+  const pieces = await decodePieces(await read(picture.view), picture, basis.size);
   const canvas = new OffscreenCanvas(SIDE, SIDE);
   const context = canvas.getContext("2d", { willReadFrequently: true });
   if (!context) return 1;
   context.imageSmoothingEnabled = false; // single texels: averages would be weaker
   const values: number[] = [];
-  pieces.slice(each * within, each * (within + 1)).forEach(({ bitmap, row, rows }, i) => {
+  pieces.slice(picture.pieces * within, picture.pieces * (within + 1)).forEach(({ bitmap, row, rows }, i) => {
     context.drawImage(bitmap, 0, row, bitmap.width, rows, 0, 0, SIDE, SIDE);
     const { data } = context.getImageData(0, 0, SIDE, SIDE);
-    (channels === 3 ? [0, 1, 2] : [i]).forEach((channel) => {
+    (together ? [0, 1, 2] : [i]).forEach((channel) => {
       const [scale, zero] = [picture.scale, picture.zero].map((own) => own[channels * within + channel] ?? 0);
       const colour = Math.max(...(colours[channel] ?? [0]).map(Math.abs)) * (scale ?? 0);
-      for (let at = channels === 3 ? channel : 0; at < data.length; at += 4) {
+      for (let at = together ? channel : 0; at < data.length; at += 4) {
         values.push(Math.abs(((data[at] ?? 0) - (zero ?? 0)) * colour));
       }
     });

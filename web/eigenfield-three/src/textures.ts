@@ -63,8 +63,10 @@ export class Textures {
     const { scene, meanSizes, rays } = parts;
     this.decoded = parts.means;
     const bases = scene.planes.flatMap(({ channels, bases }) => bases.map((basis) => ({ ...basis, channels })));
-    const means = scene.planes.map(({ channels }, i) => ({ size: meanSizes[i] ?? [1, 1], channels }) as const);
-    this.needs = { atlas: atlasOf(scene, meanSizes), means: [...means], bases, rays, geometry };
+    const means = scene.planes.map(({ channels, mean: { pieces } }, i): memory.Needs["means"][number] => {
+      return { size: meanSizes[i] ?? [1, 1], channels, pieces };
+    });
+    this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
     this.means = means.map(() => new ExternalTexture());
     this.bases = bases.map(() => new ExternalTexture());
     this.ready = bases.map(({ count }) => Array<boolean>(count).fill(false));
@@ -179,15 +181,14 @@ export class Textures {
     const array = this.bases[number]?.sourceTexture;
     const ready = this.ready[number];
     if (!(array instanceof WebGLTexture) || !ready) return;
-    const each = channels === 3 ? 1 : channels; // pieces of a texture
+    const together = picture.pieces < channels; // R, G and B
     for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
-      for (let i = 0; i < each; i++) {
+      for (let i = 0; i < picture.pieces; i++) {
         const layer = (channel: number): number => channels * Math.floor(j / 4) + channel;
-        const own = channels === 3 ? [0, 1, 2] : [i];
-        const slots = own.map((channel): Slot => {
-          return { channel: channels === 3 ? channel : 0, layer: layer(channel), component: j % 4 };
+        const slots = (together ? [0, 1, 2] : [i]).map((channel): Slot => {
+          return { channel: together ? channel : 0, layer: layer(channel), component: j % 4 };
         });
-        const piece = pieces[(j - first) * each + i];
+        const piece = pieces[(j - first) * picture.pieces + i];
         if (piece) packer.put(piece, array, slots);
       }
       ready[j] = true;
@@ -236,8 +237,8 @@ export class Textures {
     if (!decoded || down > 1) {
       decoded?.forEach(closePieces);
       decoded = await Promise.all(
-        scene.planes.map(async ({ mean, channels }, i) =>
-          decodePieces(await bytes(mean.view), mean, channels, meanSizes[i] ?? null, down),
+        scene.planes.map(async ({ mean }, i) =>
+          decodePieces(await bytes(mean.view), mean, meanSizes[i] ?? null, down),
         ),
       );
     }
@@ -261,10 +262,10 @@ export class Textures {
 
   private decode(entry: Entry | undefined, down: number): Promise<Piece[]> {
     if (!entry) return Promise.reject(new RangeError("no such eigen texture"));
-    const { basis, channels, picture } = entry;
+    const { basis, picture } = entry;
     const decoded = this.parts
       .bytes(picture.view)
-      .then((data) => decodePieces(data, picture, channels, basis.size, down));
+      .then((data) => decodePieces(data, picture, basis.size, down));
     decoded.catch(() => undefined); // awaited later, or not at all
     return decoded;
   }

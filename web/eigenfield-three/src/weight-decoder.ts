@@ -44,7 +44,7 @@ export function decodeWeights(bytes: Uint8Array, where = "weights"): CodedWeight
       const camera = grid ? grid[cell]! : cell;
       if (camera >= 0) values[camera * components + k] = numbers[cell]! * step;
     }
-    decoder.checkEnd();
+    decoder.checkEnd(where);
   }
   if (!values.every(Number.isFinite)) throw damaged(where, "weights that are not finite");
   return { cameras, components, values };
@@ -52,29 +52,28 @@ export function decodeWeights(bytes: Uint8Array, where = "weights"): CodedWeight
 
 /** The inverse of the orthonormal discrete cosine transform (DCT-II) of rows and columns. */
 function inverseCosine(table: Float64Array, rows: number, columns: number): Float64Array {
-  const [down, across] = [cosines(rows), cosines(columns)];
   const half = new Float64Array(rows * columns);
   const result = new Float64Array(rows * columns);
+  const across = cosines(columns);
   for (let row = 0; row < rows; row++)
     for (let x = 0; x < columns; x++) {
       let sum = 0;
-      for (let k = 0; k < columns; k++) sum += across[k * columns + x]! * table[row * columns + k]!;
+      for (let k = 0; k < columns; k++) sum += across(k, x) * table[row * columns + k]!;
       half[row * columns + x] = sum;
     }
+  const down = cosines(rows);
   for (let y = 0; y < rows; y++)
     for (let x = 0; x < columns; x++) {
       let sum = 0;
-      for (let k = 0; k < rows; k++) sum += down[k * rows + y]! * half[k * columns + x]!;
+      for (let k = 0; k < rows; k++) sum += down(k, y) * half[k * columns + x]!;
       result[y * columns + x] = sum;
     }
   return result;
 }
 
-/** Row k: the k-th cosine at n places. */
-function cosines(n: number): Float64Array {
-  const table = new Float64Array(n * n);
-  for (let k = 0; k < n; k++)
-    for (let x = 0; x < n; x++)
-      table[k * n + x] = Math.sqrt((k === 0 ? 1 : 2) / n) * Math.cos((Math.PI * (2 * x + 1) * k) / (2 * n));
-  return table;
+/** The k-th of the n cosines at place x, from a table of one round: n * n numbers could be more than there is memory. */
+function cosines(n: number): (k: number, x: number) => number {
+  const [level, height] = [Math.sqrt(1 / n), Math.sqrt(2 / n)];
+  const round = Float64Array.from({ length: 4 * n }, (_, i) => height * Math.cos((Math.PI * i) / (2 * n)));
+  return (k, x) => (k === 0 ? level : round[((2 * x + 1) * k) % (4 * n)]!);
 }
