@@ -15,7 +15,7 @@ from eigenfield.errors import FormatError
 from eigenfield.format import validate
 from eigenfield.format.deep import FLAT, TOP, crf_of, decode_deep, encode_deep, encoder_step
 from eigenfield.format.deep_code import code_basis, code_mean, code_plane, with_weights
-from eigenfield.format.stored import files_of
+from eigenfield.format.stored import files_of, weights_of
 from eigenfield.scene import Plane
 
 
@@ -75,8 +75,12 @@ def test_textures_are_stacked_and_share_one_step():
     assert files is not None and sum(file.count for file in files) == 7
     assert coded.textures.dtype == np.uint16 and len(np.unique(coded.scale)) == 1
     assert np.abs(coded.values() - basis.values()).mean() < 2e-3
-    other = with_weights(coded, coded.weights * 2)
-    assert files_of(other) == files and files_of(replace(coded, weights=coded.weights)) is None
+    other = with_weights(coded, coded.weights * 2, b"coded")
+    assert (
+        files_of(other) == files
+        and weights_of(other) == b"coded"
+        and files_of(replace(coded, weights=coded.weights)) is None
+    )
 
 
 @pytest.mark.parametrize("channels", [1, 2])
@@ -140,9 +144,9 @@ def changed(path, change):
         (lambda e: e.update(toRGB=[1.0] * 6), "plane-matrix"),
         (lambda e: e["planes"][1]["bases"][0].update(grid=[60, 60]), "basis-region"),
         (lambda e: e["planes"][0]["mean"].update(bits=9), "picture-type"),
-        (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(count=2), "json-value"),
+        (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(count=2), "picture-size"),
         (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(count=0), "json-value"),
-        (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(scale=[1.0]), "json-value"),
+        (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(scale=[1.0, 2.0]), "json-value"),
         (lambda e: e.update(needs=["magic"]), "needs"),
     ],
 )

@@ -182,6 +182,7 @@ def encode(
     centre = _reference(options.reference, names, coordinates, encoded)
 
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     streams: dict[str, bytes] = {}
     if options.fit != "none":
         streams["mesh"], mesh = code_mesh(mesh, cameras, centre)
@@ -189,7 +190,6 @@ def encode(
         cameras = list(coded)
         plane = fit_view_plane(cameras)
         coordinates = plane.coordinates([camera.centre for camera in cameras])
-    _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     width, height = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     shown = capture.subset(encoded.tolist())
 

@@ -96,7 +96,7 @@ def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
         "mean": {"size": [mean.width, mean.height], "type": mean.mime},
         "bases": [
             {
-                "textures": len(basis.textures),
+                "textures": basis.count,
                 "size": list(basis.size),
                 "types": sorted({texture.mime for texture in basis.textures}),
             }

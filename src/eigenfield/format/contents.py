@@ -27,7 +27,8 @@ def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
 def parts(path: str | os.PathLike[str]) -> dict[str, int]:
     """Bytes by part: total, mean, textures, weights, mesh, other; the last five sum to the first.
 
-    mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices.
+    mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices; a
+    coded one, and the coarse one for other viewers.
     other: JSON, calibration, triangles, headers and padding. Raises FormatError.
     """
     return describe(path)[1]
@@ -43,8 +44,11 @@ def _parts(document: Document) -> dict[str, int]:
     pictures += [plane["mean"]["bufferView"] for plane in planes if plane.has("mean")]
     textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
     weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]
+    weights += [basis["codedWeights"] for basis in bases if basis.has("codedWeights")]
     attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
     mesh = [_view_of(document, reference) for reference in attributes]
+    if extension.has("mesh"):
+        mesh.append(extension["mesh"]["bufferView"])
     counted: set[int] = set()
     made = {"total": document.glb.size}
     for name, references in (("mean", pictures), ("textures", textures), ("weights", weights), ("mesh", mesh)):

@@ -105,8 +105,8 @@ def _same_cameras(stream: bytes, cameras: Sequence[Camera]) -> bool:
 
 
 def coarse_mesh(mesh: Mesh, triangles: int = COARSE) -> Mesh:
-    """The mesh simplified for viewers that know nothing of ours; corners keep the mean texture coordinates of the
-    vertices that fell together."""
+    """The mesh simplified for viewers that know nothing of ours; of the vertices that fell together the one nearest to
+    where they came to lie gives the texture coordinates."""
     import fast_simplification
 
     assert mesh.uv is not None
@@ -118,9 +118,10 @@ def coarse_mesh(mesh: Mesh, triangles: int = COARSE) -> Mesh:
     points, faces, fell = fast_simplification.replay_simplification(mesh.vertices, mesh.faces, collapses)
     if not len(faces):
         return mesh
-    uv, count = np.zeros((len(points), 2)), np.bincount(fell, minlength=len(points))
-    for axis in range(2):
-        uv[:, axis] = np.bincount(fell, mesh.uv[:, axis], len(points)) / np.maximum(count, 1)
+    apart = np.linalg.norm(mesh.vertices - points[fell], axis=1)
+    uv = np.zeros((len(points), 2))
+    farthest_first = np.argsort(-apart, kind="stable")
+    uv[fell[farthest_first]] = mesh.uv[farthest_first]  # the last to be written stays
     used, corners = np.unique(faces, return_inverse=True)
     return Mesh(
         np.ascontiguousarray(points[used], np.float32), corners.reshape(-1, 3).astype(np.int32),

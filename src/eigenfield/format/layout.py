@@ -17,13 +17,10 @@ from numpy.typing import NDArray
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
 from eigenfield.format import deep, limits, pictures
-from eigenfield.format.camera_coder import decode_cameras
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
-from eigenfield.format.mesh_coder import decode_mesh
 from eigenfield.format.quantise import Affine
 from eigenfield.format.strict_json import Value, printable, quoted
-from eigenfield.format.weight_coder import decode_weights
 from eigenfield.mesh import Mesh
 from eigenfield.viewplane import ViewPlane
 
@@ -243,6 +240,8 @@ def read_mesh(document: Document) -> Mesh:
 
 def read_coded_mesh(document: Document, entry: Value) -> tuple[bytes, Mesh]:
     """The proxy itself, where meshes[0] is a coarse one for other viewers. FormatError: `coded-*`, `view-*`."""
+    from eigenfield.format.mesh_coder import decode_mesh  # numba: most files need none
+
     data = bytes(document.picture(entry["bufferView"]))
     mesh = decode_mesh(data, entry.where)
     if not len(mesh.faces):
@@ -273,6 +272,8 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
     if held_out.all():
         entry["heldOut"].fail("camera-held-out", "every camera is held out")
     if entry.has("coded"):
+        from eigenfield.format.camera_coder import decode_cameras  # as above
+
         intrinsics, matrices = decode_cameras(bytes(document.picture(entry["coded"])), entry["coded"].where)
         poses = matrices.reshape(len(matrices), 12)
         if len(poses) != count:
@@ -452,6 +453,8 @@ def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None
 
 
 def _decode_weights(stream: bytes, entry: Value, rows: int, count: int) -> NDArray[np.float32]:
+    from eigenfield.format.weight_coder import decode_weights  # as above
+
     weights = decode_weights(stream, entry.where)
     if rows == 0:  # only while validating a file whose cameras are damaged
         return np.zeros((0, count), np.float32)

@@ -16,7 +16,15 @@ from eigenfield.format import limits
 from eigenfield.format.container import parse_glb, read_file
 from eigenfield.format.document import Document
 from eigenfield.format.findings import Finding, Findings
-from eigenfield.format.layout import BasisLayout, Layout, Picture, PlaneLayout, read_image, read_layout
+from eigenfield.format.layout import (
+    BasisLayout,
+    Layout,
+    Picture,
+    PlaneLayout,
+    read_image,
+    read_layout,
+    read_mesh,
+)
 from eigenfield.format.quantise import mean_values
 from eigenfield.format.stored import PictureFile, keep_files, keep_weights
 from eigenfield.parallel import parallel_map
@@ -194,10 +202,14 @@ def _check_bounds(document: Document, layout: Layout, findings: Findings) -> Non
     with findings.part():
         position = document.root["meshes"].at(0)["primitives"].at(0)["attributes"]["POSITION"]
         accessor = document.root["accessors"].at(position.integer(0, 2**31))
-        for key, found in (("min", layout.mesh.vertices.min(axis=0)), ("max", layout.mesh.vertices.max(axis=0))):
+        shown = read_mesh(document).vertices  # of a coded mesh the coarse one
+        for key, found in (("min", shown.min(axis=0)), ("max", shown.max(axis=0))):
             stated = np.array(accessor[key].numbers(3), np.float32)
             if not np.array_equal(stated, found):
                 findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
+
+
+_REFERENCES = ("bufferView", "coded", "codedWeights")  # keys that name a buffer view
 
 
 def _check_use(document: Document, findings: Findings) -> None:
@@ -207,8 +219,7 @@ def _check_use(document: Document, findings: Findings) -> None:
     while todo:
         item = todo.pop()
         if isinstance(item, dict):
-            if isinstance(item.get("bufferView"), int):
-                used.add(item["bufferView"])
+            used |= {item[key] for key in _REFERENCES if isinstance(item.get(key), int)}
             todo.extend(item.values())
         elif isinstance(item, list):
             todo.extend(item)

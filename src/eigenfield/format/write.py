@@ -21,7 +21,6 @@ from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
 from eigenfield.format.document import FLOAT, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
-from eigenfield.format.geometry import camera_numbers, checked_streams, coarse_mesh
 from eigenfield.format.layout import read_layout
 from eigenfield.format.stored import PictureFile, files_of, weights_of
 from eigenfield.format.strict_json import printable
@@ -237,8 +236,8 @@ def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
 
 def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
-    streams = checked_streams(scene)
-    primitive = _primitive(coarse_mesh(scene.mesh) if "mesh" in streams else scene.mesh, buffer)
+    streams, mesh = _coded_geometry(scene)
+    primitive = _primitive(mesh, buffer)
     first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
     planes = [
@@ -292,6 +291,16 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
+
+
+def _coded_geometry(scene: Scene) -> tuple[Mapping[str, bytes], Mesh]:
+    """The streams to write, and the mesh for viewers that know nothing of them."""
+    if not scene.streams:
+        return {}, scene.mesh
+    from eigenfield.format.geometry import checked_streams, coarse_mesh  # numba: most files need none
+
+    streams = checked_streams(scene)
+    return streams, coarse_mesh(scene.mesh) if "mesh" in streams else scene.mesh
 
 
 def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
@@ -369,7 +378,9 @@ def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, A
     if stream is not None:
         made["coded"] = buffer.view(stream)
     else:
-        intrinsics, poses = camera_numbers(scene.cameras)
+        cameras = scene.cameras
+        intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
+        poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
         made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
         made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
     if stream is not None and (sizes == sizes[0]).all():

@@ -1,0 +1,139 @@
+"""Mesh, cameras and weights in a file as coded streams: near enough, kept as they are, dropped when they are stale."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scenes import bumpy_square, row_grid, tiny_scene
+
+import eigenfield as ef
+from eigenfield.camera import Camera
+from eigenfield.errors import FormatError
+from eigenfield.format import parts, validate
+from eigenfield.format.deep_code import code_basis, code_plane, with_weights
+from eigenfield.format.geometry import (
+    CAMERA_STEP,
+    DEPTH_ERROR,
+    FINE,
+    checked_streams,
+    coarse_mesh,
+    code_cameras_of,
+    code_mesh,
+)
+from eigenfield.format.weight_coder import code_weights
+from eigenfield.scene import Scene
+
+
+def coded_scene() -> Scene:
+    """A scene whose mesh, cameras and weights are coded; 9 cameras on a grid."""
+    scene = tiny_scene(3, 4, 9, 64)
+    mesh_stream, mesh = code_mesh(bumpy_square(40), scene.cameras, scene.reference)
+    grid = np.arange(9).reshape(3, 3)
+    camera_stream, cameras = code_cameras_of(scene.cameras, mesh, grid)
+    basis = code_basis(scene.planes[0].bases[0], 1e-3, 8)
+    stream, weights = code_weights(basis.weights, 0.05, grid)
+    plane = code_plane(scene.planes[0].mean, (with_weights(basis, weights, stream),), 1e-3, 8)
+    streams = {"mesh": mesh_stream, "cameras": camera_stream}
+    return replace(scene, mesh=mesh, cameras=cameras, planes=(plane,), streams=streams)
+
+
+def surface_points(mesh):
+    corners = mesh.vertices[mesh.faces].astype(np.float64)
+    return corners.mean(axis=1)
+
+
+def test_rounding_moves_the_mesh_by_what_is_stated():
+    mesh, cameras = bumpy_square(40), row_grid(9)
+    stream, coded = code_mesh(mesh, cameras, 4)
+    assert len(coded.faces) == len(mesh.faces) and len(stream) < mesh.vertices.nbytes / 4
+    most = 2.0**-FINE / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
+    for camera in cameras:
+        before, after = camera.project(mesh.vertices)[0], camera.project(coded.vertices)[0]
+        apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
+        assert apart.max() < most
+
+
+def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
+    mesh = bumpy_square(20)
+    K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
+    inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
+    _, coded = code_mesh(mesh, inside, 0)
+    apart = np.linalg.norm(mesh.vertices[:, None] - coded.vertices[None], axis=2).min(axis=1)
+    assert apart.max() < 0.01
+
+
+def test_cameras_are_near_what_they_were():
+    mesh, cameras = bumpy_square(), row_grid(9)
+    random = np.random.default_rng(0)
+    shaken = [replace(c, t=c.t + random.normal(0, 0.01, 3)) for c in cameras]
+    stream, coded = code_cameras_of(shaken, mesh, None)
+    assert len(stream) < 12 * 4 * 9
+    for before, after in zip(shaken, coded, strict=True):
+        moved = np.abs(before.project(mesh.vertices)[0] - after.project(mesh.vertices)[0])
+        assert moved.max() < 4 * CAMERA_STEP
+
+
+def test_a_coded_scene_through_a_file(tmp_path):
+    scene, path = coded_scene(), tmp_path / "coded.glb"
+    scene.save(path)
+    assert validate(path) == []
+    back = ef.load(path)
+    np.testing.assert_array_equal(back.mesh.vertices, scene.mesh.vertices)
+    np.testing.assert_array_equal(back.mesh.faces, scene.mesh.faces)
+    np.testing.assert_array_equal(back.mesh.uv, scene.mesh.uv)
+    np.testing.assert_array_equal(back.planes[0].bases[0].weights, scene.planes[0].bases[0].weights)
+    for one, two in zip(back.cameras, scene.cameras, strict=True):
+        np.testing.assert_array_equal(one.matrix, two.matrix)
+        assert (one.width, one.height) == (two.width, two.height)
+    back.save(tmp_path / "again.glb")
+    assert (tmp_path / "again.glb").read_bytes() == path.read_bytes()
+    plain = replace(scene, streams={})
+    plain.save(tmp_path / "plain.glb")
+    assert parts(path)["mesh"] < parts(tmp_path / "plain.glb")["mesh"] / 3
+
+
+def test_streams_of_another_mesh_or_other_cameras_are_not_written():
+    scene = coded_scene()
+    assert set(checked_streams(scene)) == {"mesh", "cameras"}
+    other = replace(scene, mesh=bumpy_square(12))
+    assert set(checked_streams(other)) == {"cameras"}
+    moved = tuple(replace(camera, t=camera.t + 0.1) for camera in scene.cameras)
+    assert set(checked_streams(replace(scene, cameras=moved))) == {"mesh"}
+    assert not checked_streams(replace(scene, streams={"mesh": b"nothing"}))
+
+
+def test_the_mesh_for_other_viewers_is_coarse_and_textured():
+    mesh = bumpy_square(40)
+    coarse = coarse_mesh(mesh, 200)
+    assert 100 < len(coarse.faces) <= 200 and coarse.uv is not None
+    assert np.abs(coarse.vertices[:, :2] - (2 * coarse.uv - 1)).max() < 0.2  # about as in the fine one
+    assert coarse_mesh(bumpy_square(4)).faces.shape == bumpy_square(4).faces.shape
+
+
+@pytest.mark.parametrize(
+    ("change", "codes"),
+    [
+        (lambda e: e["mesh"].update(bufferView=e["cameras"]["coded"]), {"coded-damaged", "coded-size"}),
+        (lambda e: e["cameras"].update(coded=e["mesh"]["bufferView"]), {"coded-damaged", "coded-size"}),
+        (lambda e: e["cameras"]["names"].pop(), {"camera-count"}),
+        (lambda e: e["cameras"].update(size=[0, 40]), {"json-value"}),
+        (lambda e: e["planes"][0]["bases"][0].update(codedWeights=e["mesh"]["bufferView"]),
+         {"coded-damaged", "coded-size", "weights-count"}),
+        (lambda e: e["planes"][0]["bases"][0]["textures"][0].update(scale=[1.0, 2.0]), {"json-value"}),
+    ],
+)  # fmt: skip
+def test_streams_that_do_not_belong_are_refused(tmp_path, change, codes):
+    from eigenfield.format.container import parse_glb, read_file
+    from eigenfield.format.document import Document
+    from eigenfield.format.findings import Findings
+    from eigenfield.format.layout import read_layout
+
+    path = tmp_path / "coded.glb"
+    coded_scene().save(path)
+    glb = parse_glb(read_file(path))
+    change(glb.json["extensions"]["EIGENFIELD_eigen_textures"])
+    with pytest.raises(FormatError) as caught:
+        read_layout(Document(glb), Findings(strict=True))
+    assert caught.value.code in codes
