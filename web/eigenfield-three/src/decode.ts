@@ -1,5 +1,6 @@
 // Pictures of codes, decoded by the browser with colour management off.
 
+import { decodeCodes, smallerCodes, type Codes } from "./deep.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
 import * as limits from "./limits.js";
@@ -55,27 +56,47 @@ export async function decodePicture(
   throw damaged(picture.where, `decoded to ${bitmap.width} x ${bitmap.height}, not to ${w} x ${h}`);
 }
 
-/** Part of a picture: `rows` of `bitmap` from `row`. */
-export interface Piece {
-  bitmap: ImageBitmap;
+/** Part of a picture: `rows` of it from `row`. */
+export interface Piece<Kind extends ImageBitmap | Codes = ImageBitmap | Codes> {
+  picture: Kind;
   row: number;
   rows: number;
 }
 
 /** Decodes a mean or eigen textures into pieces in their order: a whole texture of R, G and B, or one channel of a
- * texture. Whoever takes them closes them. */
+ * texture. Codes of 10 bits are kept where the browser gives them. Whoever takes pieces closes them. */
 export async function decodePieces(
   bytes: ArrayBuffer,
   picture: Picture,
   size: [number, number] | null,
   down = 1,
 ): Promise<Piece[]> {
+  if (picture.bits === 8) return decodeBitmaps(bytes, picture, size, down);
+  const count = picture.pieces * picture.textures;
+  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
+  const codes = await decodeCodes(bytes, width, rows);
+  if (!codes) return decodeBitmaps(bytes, picture, size, down);
+  const height = rows / count;
+  return Array.from({ length: count }, (_, i): Piece => {
+    if (down === 1) return { picture: codes, row: i * height, rows: height };
+    const smaller = smallerCodes(codes, i * height, height, down);
+    return { picture: smaller, row: 0, rows: smaller.height };
+  });
+}
+
+/** As `decodePieces`, with the upper eight bits of codes that have more. */
+export async function decodeBitmaps(
+  bytes: ArrayBuffer,
+  picture: Picture,
+  size: [number, number] | null,
+  down = 1,
+): Promise<Piece<ImageBitmap>[]> {
   const count = picture.pieces * picture.textures;
   const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
   const bitmap = await decodePicture(bytes, picture, [width, rows], count === 1 ? down : 1);
-  if (count === 1) return [{ bitmap, row: 0, rows: bitmap.height }];
+  if (count === 1) return [{ picture: bitmap, row: 0, rows: bitmap.height }];
   const height = rows / count;
-  const pieces = Array.from({ length: count }, (_, i) => ({ bitmap, row: i * height, rows: height }));
+  const pieces = Array.from({ length: count }, (_, i) => ({ picture: bitmap, row: i * height, rows: height }));
   if (down === 1) return pieces;
   // one by one: what lies below each other must not run together
   const [w, h] = [Math.ceil(width / down), Math.ceil(height / down)];
@@ -84,11 +105,11 @@ export async function decodePieces(
     pieces.map(({ row }) => createImageBitmap(bitmap, 0, row, width, height, smaller)),
   );
   bitmap.close();
-  return parts.map((part) => ({ bitmap: part, row: 0, rows: h }));
+  return parts.map((part) => ({ picture: part, row: 0, rows: h }));
 }
 
 export function closePieces(pieces: Piece[]): void {
-  for (const { bitmap } of pieces) bitmap.close();
+  for (const { picture } of pieces) if ("close" in picture) picture.close();
 }
 
 async function canDecode(type: string): Promise<boolean> {

@@ -13,15 +13,17 @@ export function deviceLimits(gl: GL, memory: number): DeviceLimits {
   };
 }
 
-/** Layers of zeros, or null if there is no memory; texels are read one by one, or if `between` linearly. */
+/** Layers of zeros of 8 bits, or of half-floats if `deep`; null if there is no memory. Texels are read one by one, or
+ * if `between` linearly. */
 export function makeArray(
   gl: GL,
   [width, height]: [number, number],
   layers: number,
   between: boolean,
+  deep: boolean,
 ): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
-    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, gl.RGBA8, width, height, layers);
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, deep ? gl.RGBA16F : gl.RGBA8, width, height, layers);
     for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
       gl.texParameteri(gl.TEXTURE_2D_ARRAY, edge, gl.CLAMP_TO_EDGE);
     }
@@ -39,10 +41,10 @@ export function putPicture(gl: GL, array: WebGLTexture, picture: ImageBitmap): v
   );
 }
 
-/** Room for a picture to be read texel by texel, or null. */
-export function makeRoom(gl: GL, [width, height]: [number, number]): WebGLTexture | null {
+/** Room for a picture of R, G, B and A, or for codes of two bytes, to be read texel by texel; or null. */
+export function makeRoom(gl: GL, [width, height]: [number, number], codes = false): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D, () => {
-    gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, codes ? gl.RG8 : gl.RGBA8, width, height);
     gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.NEAREST);
   });
 }

@@ -1,8 +1,9 @@
 // What fits on the GPU: smaller eigen textures first, then fewer.
 
 const MIPS = 4 / 3; // a texture with all its mips, relative to its largest level
-const CODES = 4; // bytes of a texel of codes
-const HALVES = 8; // bytes of a texel of half-floats
+const CODES = 4; // bytes of a texel of codes of 8 bits
+const HALVES = 8; // bytes of a texel of half-floats, which hold codes of more bits too
+const WORDS = 2; // bytes of a code of more than 8 bits before it is packed
 export const MAP_SIDE = 129; // nodes of a weight map along X and Y
 const MIB = 2 ** 20;
 
@@ -16,8 +17,8 @@ export interface DeviceLimits {
 
 export interface Needs {
   atlas: Size;
-  means: { size: Size; channels: number; pieces: number }[]; // pieces: pictures one below the other
-  bases: { size: Size; grid: Size; channels: number; count: number }[];
+  means: { size: Size; channels: number; pieces: number; deep: boolean }[]; // pieces: pictures one below the other
+  bases: { size: Size; grid: Size; channels: number; count: number; deep: boolean }[]; // deep: of more than 8 bits
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
 }
@@ -98,7 +99,7 @@ export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
 
 /** Bytes of the means and of what is composed: the atlas with its mips, sums that are coarser, where texels lie. */
 function composing(needs: Needs, down: number): number {
-  const means = needs.means.map(({ size, channels }) => CODES * meanLayers(channels) * texels(size, down));
+  const means = needs.means.map((mean) => bytesOf(mean) * meanLayers(mean.channels) * texels(mean.size, down));
   const sums = gridsOf(needs).map((size) => {
     const mips = size.join() === needs.atlas.join() ? MIPS : 1;
     const places = needs.rays && needs.bases.some(({ grid }) => grid.join() === size.join());
@@ -107,20 +108,24 @@ function composing(needs: Needs, down: number): number {
   return Math.round([...means, ...sums].reduce((a, b) => a + b, 0));
 }
 
+function bytesOf({ deep }: { deep: boolean }): number {
+  return deep ? HALVES : CODES;
+}
+
 /** Bytes of the first `count` textures of each basis and of the maps of their weights. */
 function stored({ bases, rays }: Needs, down: number, count: number): number {
   return bases.reduce((sum, basis) => {
     const used = Math.min(count, basis.count);
     if (!used) return sum;
     const maps = rays ? groupsOf(used) * MAP_SIDE * MAP_SIDE * HALVES : 0;
-    return sum + CODES * layersOf(used, basis.channels) * texels(basis.size, down) + maps;
+    return sum + bytesOf(basis) * layersOf(used, basis.channels) * texels(basis.size, down) + maps;
   }, 0);
 }
 
 /** Columns and rows of the largest piece of a picture that is packed while textures arrive. */
 export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDown: number, scaleDown: number): Size {
   const sizes = [
-    ...means.filter(({ pieces }) => pieces > 1).map(({ size }) => smaller(size, meanDown)),
+    ...means.filter(({ pieces, deep }) => pieces > 1 || deep).map(({ size }) => smaller(size, meanDown)),
     ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
   ];
   return [Math.max(1, ...sizes.map(([width]) => width)), Math.max(1, ...sizes.map(([, height]) => height))];
@@ -128,7 +133,7 @@ export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDo
 
 function onTheWay(needs: Needs, down: number): number {
   const [width, height] = roomFor({ means: [], bases: needs.bases }, 1, down);
-  return CODES * width * height;
+  return (CODES + (needs.bases.some(({ deep }) => deep) ? WORDS : 0)) * width * height;
 }
 
 function sentence(plan: Omit<Plan, "limitation">, total: number, needs: Needs, limits: DeviceLimits): string | null {

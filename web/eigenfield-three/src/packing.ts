@@ -2,6 +2,7 @@
 // into its component of its layer, code by code, and what three.js and others have set is put back.
 
 import type { Piece } from "./decode.js";
+import type { Codes } from "./deep.js";
 import { bound } from "./gpu.js";
 
 type GL = WebGL2RenderingContext;
@@ -14,10 +15,10 @@ void main() {
 const FRAGMENT = `#version 300 es
 precision highp float;
 uniform highp sampler2D picture;
-uniform int channel;
+uniform vec4 factors;
 out vec4 code;
 void main() {
-  code = vec4(texelFetch(picture, ivec2(gl_FragCoord.xy), 0)[channel]);
+  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));
 }
 `;
 
@@ -28,48 +29,72 @@ export interface Slot {
   component: number;
 }
 
+/** Where pictures are put while they are packed. */
+export interface Rooms {
+  picture: WebGLTexture;
+  codes: WebGLTexture | null; // null: all pictures have 8 bits
+}
+
 export interface Packer {
-  put(piece: Piece, array: WebGLTexture, slots: Slot[]): void;
+  /** `unit`: what is stored of a picture's 1. Codes are stored as they are. */
+  put(piece: Piece, array: WebGLTexture, slots: Slot[], unit: number): void;
   free(): void;
 }
 
-/** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the texture `picture`, which it owns. */
-export function makePacker(gl: GL, picture: WebGLTexture): Packer {
+/** Puts pieces of pictures into arrays as compose.glsl reads them, by way of the rooms, which it owns. */
+export function makePacker(gl: GL, rooms: Rooms): Packer {
   const program = link(gl);
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
-  const channelAt = gl.getUniformLocation(program, "channel");
+  const factors = gl.getUniformLocation(program, "factors");
 
-  const draw = ({ bitmap, rows }: Piece, array: WebGLTexture, slots: Slot[]): void => {
+  const draw = ({ picture, rows }: Piece, array: WebGLTexture, slots: Slot[], unit: number): void => {
     gl.useProgram(program); // its sampler reads unit 0
     gl.bindVertexArray(vertices);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
-    gl.viewport(0, 0, bitmap.width, rows);
+    gl.viewport(0, 0, picture.width, rows);
     for (const { channel, layer, component } of slots) {
       gl.colorMask(component === 0, component === 1, component === 2, component === 3);
       gl.framebufferTextureLayer(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, array, 0, layer);
-      gl.uniform1i(channelAt, channel);
+      if (isCodes(picture)) gl.uniform4f(factors, 255, 255 * 256, 0, 0);
+      else gl.uniform4fv(factors, [0, 1, 2, 3].map((own) => (own === channel ? unit : 0)));
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
   };
 
   return {
-    put(piece, array, slots) {
-      const { bitmap, row, rows } = piece;
+    put(piece, array, slots, unit) {
+      const { picture, row, rows } = piece;
+      const room = isCodes(picture) ? rooms.codes : rooms.picture;
+      if (!room) return;
       onFirstUnit(gl, () =>
-        bound(gl, gl.TEXTURE_2D, picture, () => {
-          gl.pixelStorei(gl.UNPACK_SKIP_ROWS, row);
-          gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, bitmap.width, rows, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
-          untouched(gl, () => draw(piece, array, slots));
+        bound(gl, gl.TEXTURE_2D, room, () => {
+          if (isCodes(picture)) putCodes(gl, picture, row, rows);
+          else {
+            gl.pixelStorei(gl.UNPACK_SKIP_ROWS, row);
+            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, picture.width, rows, gl.RGBA, gl.UNSIGNED_BYTE, picture);
+          }
+          untouched(gl, () => draw(piece, array, slots, unit));
         }),
       );
     },
     free() {
-      gl.deleteTexture(picture);
+      gl.deleteTexture(rooms.picture);
+      gl.deleteTexture(rooms.codes);
       gl.deleteVertexArray(vertices);
       gl.deleteFramebuffer(frame);
       gl.deleteProgram(program);
     },
   };
+}
+
+function isCodes(picture: ImageBitmap | Codes): picture is Codes {
+  return "data" in picture;
+}
+
+function putCodes(gl: GL, { data, width, stride }: Codes, row: number, rows: number): void {
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.pixelStorei(gl.UNPACK_ROW_LENGTH, stride / 2);
+  gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, width, rows, gl.RG, gl.UNSIGNED_BYTE, data, row * stride);
 }
 
 function link(gl: GL): WebGLProgram {

@@ -3,6 +3,7 @@
 import type { Texture } from "three";
 import type { SceneDocument } from "./document.js";
 import { groupsOf, type Plan } from "./memory.js";
+import { isDeep, type Picture } from "./planes.js";
 import type { Textures } from "./textures.js";
 
 /** A mean, or the textures of a basis. */
@@ -11,7 +12,9 @@ export interface Part {
   grid: [number, number];
   rectangle: [number, number, number, number]; // of the grid: left, top, right, bottom in 0..1
   colours: [number, number, number][]; // of the value 1 of each channel
-  scale: Float32Array; // four numbers for each channel of each group of textures: value = stored * scale + bias
+  // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over 255, or
+  // where some of them have more than 8 bits the codes.
+  scale: Float32Array;
   bias: Float32Array;
   basis: BasisPart | null; // null: a mean
 }
@@ -39,14 +42,12 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
       const used = Math.min(count, plan.usable);
       if (used && stored) {
         const [left, top] = [corner[0] / grid[0], corner[1] / grid[1]];
-        const scale = pictures.flatMap((picture) => picture.scale);
-        const zero = pictures.flatMap((picture) => picture.zero);
         parts.push({
           stored,
           grid,
           rectangle: [left, top, left + size[0] / grid[0], top + size[1] / grid[1]],
           colours,
-          ...basisNumbers(scale, zero, channels, used),
+          ...basisNumbers(pictures, channels, used),
           basis: { ready, column, group },
         });
       }
@@ -60,24 +61,34 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
 type Numbers = Pick<Part, "scale" | "bias">;
 
 /** Of a mean channel c is component c % 4, so that three of four scales are zero; grey pictures are the first. */
-function meanNumbers({ scale, zero }: { scale: number[]; zero: number[] }, channels: number): Numbers {
+function meanNumbers(mean: Picture, channels: number): Numbers {
+  const { scale, zero } = mean;
+  const unit = unitOf([mean]);
   const numbers = { scale: new Float32Array(4 * channels), bias: new Float32Array(4 * channels) };
   for (let channel = 0; channel < channels; channel++) {
     const at = 4 * channel + (channel % 4);
-    numbers.scale[at] = 255 * (scale[channel] ?? 0);
+    numbers.scale[at] = unit * (scale[channel] ?? 0);
     numbers.bias[at] = -(zero[channel] ?? 0) * (scale[channel] ?? 0);
   }
   return numbers;
 }
 
-function basisNumbers(scale: number[], zero: number[], channels: number, used: number): Numbers {
+/** Codes that a stored 1 stands for. */
+function unitOf(pictures: Picture[]): number {
+  return isDeep(pictures) ? 1 : 255;
+}
+
+function basisNumbers(pictures: Picture[], channels: number, used: number): Numbers {
+  const scale = pictures.flatMap((picture) => picture.scale);
+  const zero = pictures.flatMap((picture) => picture.zero);
+  const unit = unitOf(pictures);
   const length = 4 * channels * groupsOf(used);
   const numbers = { scale: new Float32Array(length), bias: new Float32Array(length) };
   for (let j = 0; j < used; j++) {
     for (let channel = 0; channel < channels; channel++) {
       const at = 4 * (channels * Math.floor(j / 4) + channel) + (j % 4);
       const own = scale[channels * j + channel] ?? 0;
-      numbers.scale[at] = 255 * own;
+      numbers.scale[at] = unit * own;
       numbers.bias[at] = -(zero[channels * j + channel] ?? 0) * own;
     }
   }

@@ -9,11 +9,10 @@ export const FLOAT = 5126; // the component type of accessors
 
 const DEEP = 10; // bits of a code that may have more than 8
 
-/** Codes as a browser decodes them, 0..255, be they of 8 bits or more. */
 export interface Picture {
   view: number;
   mimeType: string;
-  bits: number; // of the codes in the file
+  bits: number; // of its codes
   scale: number[]; // of each channel of each texture: value = (code - zero) * scale
   zero: number[];
   textures: number; // in this picture, one below the other
@@ -117,16 +116,21 @@ function readPicture(
   const [scale, zero] = [value.key("scale"), value.key("zero")];
   const made = { view: viewOf(value.key("bufferView")), mimeType, bits, textures, pieces, where: value.where };
   if (plain && bits === 8 && !scale.exists && !zero.exists) return { ...made, ...asTheyAre(channels) };
-  const step = (2 ** bits - 1) / 255; // from one code of the browser to the next
-  return {
-    ...made,
-    scale: numbersOf(scale, channels, textures).map((number) => number * step),
-    zero: numbersOf(zero, channels, textures).map((number) => number / step),
-  };
+  return { ...made, scale: numbersOf(scale, channels, textures), zero: numbersOf(zero, channels, textures) };
 }
 
 function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
   return { scale: Array<number>(channels).fill(1 / 255), zero: Array<number>(channels).fill(0) };
+}
+
+/** Whether some of the codes have more than 8 bits. */
+export function isDeep(pictures: Picture[]): boolean {
+  return pictures.some(({ bits }) => bits > 8);
+}
+
+/** What codes of 8 bits, as browsers decode them, are short of codes of `bits`. */
+export function codeStep({ bits }: Picture): number {
+  return (2 ** bits - 1) / 255;
 }
 
 /** A number of each channel of each texture, or of each channel of all. */

@@ -80,7 +80,7 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const encoded = cameras.filter((_, i) => !scene.heldOut[i]);
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
-    const meanSizes = means.map(([first]): [number, number] => [first?.bitmap.width ?? 1, first?.rows ?? 1]);
+    const meanSizes = means.map(([first]): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1]);
     const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
     const rays = info.facesPlane;
     const parts = { scene, info, meshes, means, meanSizes, rays, omega, weights, bytes };

@@ -1,7 +1,7 @@
 // How strong an eigen texture is, to show one by itself.
 
-import { closePieces, decodePieces } from "./decode.js";
-import type { Basis } from "./planes.js";
+import { closePieces, decodeBitmaps } from "./decode.js";
+import { codeStep, type Basis } from "./planes.js";
 
 const SIDE = 128; // of the thumbnail that is looked at
 const SHARE = 0.98; // of the values that shall fit around mid grey
@@ -19,21 +19,22 @@ export async function eigenGain(
   const picture = basis.pictures.find(({ textures }) => (first += textures) > rank);
   if (!picture) return 1;
   const within = rank - (first - picture.textures);
+  const step = codeStep(picture);
   const together = picture.pieces < channels; // R, G and B
-  const pieces = await decodePieces(await read(picture.view), picture, basis.size);
+  const pieces = await decodeBitmaps(await read(picture.view), picture, basis.size);
   const canvas = new OffscreenCanvas(SIDE, SIDE);
   const context = canvas.getContext("2d", { willReadFrequently: true });
   if (!context) return 1;
   context.imageSmoothingEnabled = false; // single texels: averages would be weaker
   const values: number[] = [];
-  pieces.slice(picture.pieces * within, picture.pieces * (within + 1)).forEach(({ bitmap, row, rows }, i) => {
+  pieces.slice(picture.pieces * within, picture.pieces * (within + 1)).forEach(({ picture: bitmap, row, rows }, i) => {
     context.drawImage(bitmap, 0, row, bitmap.width, rows, 0, 0, SIDE, SIDE);
     const { data } = context.getImageData(0, 0, SIDE, SIDE);
     (together ? [0, 1, 2] : [i]).forEach((channel) => {
       const [scale, zero] = [picture.scale, picture.zero].map((own) => own[channels * within + channel] ?? 0);
       const colour = Math.max(...(colours[channel] ?? [0]).map(Math.abs)) * (scale ?? 0);
       for (let at = together ? channel : 0; at < data.length; at += 4) {
-        values.push(Math.abs(((data[at] ?? 0) - (zero ?? 0)) * colour));
+        values.push(Math.abs((step * (data[at] ?? 0) - (zero ?? 0)) * colour));
       }
     });
   });

@@ -7,7 +7,7 @@ import { atlasOf, type ViewBytes } from "./info.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { makePacker, type Packer, type Slot } from "./packing.js";
-import type { Basis, Picture } from "./planes.js";
+import { codeStep, isDeep, type Basis, type Picture } from "./planes.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
@@ -62,9 +62,11 @@ export class Textures {
   ) {
     const { scene, meanSizes, rays } = parts;
     this.decoded = parts.means;
-    const bases = scene.planes.flatMap(({ channels, bases }) => bases.map((basis) => ({ ...basis, channels })));
-    const means = scene.planes.map(({ channels, mean: { pieces } }, i): memory.Needs["means"][number] => {
-      return { size: meanSizes[i] ?? [1, 1], channels, pieces };
+    const bases = scene.planes.flatMap(({ channels, bases }) =>
+      bases.map((basis) => ({ ...basis, channels, deep: isDeep(basis.pictures) })),
+    );
+    const means = scene.planes.map(({ channels, mean }, i): memory.Needs["means"][number] => {
+      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, deep: isDeep([mean]) };
     });
     this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
     this.means = means.map(() => new ExternalTexture());
@@ -181,6 +183,7 @@ export class Textures {
     const array = this.bases[number]?.sourceTexture;
     const ready = this.ready[number];
     if (!(array instanceof WebGLTexture) || !ready) return;
+    const unit = this.needs.bases[number]?.deep ? 255 * codeStep(picture) : 1;
     const together = picture.pieces < channels; // R, G and B
     for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
       for (let i = 0; i < picture.pieces; i++) {
@@ -189,7 +192,7 @@ export class Textures {
           return { channel: together ? channel : 0, layer: layer(channel), component: j % 4 };
         });
         const piece = pieces[(j - first) * picture.pieces + i];
-        if (piece) packer.put(piece, array, slots);
+        if (piece) packer.put(piece, array, slots, unit);
       }
       ready[j] = true;
     }
@@ -204,25 +207,29 @@ export class Textures {
       const { meanDown, scaleDown, usable } = plan;
       const between = meanDown > 1 || scaleDown > 1; // texels of what is composed are none of what is stored
       const made = [
-        ...means.map(({ size, channels }) =>
-          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between),
+        ...means.map(({ size, channels, deep }) =>
+          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between, deep),
         ),
-        ...bases.map(({ size, channels, count }) => {
+        ...bases.map(({ size, channels, count, deep }) => {
           const used = Math.min(count, usable);
           return gpu.makeArray(
             gl,
             used ? memory.smaller(size, scaleDown) : [1, 1],
             used ? memory.layersOf(used, channels) : 1,
             between,
+            deep,
           );
         }),
       ];
-      const room = gpu.makeRoom(gl, memory.roomFor(this.needs, meanDown, scaleDown));
-      if (room && made.every((texture) => texture !== null)) {
+      const size = memory.roomFor(this.needs, meanDown, scaleDown);
+      const picture = gpu.makeRoom(gl, size);
+      const wide = [...means, ...bases].some(({ deep }) => deep);
+      const codes = wide ? gpu.makeRoom(gl, size, true) : null;
+      if (picture && (codes || !wide) && made.every((texture) => texture !== null)) {
         [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
-        return { packer: makePacker(gl, room), plan };
+        return { packer: makePacker(gl, { picture, codes }), plan };
       }
-      for (const texture of [...made, room]) gl.deleteTexture(texture);
+      for (const texture of [...made, picture, codes]) gl.deleteTexture(texture);
       if (!usable) {
         throw new SceneError("unsupported", "The graphics memory is full; close other pages and try again.");
       }
@@ -243,21 +250,28 @@ export class Textures {
       );
     }
     decoded.forEach((pieces, i) => {
-      const [first] = pieces;
       const array = this.means[i]?.sourceTexture;
-      if (turn === this.turn && first && array instanceof WebGLTexture) {
-        if (pieces.length === 1) gpu.putPicture(gl, array, first.bitmap);
-        else {
-          pieces.forEach((piece, channel) => {
-            this.packer?.put(piece, array, [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }]);
-          });
-        }
-      }
+      const mean = scene.planes[i]?.mean;
+      if (turn === this.turn && mean && array instanceof WebGLTexture) this.putMean(gl, pieces, mean, array);
       closePieces(pieces);
     });
     if (turn !== this.turn) return;
     this.hasMeans = true;
     this.version += 1;
+  }
+
+  private putMean(gl: WebGL2RenderingContext, pieces: Piece[], mean: Picture, array: WebGLTexture): void {
+    const deep = isDeep([mean]);
+    const [first] = pieces;
+    if (first && pieces.length === 1 && !deep && "close" in first.picture) {
+      gpu.putPicture(gl, array, first.picture);
+      return;
+    }
+    const unit = deep ? 255 * codeStep(mean) : 1;
+    pieces.forEach((piece, channel) => {
+      const slots = [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }];
+      this.packer?.put(piece, array, slots, unit);
+    });
   }
 
   private decode(entry: Entry | undefined, down: number): Promise<Piece[]> {

@@ -71,7 +71,7 @@ function inverseCosine(table: Float64Array, rows: number, columns: number): Floa
   return result;
 }
 
-/** The k-th of the n cosines at place x, from a table of one round: n * n numbers could be more than there is memory. */
+/** The k-th of n cosines at place x, from a table of one round: n * n numbers could be more than there is memory. */
 function cosines(n: number): (k: number, x: number) => number {
   const [level, height] = [Math.sqrt(1 / n), Math.sqrt(2 / n)];
   const round = Float64Array.from({ length: 4 * n }, (_, i) => height * Math.cos((Math.PI * i) / (2 * n)));

@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DoubleSide as c, EventDispatcher as l, ExternalTexture as u, FrontSide as d, GLSL3 as f, HalfFloatType as p, InstancedBufferGeometry as m, LinearFilter as h, LinearMipmapLinearFilter as g, Matrix4 as _, Mesh as v, MeshBasicMaterial as y, NearestFilter as b, NoBlending as x, OneFactor as ee, RGBAFormat as te, RawShaderMaterial as S, Scene as C, Sphere as w, Vector2 as ne, Vector3 as T, Vector4 as re, WebGLRenderTarget as ie } from "three";
-import { GLTFLoader as ae } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DoubleSide as c, EventDispatcher as l, ExternalTexture as u, FrontSide as d, GLSL3 as f, HalfFloatType as p, InstancedBufferGeometry as m, LinearFilter as h, LinearMipmapLinearFilter as g, Matrix4 as _, Mesh as v, MeshBasicMaterial as y, NearestFilter as b, NoBlending as x, OneFactor as S, RGBAFormat as C, RawShaderMaterial as w, Scene as T, Sphere as E, Vector2 as D, Vector3 as O, Vector4 as ee, WebGLRenderTarget as k } from "three";
+import { GLTFLoader as te } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var E = class extends Error {
+var A = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,46 +9,295 @@ var E = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function D(e, t) {
-	return new E("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function j(e, t) {
+	return new A("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function oe(e, t) {
-	return new E("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function ne(e, t) {
+	return new A("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function se(e, t = "") {
-	return e instanceof E ? e : new E("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function re(e) {
+	return new A("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+}
+function ie(e, t = "") {
+	return e instanceof A ? e : new A("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/limits.ts
-var ce = "EIGENFIELD_eigen_textures", le = /* @__PURE__ */ new Set([
-	"toRGB",
+var ae = "EIGENFIELD_eigen_textures", oe = /* @__PURE__ */ new Set([
+	"bits",
+	"codedCameras",
+	"codedMesh",
+	"codedWeights",
 	"regions",
-	"stacks"
-]), ue = 64 * 2 ** 20, O = 16384, de = 16384, k = 2 ** 27, A = 4096, fe = 8 * 2 ** 30, pe = 1e5, me = 2 ** 29, j = 1024, he = 2 ** 26, ge = 2 ** 27, _e = 2 ** 28, M = 1e30;
+	"stacks",
+	"toRGB"
+]), se = 64 * 2 ** 20, M = 16384, ce = 16384, le = 2 ** 27, ue = 4096, de = 8 * 2 ** 30, fe = 1e5, pe = 65535, me = 2 ** 29, he = 1024, ge = 2 ** 26, _e = 2 ** 27, ve = 2 ** 28, ye = 1e30, N = 65536, be = 126, P = 64, xe = 0, Se = 1, Ce = 2, we = 24, Te = 44, Ee = 21, De = 26214, Oe = 4, ke = Float64Array.from({ length: 4095 }, (e, t) => Math.round(N / (1 + Math.exp((2047 - t) / 256)))), Ae = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), je = Float64Array.from({ length: 127 }, (e, t) => Math.round(N / (t + 1.5)));
+function F(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + F(Math.floor(e / 4294967296));
+}
+var Me = class {
+	bytes;
+	low = 0;
+	high = 4294967295;
+	code = 0;
+	at = 0;
+	probability;
+	seen;
+	weights;
+	constructor(e, t, n) {
+		this.bytes = e, this.probability = new Uint16Array(t * P).fill(N / 2), this.seen = new Uint8Array(t * P), this.weights = new Float64Array(n * P * 3).fill(De);
+		for (let e = 0; e < Oe; e++) this.code = this.code * 256 + this.next();
+	}
+	checkEnd(e) {
+		if (this.at > this.bytes.length + Oe) throw re(e);
+	}
+	flag(e, t, n, r) {
+		return this.node(e, t, n, r, 0) === 1;
+	}
+	raw(e) {
+		let t = 0;
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(N / 2);
+		return t;
+	}
+	integer(e, t, n, r) {
+		let i = this.magnitude(e, t, n, r);
+		return i === 0 ? 0 : this.node(e, t, n, r, Se) ? -i : i;
+	}
+	magnitude(e, t, n, r) {
+		if (!this.node(e, t, n, r, xe)) return 0;
+		let i = 0;
+		for (; i < Ee && this.node(e, t, n, r, Ce + i);) i += 1;
+		if (i < 2) return i + 1;
+		let a = 1;
+		for (let o = i - 2; o >= 0; o--) {
+			let s;
+			s = o === i - 2 ? this.node(e, t, n, r, we + i) : o === i - 3 ? this.node(e, t, n, r, Te + 2 * Math.min(i, 9) + (a & 1)) : this.split(N / 2), a = a * 2 + s;
+		}
+		return a + 1;
+	}
+	node(e, t, n, r, i) {
+		return this.bit(e * P + i, t * P + i, n * P + i, (r * P + i) * 3);
+	}
+	bit(e, t, n, r) {
+		let { probability: i, weights: a } = this, o = Ae[i[e] >> 4], s = Ae[i[t] >> 4], c = Ae[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / N), u = ke[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? N - u : -u;
+		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
+	}
+	learn(e, t) {
+		let [n, r] = [this.probability[e], this.seen[e]];
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * je[r] / N), r < be && (this.seen[e] = r + 1);
+	}
+	split(e) {
+		let t = this.low + Math.floor((this.high - this.low) * e / N), n = +(this.code <= t);
+		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
+		return n;
+	}
+	next() {
+		return this.bytes[this.at++] ?? 0;
+	}
+};
+function I(e, t, n) {
+	if (e.length < t) throw re(n);
+	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
+	return new DataView(e.buffer, e.byteOffset, e.byteLength);
+}
+function Ne(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw j(r, `${t} numbers announced`);
+}
+// eigenfield-three/src/table-decoder.ts
+var Pe = 12, Fe = 3, Ie = 312, Le = Fe * Ie, Re = 938, ze = 24, Be = 16, Ve = 1722, He = 1726, Ue = 4, We = 5;
+function Ge(e) {
+	return new Me(e, He, 21);
+}
+function Ke(e) {
+	return e.flag(Le, Le, Le, Fe) ? 2 : +!!e.flag(937, 937, 937, Fe);
+}
+function qe(e) {
+	return Math.min(F(e), 11);
+}
+function Je(e, t, n, r) {
+	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
+	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
+		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
+			0,
+			0,
+			s
+		];
+		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Ie, y = e.integer(v + qe(m) * Pe + qe(g), v + 144 + qe(m + h), v + 144 + 24 + _ * Pe + qe(g + Math.abs(l)), r);
+		i[c * t + a] = p + y, s = Math.abs(y);
+	}
+	return i;
+}
+function Ye(e, t, n, r) {
+	let i = new Float64Array(t * n), a = new Float64Array(n);
+	for (let o = 0; o < t; o++) {
+		let t = 0;
+		for (let s = 0; s < n; s++) {
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(F(a[s]), 23), d = Math.min(F(t), 23), f = e.integer(Re + l * ze + u, Re + (Be + l) * ze + d, 1706 + l, We + l);
+			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
+		}
+	}
+	return i;
+}
+function Xe(e, t, n, r) {
+	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
+		0,
+		1,
+		0
+	];
+	for (let l = 0; l < t; l++) {
+		if (s = +!!e.flag(Ve + s, Ve + s, 1724, Ue), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, Ue);
+		if (!(t >= 0 && t < n) || a[t]) throw j(r, "a grid with a camera out of place");
+		a[t] = 1, i[l] = t, o = t + 1, c += 1;
+	}
+	if (c !== n) throw j(r, "a grid without all cameras");
+	return i;
+}
+// eigenfield-three/src/camera-decoder.ts
+var Ze = 130, L = 11, Qe = 1, $e = 2;
+function et(e, t = "cameras") {
+	let n = I(e, Ze, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Qe) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
+	Ne(e, Math.max(L * i, o * s), L * fe, t);
+	let l = Ze + (a ? 132 : 0);
+	I(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Ze + 4 * (e * L + t), !0) : 0, d = Ge(e.subarray(l)), f = a ? Xe(d, o * s, i, t) : null, p = Ye(d, i, L, (r & $e) !== 0);
+	d.checkEnd(t);
+	let m = {
+		intrinsics: new Float32Array(5 * i),
+		poses: new Float32Array(12 * i)
+	}, h = [
+		...c.subarray(7, 12),
+		0,
+		0,
+		0,
+		...c.subarray(12)
+	], g = nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(L), v = 0;
+	for (let e = 0; e < (f ? f.length : i); e++) {
+		let t = f ? f[e] : e;
+		if (t < 0) continue;
+		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
+		for (let e = 0; e < L; e++) {
+			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
+			_[e] = p[v * L + e] * t + h[e] + i;
+		}
+		tt(_, g, m, t), v += 1;
+	}
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw j(t, "cameras that are not finite");
+	return m;
+}
+function tt(e, t, n, r) {
+	n.intrinsics.set(e.subarray(0, 5), 5 * r);
+	let [i, a, o] = [
+		e[5],
+		e[6],
+		e[7]
+	], s = i * i + a * a + o * o, c = 1 + s, l = nt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	for (let i = 0; i < 3; i++) {
+		let a = 0;
+		for (let o = 0; o < 3; o++) {
+			let s = 0;
+			for (let e = 0; e < 3; e++) s += l[3 * i + e] * t[3 * e + o];
+			n.poses[12 * r + 4 * i + o] = s, a -= s * e[8 + o];
+		}
+		n.poses[12 * r + 4 * i + 3] = a;
+	}
+}
+function nt(e, t, n, r) {
+	return [
+		[
+			1 - 2 * (t * t + n * n),
+			2 * (e * t - n * r),
+			2 * (e * n + t * r)
+		],
+		[
+			2 * (e * t + n * r),
+			1 - 2 * (e * e + n * n),
+			2 * (t * n - e * r)
+		],
+		[
+			2 * (e * n - t * r),
+			2 * (t * n + e * r),
+			1 - 2 * (e * e + t * t)
+		]
+	].flat();
+}
+// eigenfield-three/src/weight-decoder.ts
+var rt = 14, it = 2 ** 20;
+function at(e, t = "weights") {
+	let n = I(e, rt, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
+	Ne(e, o * s * Math.max(a, 1), ve, t), I(e, rt + 4 * a, t);
+	let c = o * s;
+	if (c < i) throw j(t, "a grid with too few cells");
+	let l = Ge(e.subarray(rt + 4 * a)), u = r ? Xe(l, c, i, t) : null, d = u !== null && i === c, f = [
+		0,
+		1,
+		2
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * it * Math.max(o, s);
+	for (let e = 0; e < a; e++) {
+		let r = n.getFloat32(rt + 4 * e, !0);
+		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
+		let i = Ke(l), h = Je(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
+		f[i] = h;
+		let g = i === 2 ? ot(h, o, s) : h;
+		for (let t = 0; t < c; t++) {
+			let n = u ? u[t] : t;
+			n >= 0 && (p[n * a + e] = g[t] * r);
+		}
+		l.checkEnd(t);
+	}
+	if (!p.every(Number.isFinite)) throw j(t, "weights that are not finite");
+	return {
+		cameras: i,
+		components: a,
+		values: p
+	};
+}
+function ot(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = st(n);
+	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
+		let o = 0;
+		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
+		r[i * n + t] = o;
+	}
+	let o = st(t);
+	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
+		let s = 0;
+		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
+		i[e * n + a] = s;
+	}
+	return i;
+}
+function st(e) {
+	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
+	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
+}
 // eigenfield-three/src/info.ts
-async function N(e, t, n) {
+var ct = 1e-6;
+async function lt(e, t, n) {
 	let r = await n(e.view), i = t.views[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw ve(e.where);
-	let a = e.count * e.items, o = r.slice(e.offset, e.offset + 4 * a);
-	if (e.type === 5125) return new Uint32Array(o);
-	let s = new Float32Array(o);
-	for (let t of s) if (!(Math.abs(t) <= 1e30)) throw D(e.where, `${t} among its numbers`);
-	return s;
+	if (r.byteLength < i) throw re(e.where);
+	let a = e.count * e.items, o = r.slice(e.offset, e.offset + (e.type === 5123 ? 2 : 4) * a);
+	return e.type === 5125 ? new Uint32Array(o) : e.type === 5123 ? new Uint16Array(o) : ut(new Float32Array(o), e.where);
 }
-function ve(e) {
-	return new E("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function ut(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
+	return e;
 }
-async function ye(e, t) {
-	let [n, r, i, a] = await Promise.all([
-		N(e.intrinsics, e, t),
-		N(e.poses, e, t),
-		N(e.sizes, e, t),
-		e.colour ? N(e.colour, e, t) : null
+async function dt(e, t) {
+	let [{ lenses: n, poses: r }, i, a] = await Promise.all([
+		pt(e, t),
+		mt(e, t),
+		e.colour ? lt(e.colour, e, t) : null
 	]);
 	return e.names.map((t, o) => {
-		let [s = 0, c = 0, l = 0, u = 0, d = 0] = n.subarray(5 * o, 5 * o + 5);
-		if (!(s > 0 && c > 0)) throw D(e.intrinsics.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = be([...r.subarray(12 * o, 12 * o + 12)], e.poses.where, t), [m = 0, h = 0] = i.subarray(2 * o, 2 * o + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > me) throw D(e.sizes.where, `"${t}" is ${m} x ${h} pixels`);
+		let [s = 0, c = 0, l = 0, u = 0, d = 0] = n.numbers.subarray(5 * o, 5 * o + 5);
+		if (!(s > ct && c > ct)) throw j(n.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = ht([...r.numbers.subarray(12 * o, 12 * o + 12)], r.where, t), [m = 0, h = 0] = i.numbers.subarray(2 * o, 2 * o + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > me) throw j(i.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -65,13 +314,13 @@ async function ye(e, t) {
 				0,
 				1
 			]
-		], [_, v] = a ? xe([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
+		], [_, v] = a ? gt([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Oe(f, p),
+			centre: Tt(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -79,7 +328,41 @@ async function ye(e, t) {
 		};
 	});
 }
-function be(e, t, n) {
+async function ft(e, t, n) {
+	return {
+		numbers: await lt(e, t, n),
+		where: e.where
+	};
+}
+async function pt(e, t) {
+	let { calibration: n, names: r } = e;
+	if ("intrinsics" in n) {
+		let { intrinsics: r, poses: i } = n;
+		return {
+			lenses: await ft(r, e, t),
+			poses: await ft(i, e, t)
+		};
+	}
+	let { view: i, where: a } = n, o = et(new Uint8Array(await t(i)), a), s = o.poses.length / 12;
+	if (s !== r.length) throw j(a, `${s} cameras in it, and ${r.length} names`);
+	let c = (e) => ({
+		numbers: ut(e, a),
+		where: a
+	});
+	return {
+		lenses: c(o.intrinsics),
+		poses: c(o.poses)
+	};
+}
+async function mt(e, t) {
+	if (!Array.isArray(e.sizes)) return ft(e.sizes, e, t);
+	let [n, r] = e.sizes;
+	return {
+		numbers: Uint32Array.from({ length: 2 * e.names.length }, (e, t) => t % 2 ? r : n),
+		where: "its cameras' size"
+	};
+}
+function ht(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -94,57 +377,64 @@ function be(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = I(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw D(t, `the pose of "${n}" is no rotation`);
+		let a = z(i[e], i[r]) - +(e === r);
+		if (!(Math.abs(a) <= 2e-4)) throw j(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(I(L(i[0], i[1]), i[2]) > 0)) throw D(t, `the pose of "${n}" is mirrored`);
+	if (!(z(B(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function xe(e, t, n) {
+function gt(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw D(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function Se(e, t) {
-	let n = P(e), r = n.flatMap(({ weights: e }) => e ? [e] : []), i = await Promise.all(r.map((n) => N(n, e, t))), a = e.heldOut.filter((e) => !e).length, o = n.reduce((e, { count: t }) => e + t, 0), s = new Float32Array(a * o), c = 0;
+async function _t(e, t) {
+	let n = R(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => vt(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
-		let t = e.length / a;
-		for (let n = 0; n < a; n++) s.set(e.subarray(n * t, (n + 1) * t), n * o + c);
-		c += t;
+		let t = e.length / r;
+		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
+		s += t;
 	}
-	return s;
+	return o;
 }
-function P(e) {
+async function vt({ weights: e, count: t }, n, r, i) {
+	if (!e) return /* @__PURE__ */ new Float32Array();
+	if ("type" in e) return lt(e, r, i);
+	let { view: a, where: o } = e, { cameras: s, components: c, values: l } = at(new Uint8Array(await i(a)), o);
+	if (s === n && c === t) return ut(l, o);
+	throw j(o, `${s} x ${c} weights, and ${n} encoded cameras x ${t} textures`);
+}
+function R(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function Ce(e) {
-	return Math.max(0, ...P(e).map(({ count: e }) => e));
+function yt(e) {
+	return Math.max(0, ...R(e).map(({ count: e }) => e));
 }
-function we(e, t) {
-	let n = [...t, ...P(e).map(({ grid: e }) => e)];
+function bt(e, t) {
+	let n = [...t, ...R(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function Te(e, t) {
+async function xt(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = Uint32Array.from(await N(e.triangles, e, t)), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = Uint32Array.from(await lt(e.triangles, e, t)), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw D(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw D(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw j(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-function Ee(e, t, n, r, i) {
-	let { right: a, up: o } = e, s = L(a, o), c = [
+function St(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = B(o, s), l = [
 		0,
 		0,
 		0
 	];
-	for (let { R: e } of t) for (let n = 0; n < 3; n++) c[n] += e[2][n] / t.length;
-	let l = e.settings.metresPerUnit;
+	for (let { R: e } of t) for (let n = 0; n < 3; n++) l[n] += e[2][n] / t.length;
+	let u = e.settings.metresPerUnit;
 	return {
 		version: e.version,
 		generator: e.generator,
@@ -154,9 +444,9 @@ function Ee(e, t, n, r, i) {
 		cameras: t,
 		viewPlane: {
 			origin: e.origin,
-			right: a,
-			up: o,
-			normal: s,
+			right: o,
+			up: s,
+			normal: c,
 			extent: e.extent
 		},
 		grid: r && {
@@ -165,9 +455,9 @@ function Ee(e, t, n, r, i) {
 		},
 		settings: e.settings,
 		scores: e.scores,
-		metresPerUnit: typeof l == "number" && l > 0 && l <= 1e30 ? l : null,
-		bytes: De(e, i),
-		size: we(e, n),
+		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
+		bytes: Ct(e, i),
+		size: bt(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -177,14 +467,13 @@ function Ee(e, t, n, r, i) {
 				grid: n
 			}))
 		})),
-		vertices: e.position.count,
-		triangles: e.indices.count / 3,
-		facesPlane: Math.abs(I(c, s)) > .7
+		...a,
+		facesPlane: Math.abs(z(l, c)) > .7
 	};
 }
-function De(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.map((e) => e.mean.view), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(Ce(e)).fill(0);
-	for (let { pictures: t } of P(e)) {
+function Ct(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.map((e) => e.mean.view), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(yt(e)).fill(0);
+	for (let { pictures: t } of R(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -194,29 +483,30 @@ function De(e, t) {
 			}
 		}
 	}
-	let c = i(P(e).flatMap((e) => e.weights ? [e.weights.view] : [])), l = i([
-		e.position.view,
-		e.uv.view,
-		e.indices.view
-	]);
+	let c = i(R(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
+		l,
+		u,
+		d,
+		...e.mesh ? [e.mesh] : []
+	].map(({ view: e }) => e));
 	return {
 		total: t,
-		mesh: l,
+		mesh: f,
 		mean: o,
 		weights: c,
-		other: t - o - c - l - s.reduce((e, t) => e + t, 0),
+		other: t - o - c - f - s.reduce((e, t) => e + t, 0),
 		textures: s
 	};
 }
-function F(e, t) {
+function wt(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? I(i, e.right) / r[0] : 0, r[1] > 0 ? I(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? z(i, e.right) / r[0] : 0, r[1] > 0 ? z(i, e.up) / r[1] : 0];
 }
-function Oe(e, t) {
+function Tt(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -224,10 +514,10 @@ function Oe(e, t) {
 		n(2)
 	];
 }
-function I(e, t) {
+function z(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function L(e, t) {
+function B(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -235,7 +525,7 @@ function L(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function ke(e, t, n) {
+function Et(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -274,7 +564,7 @@ function ke(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Ae(n, o, s);
+		let r = Dt(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -285,11 +575,11 @@ function ke(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Me(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [je(t) * m[0], je(n) * m[1]], _ = [
+	let u = kt(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ot(t) * m[0], Ot(n) * m[1]], _ = [
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -I(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -z(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -302,7 +592,7 @@ function ke(e, t, n) {
 		offset: null
 	};
 }
-function Ae({ K: e, width: t, height: n }, r, i) {
+function Dt({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -322,63 +612,63 @@ function Ae({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function je(e) {
+function Ot(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Me(e) {
+function kt(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			L(t[1], t[2]),
-			L(t[2], t[0]),
-			L(t[0], t[1])
-		], n = I(t[0], e[0]);
+			B(t[1], t[2]),
+			B(t[2], t[0]),
+			B(t[0], t[1])
+		], n = z(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
 	}
 	return t;
 }
-function Ne(e, t, n, r, i = 1) {
+function At(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Pe(e, t, n), Fe(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return jt(e, t, n), Mt(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Pe(e, t, n) {
+function jt(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new T()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function Fe(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ie(e, n);
+function Mt(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Nt(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Ie(e, t) {
+function Nt(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new T(),
+		center: new O(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new T(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new O(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Le = 256;
-function Re(e, t, n) {
+var Pt = 256;
+function Ft(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Le)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Pt)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => ze(t, i.getX(e), i.getY(e), i.getZ(e))), l = Be(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => It(t, i.getX(e), i.getY(e), i.getZ(e))), l = Lt(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Be(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Lt(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -388,7 +678,7 @@ function Re(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function ze({ K: e, R: t, t: n }, r, i, a) {
+function It({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -396,51 +686,51 @@ function ze({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Be(e) {
+function Lt(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Ve = 4 / 3, He = 4, Ue = 8, We = 2 ** 20;
-function Ge() {
+var Rt = 4 / 3, zt = 4, Bt = 8, Vt = 2, Ht = 2 ** 20;
+function Ut() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ke(e) ? Math.min(t ?? 4, 6) * 128 * We : Math.min(t ?? 8, 8) * 256 * We;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Wt(e) ? Math.min(t ?? 4, 6) * 128 * Ht : Math.min(t ?? 8, 8) * 256 * Ht;
 }
-function Ke(e) {
+function Wt(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function R([e, t], n) {
+function V([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function qe(e, t) {
-	let [n, r] = R(e, t);
+function Gt(e, t) {
+	let [n, r] = V(e, t);
 	return n * r;
 }
-function Je(e) {
+function Kt(e) {
 	return Math.ceil(e / 4);
 }
-function Ye(e, t) {
-	return t * z(e);
+function qt(e, t) {
+	return t * H(e);
 }
-function z(e) {
+function H(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Xe({ atlas: e, means: t, bases: n }) {
-	let r = [
-		e,
-		...t.map(({ size: e }) => e),
-		...n.map(({ grid: e }) => e)
+function Jt(e) {
+	let { atlas: t, means: n, bases: r } = e, i = [
+		t,
+		...n.map(({ size: e }) => e),
+		...r.map(({ grid: e }) => e)
 	];
-	return [...new Map(r.map((e) => [e.join(), e])).values()];
+	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function Ze(e, t) {
+function Yt(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Qe(e, n) <= t.memory / 2) ?? 16, o = Qe(e, a) + e.geometry, s = (t, n) => o + $e(e, t, n), c = (n, r) => s(n, r) + tt(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && Xt(e, n) <= t.memory / 2) ?? 16, o = Xt(e, a) + e.geometry, s = (t, n) => o + Qt(e, t, n), c = (n, r) => s(n, r) + en(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -454,71 +744,74 @@ function Ze(e, t) {
 	};
 	return {
 		...p,
-		limitation: nt(p, n, e, t)
+		limitation: tn(p, n, e, t)
 	};
 }
-function Qe(e, t) {
-	let n = e.means.map(({ size: e, channels: n }) => He * Je(n) * qe(e, t)), r = Xe(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Ve : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Ue * qe(n, t) * (r + +!!i);
+function Xt(e, t) {
+	let n = e.means.map((e) => Zt(e) * Kt(e.channels) * Gt(e.size, t)), r = Jt(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Rt : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Bt * Gt(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function $e({ bases: e, rays: t }, n, r) {
+function Zt({ deep: e }) {
+	return e ? Bt : zt;
+}
+function Qt({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? z(a) * 129 * 129 * Ue : 0;
-		return e + He * Ye(a, i.channels) * qe(i.size, n) + o;
+		let o = t ? H(a) * 129 * 129 * Bt : 0;
+		return e + Zt(i) * qt(a, i.channels) * Gt(i.size, n) + o;
 	}, 0);
 }
-function et({ means: e, bases: t }, n, r) {
-	let i = [...e.filter(({ channels: e }) => e !== 1 && e !== 3).map(({ size: e }) => R(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => R(e, r))];
+function $t({ means: e, bases: t }, n, r) {
+	let i = [...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => V(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => V(e, r))];
 	return [Math.max(1, ...i.map(([e]) => e)), Math.max(1, ...i.map(([, e]) => e))];
 }
-function tt(e, t) {
-	let [n, r] = et({
+function en(e, t) {
+	let [n, r] = $t({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return He * n * r;
+	return (zt + (e.bases.some(({ deep: e }) => e) ? Vt : 0)) * n * r;
 }
-function nt(e, t, n, r) {
+function tn(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Qe(n, 1) + $e(n, 1, t) + tt(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${rt(a)} MB of graphics memory and ${rt(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${it(i.join(", "))}: ${o}.`;
+	let a = Xt(n, 1) + Qt(n, 1, t) + en(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${nn(a)} MB of graphics memory and ${nn(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${rn(i.join(", "))}: ${o}.`;
 }
-function rt(e) {
+function nn(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function it(e) {
+function rn(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var at = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", ot = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", st = 2, ct = `
+var an = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", on = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", sn = 2, cn = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${ot}${at}`, lt = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ut = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", dt = `${ct}
+${on}${an}`, ln = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", un = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", dn = `${cn}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, ft = "sumTextures", pt = "finerValue";
-function mt(n, r, i) {
-	let o = new S({
+`, fn = "sumTextures", pn = "finerValue";
+function mn(n, r, i) {
+	let o = new w({
 		glslVersion: f,
-		vertexShader: lt,
-		fragmentShader: `${ct}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: ln,
+		fragmentShader: `${cn}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
-			rectangle: { value: new re(...r) },
+			rectangle: { value: new ee(...r) },
 			...i
 		},
 		side: c,
 		blending: a,
-		blendSrc: ee,
-		blendDst: ee,
+		blendSrc: S,
+		blendDst: S,
 		depthTest: !1,
 		depthWrite: !1
 	}), s = new t();
@@ -542,12 +835,12 @@ function mt(n, r, i) {
 		2,
 		1,
 		3
-	]), s.boundingSphere = new w();
+	]), s.boundingSphere = new E();
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function ht([e, t], n) {
-	return new ie(e, t, {
+function hn([e, t], n) {
+	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -555,31 +848,31 @@ function ht([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function gt(e, t) {
-	let n = L(e.right, e.up), r = [
+function gn(e, t) {
+	let n = B(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...F(e, t), I(r, n) / (Math.max(...e.extent) || 1)];
+	return [...wt(e, t), z(r, n) / (Math.max(...e.extent) || 1)];
 }
-function _t(t, n, r) {
+function _n(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(gt(n, [
+	for (let e = 0; e < i.count; e++) o.set(gn(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - st), u = l.flatMap((e) => l.map((t) => new ne(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - sn), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
-	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new w();
-	let p = new S({
+	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
+	let p = new w({
 		glslVersion: f,
-		vertexShader: ut.replace("SHIFTS", String(u.length)),
-		fragmentShader: dt,
+		vertexShader: un.replace("SHIFTS", String(u.length)),
+		fragmentShader: dn,
 		uniforms: {
-			texel: { value: new ne(2 / r.width, 2 / r.height) },
+			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
 		},
 		side: c,
@@ -588,7 +881,7 @@ function _t(t, n, r) {
 		depthWrite: !1
 	}), h = new v(d, p);
 	h.frustumCulled = !1;
-	let g = new C();
+	let g = new T();
 	return g.add(h), {
 		scene: g,
 		free: () => {
@@ -597,7 +890,7 @@ function _t(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var vt = class {
+var vn = class {
 	mesh;
 	plane;
 	grids;
@@ -605,22 +898,14 @@ var vt = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Xe({
+		let [a, ...o] = Jt({
 			atlas: e,
-			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({
-				size: e,
-				channels: 1
-			})),
-			bases: t.filter(({ basis: e }) => e).map(({ grid: e }) => ({
-				size: e,
-				grid: e,
-				channels: 1,
-				count: 1
-			}))
+			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
+			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(yt), a = new C();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(yn), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: ht(R(e, n), r),
+				target: hn(V(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -628,7 +913,7 @@ var vt = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = mt(pt, [
+			let t = mn(pn, [
 				0,
 				0,
 				1,
@@ -642,10 +927,10 @@ var vt = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && St(this.composed, n) || (this.composed = n, Tt(e, t, () => {
+		this.composed && Sn(this.composed, n) || (this.composed = n, Tn(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) bt(e, t, n);
+				for (let e of t.steps) bn(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -657,22 +942,22 @@ var vt = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = ht([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = _t(this.mesh, this.plane, t.places);
+		t.places = hn([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = _n(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function yt(e) {
+function yn(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
-		let o = Array.from({ length: 64 }, (t, n) => new T(...e.colours[n] ?? [
+		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = mt(ft, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = mn(fn, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -685,7 +970,7 @@ function yt(e) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + a },
 			places: { value: null },
-			eye: { value: new T() }
+			eye: { value: new O() }
 		});
 		i.push({
 			part: e,
@@ -696,42 +981,42 @@ function yt(e) {
 	}
 	return i;
 }
-function bt({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function bn({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => xt(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => xn(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function xt(e, t, n, r) {
+function xn(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function St(e, t) {
+function Sn(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Ct = new i(0), wt = new i();
-function Tt(e, t, n) {
+var Cn = new i(0), wn = new i();
+function Tn(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(wt), e.setClearColor(Ct, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(wt, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(wn), e.setClearColor(Cn, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(wn, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Et(e, t, n, i, a) {
+function En(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? z(t) : 0;
+		u += e, d += t ? H(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -747,22 +1032,22 @@ function Et(e, t, n, i, a) {
 		}
 	}
 	let m = new o(f, 129, 129, Math.max(1, d));
-	return m.format = te, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
+	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Dt = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Ot = {
+var Dn = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", On = {
 	bilinear: 0,
 	bicubic: 1
-}, B = {
+}, kn = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, kt = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", At = `
+}, An = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", jn = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${ot}${Dt}
+${on}${Dn}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -792,101 +1077,28 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function jt(e) {
+function Mn(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new T(1, 1, 1) },
-		exposureBias: { value: new T() },
-		shown: { value: B.picture },
+		exposureScale: { value: new O(1, 1, 1) },
+		exposureBias: { value: new O() },
+		shown: { value: kn.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
-	}, n = new S({
+	}, n = new w({
 		glslVersion: f,
-		vertexShader: kt,
-		fragmentShader: At,
+		vertexShader: An,
+		fragmentShader: jn,
 		uniforms: t,
-		defines: { BICUBIC: Ot.bicubic },
+		defines: { BICUBIC: On.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
-// eigenfield-three/src/parts.ts
-function Mt(e, t, n) {
-	let r = [], [i, a, o, s] = [
-		0,
-		0,
-		0,
-		0
-	];
-	return e.planes.forEach(({ channels: c, mean: l, bases: u }, d) => {
-		let f = e.colours.slice(i, i + c);
-		i += c;
-		let p = t.needs.means[d]?.size ?? [1, 1], m = t.means[d], h = Nt(l, c);
-		m && r.push({
-			stored: m,
-			grid: p,
-			rectangle: [
-				0,
-				0,
-				1,
-				1
-			],
-			colours: f,
-			...h,
-			basis: null
-		});
-		for (let { size: e, grid: i, corner: l, pictures: d, count: p } of u) {
-			let u = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
-			if (h && u) {
-				let [t, n] = [l[0] / i[0], l[1] / i[1]], a = d.flatMap((e) => e.scale), p = d.flatMap((e) => e.zero);
-				r.push({
-					stored: u,
-					grid: i,
-					rectangle: [
-						t,
-						n,
-						t + e[0] / i[0],
-						n + e[1] / i[1]
-					],
-					colours: f,
-					...Pt(a, p, c, h),
-					basis: {
-						ready: m,
-						column: o,
-						group: s
-					}
-				});
-			}
-			o += p, s += h ? z(h) : 0;
-		}
-	}), r;
-}
-function Nt({ scale: e, zero: t }, n) {
-	let r = {
-		scale: new Float32Array(4 * n),
-		bias: new Float32Array(4 * n)
-	};
-	for (let i = 0; i < n; i++) {
-		let n = 4 * i + i % 4;
-		r.scale[n] = 255 * (e[i] ?? 0), r.bias[n] = -(t[i] ?? 0) * (e[i] ?? 0);
-	}
-	return r;
-}
-function Pt(e, t, n, r) {
-	let i = 4 * n * z(r), a = {
-		scale: new Float32Array(i),
-		bias: new Float32Array(i)
-	};
-	for (let i = 0; i < r; i++) for (let r = 0; r < n; r++) {
-		let o = 4 * (n * Math.floor(i / 4) + r) + i % 4, s = e[n * i + r] ?? 0;
-		a.scale[o] = 255 * s, a.bias[o] = -(t[n * i + r] ?? 0) * s;
-	}
-	return a;
-}
 // eigenfield-three/src/json.ts
-var Ft = class e {
+var Nn = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -917,7 +1129,7 @@ var Ft = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -M, t = M) {
+	number(e = -ye, t = ye) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -927,7 +1139,7 @@ var Ft = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -M, n = M) {
+	numbers(e, t = -ye, n = ye) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -941,23 +1153,218 @@ var Ft = class e {
 		];
 	}
 	wrong(e) {
-		return D(this.where || "/", this.exists ? e : "missing");
+		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, V = 5126;
-function It(e, t) {
-	return new E("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+}, Pn = {
+	5121: 1,
+	5123: 2,
+	5125: 4,
+	5126: 4
+}, Fn = {
+	SCALAR: 1,
+	VEC2: 2,
+	VEC3: 3
+}, In = 5123, Ln = 5125;
+function Rn(e) {
+	let t = new Nn(e, "");
+	try {
+		return t.key("extensions").key(ae).exists;
+	} catch {
+		return !1;
+	}
 }
-function Lt(e) {
-	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, de));
+function zn(e) {
+	let t = new Nn(e, ""), n = t.key("extensions").key(ae), r = Bn(n), i = Vn(t), a = Un(t, i), o = (e) => e.integer(0, i.length - 1);
+	Hn(t);
+	let s = qn(t, o), c = n.key("cameras"), l = Jn(c), u = Yn(c, l.length), d = u.filter((e) => !e).length, f = rr(n, d, s, a, o), p = ir(n, f), m = l.length, h = c.key("colour");
+	if (h.exists && p.length < 3) throw h.wrong("needs three channels");
+	let g = n.key("viewPlane"), _ = g.key("triangles"), v = t.key("meshes").at(0).key("primitives").at(0), y = v.key("mode");
+	if (y.exists && y.integer(0, 6) !== 4) throw y.wrong("no triangles");
+	let [b, x] = [v.key("attributes"), v.key("indices")], S = n.key("generator"), C = n.key("mesh");
+	return {
+		version: r,
+		generator: S.exists ? S.text(he) : "",
+		planes: f,
+		colours: p,
+		names: l,
+		heldOut: u,
+		reference: n.key("reference").integer(0, m - 1),
+		calibration: Xn(c, m, a, o),
+		sizes: Zn(c, m, a),
+		colour: h.exists ? a(h, "SCALAR", [U], 6 * m) : null,
+		...Qn(g),
+		triangles: _.exists ? Gn(a(_, "SCALAR", [In, Ln], null), 2 * fe) : null,
+		settings: $n(n.key("settings")),
+		scores: $n(n.key("scores")),
+		views: i,
+		mesh: C.exists ? Kn(C, C.key("bufferView"), o) : null,
+		position: Wn(a(b.key("POSITION"), "VEC3", [U], null), ge),
+		uv: Wn(a(b.key("TEXCOORD_0"), "VEC2", [U], null), ge),
+		indices: Gn(a(x, "SCALAR", [
+			5121,
+			In,
+			Ln
+		], null), _e),
+		preview: s
+	};
+}
+function Bn(e) {
+	let t = e.key("version").text(he);
+	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+	let n = e.key("needs");
+	for (let e of n.exists ? n.items(M) : []) {
+		let t = e.text(he);
+		if (!oe.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	}
+	return t;
+}
+function Vn(e) {
+	let t = e.key("buffers").at(0);
+	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
+	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
+	return e.key("bufferViews").items(M).map((e) => {
+		let t = e.key("byteOffset"), r = e.key("byteStride");
+		e.key("buffer").integer(0, 0);
+		let i = {
+			offset: t.exists ? t.integer(0, n) : 0,
+			length: e.key("byteLength").integer(1, n),
+			stride: r.exists ? r.integer(4, 252) : 0
+		};
+		if (i.offset + i.length > n) throw e.wrong("outside the buffer");
+		return i;
+	});
+}
+function Hn(e) {
+	let t = e.key("nodes").items(M), n = Array(t.length).fill(!1);
+	for (let e of t) {
+		let r = e.key("children");
+		for (let e of r.exists ? r.items(t.length) : []) {
+			let r = e.integer(0, t.length - 1);
+			if (n[r]) throw e.wrong("a node with two parents");
+			n[r] = !0;
+		}
+	}
+	for (let r of e.key("scenes").items(M)) {
+		let e = r.key("nodes");
+		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
+	}
+}
+function Un(e, t) {
+	let n = e.key("accessors").items(M);
+	return (e, r, i, a) => {
+		let o = n[e.integer(0, n.length - 1)];
+		if (!o) throw e.wrong("no such accessor");
+		let s = o.key("componentType").integer(5120, 5126);
+		if (!i.includes(s)) throw o.wrong(`component type ${s}`);
+		if (o.key("type").text(1024) !== r) throw o.wrong(`not ${r}`);
+		if (o.key("sparse").exists) throw o.wrong("sparse");
+		let c = o.key("normalized");
+		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
+		let l = Fn[r] ?? 1, u = o.key("count").integer(1, ve);
+		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
+		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
+		if (!f) throw o.wrong("no such buffer view");
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Pn[s] * l;
+		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
+		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
+		if ((m + f.offset) % Pn[s]) throw o.wrong("not aligned");
+		return {
+			view: d,
+			offset: m,
+			count: u,
+			items: l,
+			type: s,
+			where: o.where
+		};
+	};
+}
+function Wn(e, t) {
+	if (e.count > t) throw j(e.where, `more than ${t}`);
+	return e;
+}
+function Gn(e, t) {
+	if (e.count % 3) throw j(e.where, "torn triangles");
+	return Wn(e, 3 * t);
+}
+function Kn(e, t, n) {
+	return {
+		view: n(t),
+		where: e.where
+	};
+}
+function qn(e, t) {
+	let n = e.key("images");
+	if (!n.exists) return null;
+	let r = n.at(0).key("bufferView");
+	return r.exists ? t(r) : null;
+}
+function Jn(e) {
+	let t = e.key("names").items(fe).map((e) => e.text(he));
+	if (!t.length) throw e.key("names").wrong("no cameras");
+	if (new Set(t).size !== t.length) throw e.key("names").wrong("a name stands twice");
+	let n = t.findIndex((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e));
+	if (n >= 0) throw e.key("names").at(n).wrong("control characters");
+	return t;
+}
+function Yn(e, t) {
+	let n = Array(t).fill(!1), r = e.key("heldOut");
+	if (!r.exists) return n;
+	for (let e of r.items(t)) {
+		let r = e.integer(0, t - 1);
+		if (n[r]) throw e.wrong("named twice");
+		n[r] = !0;
+	}
+	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
+	return n;
+}
+function Xn(e, t, n, r) {
+	let i = e.key("coded");
+	return i.exists ? Kn(i, i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [U], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [U], 12 * t)
+	};
+}
+function Zn(e, t, n) {
+	let r = e.key("size");
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ln], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, pe);
+	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
+	return [i, a];
+}
+function Qn(e) {
+	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
+	for (let i of [
+		r(t, t) - 1,
+		r(n, n) - 1,
+		r(t, n)
+	]) if (!(Math.abs(i) <= 2e-4)) throw e.wrong("axes not at right angles, or not of length 1");
+	let [i = 0, a = 0] = e.key("extent").numbers(2, 0);
+	return {
+		origin: e.key("origin").triple(),
+		right: t,
+		up: n,
+		extent: [i, a]
+	};
+}
+function $n(e) {
+	return e.exists ? e.object() : {};
+}
+// eigenfield-three/src/planes.ts
+var U = 5126, er = 10;
+function tr(e, t) {
+	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+}
+function nr(e) {
+	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, ce));
 	if (!t || !n) throw e.wrong("two numbers are needed");
-	if (t * n > k) throw e.wrong(`more than ${k} texels`);
+	if (t * n > le) throw e.wrong(`more than ${le} texels`);
 	return [t, n];
 }
-function Rt(e, t, n, r, i) {
+function rr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Vt(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ht(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = ur(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => dr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -966,13 +1373,16 @@ function Rt(e, t, n, r, i) {
 	}), [s, c] = [0, 0];
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
-		for (let { size: t, count: r } of n) s += t[0] * t[1] * e * r, c += r;
+		for (let { size: t, count: r, pictures: i } of n) {
+			let n = i.reduce((e, { textures: t, bits: n }) => e + t * (n === 8 ? 1 : 2), 0);
+			s += t[0] * t[1] * e * n, c += r;
+		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${A} textures`);
-	if (s > fe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${ue} textures`);
+	if (s > de) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function zt(e, t) {
+function ir(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1004,86 +1414,232 @@ function zt(e, t) {
 			1
 		]
 	];
-	throw It(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw tr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Bt(e, t, n, r) {
-	let i = e.key("mimeType").text(j);
-	if (!/^image\/(png|jpeg|webp|avif)$/.test(i)) throw e.key("mimeType").wrong("an unknown type");
-	return {
-		view: r(e.key("bufferView")),
-		mimeType: i,
-		scale: e.key("scale").numbers(t * n),
-		zero: e.key("zero").numbers(t * n),
+function ar(e, t, n, r, i, a = !1) {
+	let o = e.key("mimeType").text(he);
+	if (!/^image\/(png|jpeg|webp|avif)$/.test(o)) throw e.key("mimeType").wrong("an unknown type");
+	let s = e.key("bits"), c = s.exists ? s.integer(8, er) : 8;
+	if (c !== 8 && (c !== er || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
+	let l = t === 3 && c === 8 ? 1 : t;
+	r && fr(e, l * n, r);
+	let [u, d] = [e.key("scale"), e.key("zero")], f = {
+		view: i(e.key("bufferView")),
+		mimeType: o,
+		bits: c,
 		textures: n,
+		pieces: l,
 		where: e.where
 	};
-}
-function Vt(e, t, n, r) {
-	let i = e.key("mean"), a = {
-		scale: Array(t).fill(1 / 255),
-		zero: Array(t).fill(0)
+	return a && c === 8 && !u.exists && !d.exists ? {
+		...f,
+		...or(t)
+	} : {
+		...f,
+		scale: lr(u, t, n),
+		zero: lr(d, t, n)
 	};
+}
+function or(e) {
+	return {
+		scale: Array(e).fill(1 / 255),
+		zero: Array(e).fill(0)
+	};
+}
+function sr(e) {
+	return e.some(({ bits: e }) => e > 8);
+}
+function cr({ bits: e }) {
+	return (2 ** e - 1) / 255;
+}
+function lr(e, t, n) {
+	let r = e.items(t * n).map((e) => e.number());
+	if (r.length === t * n) return r;
+	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
+	return Array(n).fill(r).flat();
+}
+function ur(e, t, n, r) {
+	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
 				mimeType: "image/png",
-				...a,
+				bits: 8,
 				textures: 1,
-				where: "/images/0"
+				pieces: 1,
+				where: "/images/0",
+				...or(t)
 			},
 			meanSize: null
 		};
 	}
-	let o = Lt(i.key("size")), s = Bt(i.key("scale").exists || i.key("zero").exists ? i : new Ft({
-		...i.object(),
-		...a
-	}, i.where), t, 1, r);
-	return Wt(i, t, o, 1), {
-		mean: s,
-		meanSize: o
+	let a = nr(i.key("size"));
+	return {
+		mean: ar(i, t, 1, a, r, !0),
+		meanSize: a
 	};
 }
-function Ht(e, t, n, r, i) {
-	let a = Lt(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Lt(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, de) : [];
+function dr(e, t, n, r, i) {
+	let a = nr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? nr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("textures").items(A).map((e) => {
-		let n = e.key("count"), r = n.exists ? n.integer(1, A) : 1;
-		return d += r, Wt(e, t, a, r), Bt(e, t, r, i);
+	let d = 0, f = e.key("textures").items(ue).map((e) => {
+		let n = e.key("count"), r = n.exists ? n.integer(1, ue) : 1;
+		return d += r, ar(e, t, r, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${A} textures`);
-	let p = d ? r(e.key("weights"), "SCALAR", [V], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${ue} textures`);
+	let p = e.key("codedWeights"), m = d ? p.exists ? Kn(p, p, i) : r(e.key("weights"), "SCALAR", [U], n * d) : null;
 	return {
 		size: a,
 		grid: c,
 		corner: [l, u],
 		pictures: f,
 		count: d,
-		weights: p,
+		weights: m,
 		where: e.where
 	};
 }
-function Ut(e, t, n) {
-	return (e === 3 ? 1 : e) * t * n;
+function fr(e, t, [n, r]) {
+	let i = t * r;
+	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
+	if (n * i > le) throw e.wrong(`more than ${le} texels`);
 }
-function Wt(e, t, [n, r], i) {
-	let a = Ut(t, r, i);
-	if (a > r && a > 32768) throw e.wrong(`a picture of ${a} rows`);
-	if (n * a > k) throw e.wrong(`more than ${k} texels`);
+// eigenfield-three/src/parts.ts
+function pr(e, t, n) {
+	let r = [], [i, a, o, s] = [
+		0,
+		0,
+		0,
+		0
+	];
+	return e.planes.forEach(({ channels: c, mean: l, bases: u }, d) => {
+		let f = e.colours.slice(i, i + c);
+		i += c;
+		let p = t.needs.means[d]?.size ?? [1, 1], m = t.means[d], h = mr(l, c);
+		m && r.push({
+			stored: m,
+			grid: p,
+			rectangle: [
+				0,
+				0,
+				1,
+				1
+			],
+			colours: f,
+			...h,
+			basis: null
+		});
+		for (let { size: e, grid: i, corner: l, pictures: d, count: p } of u) {
+			let u = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
+			if (h && u) {
+				let [t, n] = [l[0] / i[0], l[1] / i[1]];
+				r.push({
+					stored: u,
+					grid: i,
+					rectangle: [
+						t,
+						n,
+						t + e[0] / i[0],
+						n + e[1] / i[1]
+					],
+					colours: f,
+					...gr(d, c, h),
+					basis: {
+						ready: m,
+						column: o,
+						group: s
+					}
+				});
+			}
+			o += p, s += h ? H(h) : 0;
+		}
+	}), r;
+}
+function mr(e, t) {
+	let { scale: n, zero: r } = e, i = hr([e]), a = {
+		scale: new Float32Array(4 * t),
+		bias: new Float32Array(4 * t)
+	};
+	for (let e = 0; e < t; e++) {
+		let t = 4 * e + e % 4;
+		a.scale[t] = i * (n[e] ?? 0), a.bias[t] = -(r[e] ?? 0) * (n[e] ?? 0);
+	}
+	return a;
+}
+function hr(e) {
+	return sr(e) ? 1 : 255;
+}
+function gr(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = hr(e), o = 4 * t * H(n), s = {
+		scale: new Float32Array(o),
+		bias: new Float32Array(o)
+	};
+	for (let e = 0; e < n; e++) for (let n = 0; n < t; n++) {
+		let o = 4 * (t * Math.floor(e / 4) + n) + e % 4, c = r[t * e + n] ?? 0;
+		s.scale[o] = a * c, s.bias[o] = -(i[t * e + n] ?? 0) * c;
+	}
+	return s;
+}
+// eigenfield-three/src/deep.ts
+var _r = /* @__PURE__ */ new Set([
+	"I420P10",
+	"I422P10",
+	"I444P10"
+]);
+async function vr(e, t, n) {
+	if (typeof ImageDecoder > "u") return null;
+	let r = null, i = null;
+	try {
+		r = new ImageDecoder({
+			data: e,
+			type: "image/avif"
+		}), i = (await r.decode()).image;
+		let a = i.visibleRect;
+		if (!_r.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
+		return s ? {
+			data: o.subarray(s.offset),
+			width: t,
+			height: n,
+			stride: s.stride
+		} : null;
+	} catch {
+		return null;
+	} finally {
+		i?.close(), r?.close();
+	}
+}
+function yr(e, t, n, r) {
+	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
+	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
+		let [c, l] = [0, 0];
+		for (let i = s * r; i < Math.min((s + 1) * r, n); i++) for (let n = a * r; n < Math.min((a + 1) * r, e.width); n++) {
+			let r = (t + i) * e.stride + 2 * n;
+			c += (e.data[r] ?? 0) + 256 * (e.data[r + 1] ?? 0), l += 1;
+		}
+		let u = Math.round(c / l);
+		o.set([u & 255, u >> 8], 2 * (s * i + a));
+	}
+	return {
+		data: o,
+		width: i,
+		height: a,
+		stride: 2 * i
+	};
 }
 // eigenfield-three/src/headers.ts
-function Gt(e) {
+function br(e) {
 	let t = new DataView(e);
 	try {
-		return Kt(t) ?? qt(t) ?? Jt(t) ?? Yt(t);
+		return xr(t) ?? Sr(t) ?? Cr(t) ?? wr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function H(e, t) {
+function W(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1091,138 +1647,172 @@ function H(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Kt(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || H(e, 12) !== "IHDR" ? null : {
+function xr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || W(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
-		height: e.getUint32(20)
+		height: e.getUint32(20),
+		bits: null
 	};
 }
-function qt(e) {
+function Sr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
-		if (n === 65535) t += 1;
-		else {
-			if (n >= 65472 && n <= 65487 && ![
-				65476,
-				65480,
-				65484
-			].includes(n)) return {
-				type: "image/jpeg",
-				height: e.getUint16(t + 5),
-				width: e.getUint16(t + 7)
-			};
-			if (n < 65281 || n === 65498 || n === 65497) return null;
-			t += 2 + e.getUint16(t + 2);
+		if (n === 65535) {
+			t += 1;
+			continue;
 		}
+		let r = n >= 65472 && n <= 65487 && ![
+			65476,
+			65480,
+			65484
+		].includes(n), i = (n) => e.getUint16(t + n);
+		if (r) return {
+			type: "image/jpeg",
+			width: i(7),
+			height: i(5),
+			bits: null
+		};
+		if (n < 65281 || n === 65498 || n === 65497) return null;
+		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Jt(e) {
-	if (H(e, 0) !== "RIFF" || H(e, 8) !== "WEBP") return null;
-	let t = "image/webp", n = H(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+function Cr(e) {
+	if (W(e, 0) !== "RIFF" || W(e, 8) !== "WEBP") return null;
+	let t = {
+		type: "image/webp",
+		bits: null
+	}, n = W(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
-		type: t,
+		...t,
 		width: 1 + r(24),
 		height: 1 + r(27)
 	};
 	if (n === "VP8L") {
 		let n = e.getUint32(21, !0);
 		return {
-			type: t,
+			...t,
 			width: 1 + (n & 16383),
 			height: 1 + (n >>> 14 & 16383)
 		};
 	}
 	return n === "VP8 " ? {
-		type: t,
+		...t,
 		width: e.getUint16(26, !0) & 16383,
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Yt(e) {
-	if (H(e, 4) !== "ftyp") return null;
-	let t = null, n = (r, i) => {
-		for (let a = r; a + 8 <= i;) {
-			let r = e.getUint32(a), o = H(e, a + 4), s = r === 0 ? i : a + r;
-			if (r === 1 || s < a + 8 || s > i) return;
-			if (o === "meta" && n(a + 12, s), (o === "iprp" || o === "ipco") && n(a + 8, s), o === "ispe") {
-				let [n, r] = [e.getUint32(a + 12), e.getUint32(a + 16)];
+function wr(e) {
+	if (W(e, 4) !== "ftyp") return null;
+	let t = null, n = null, r = (i, a) => {
+		for (let o = i; o + 8 <= a;) {
+			let i = e.getUint32(o), s = W(e, o + 4), c = i === 0 ? a : o + i;
+			if (i === 1 || c < o + 8 || c > a) return;
+			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
+				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
 				(!t || n * r > t.width * t.height) && (t = {
-					type: "image/avif",
 					width: n,
 					height: r
 				});
 			}
-			a = s;
+			if (s === "av1C") {
+				let t = e.getUint8(o + 10);
+				n ??= t & 64 ? t & 32 ? 12 : 10 : 8;
+			}
+			o = c;
 		}
 	};
-	return n(0, e.byteLength), t;
+	return r(0, e.byteLength), t && {
+		type: "image/avif",
+		...t,
+		bits: n
+	};
 }
 // eigenfield-three/src/decode.ts
-var Xt = {
+var Tr = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Zt = {
+}, Er = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Qt(e, t, n) {
-	let r = Gt(e);
-	if (!r) throw D(t.where, "no picture");
-	let { width: i, height: a } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw D(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	let o = i * a;
-	if (!o || i > 16384 || a > 32768 || o > k) throw D(t.where, `a picture of ${i} x ${a}`);
+function Dr(e, t, n) {
+	let r = br(e);
+	if (!r) throw j(t.where, "no picture");
+	let { width: i, height: a, bits: o } = r;
+	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.bits !== 8 && t.bits !== o) throw j(t.where, `no picture of ${t.bits} bits`);
+	let s = i * a;
+	if (!s || i > 16384 || a > 32768 || s > le) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function $t(e, t, n, r = 1) {
-	let [i, a] = Qt(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Or(e, t, n, r = 1) {
+	let [i, a] = Dr(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Gt(e)?.type ?? t.mimeType, u;
+	}, l = br(e)?.type ?? t.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Xt,
+			...Tr,
 			...c
 		});
 	} catch (e) {
-		throw await en(l) ? D(t.where, "it cannot be decoded") : tn(l, t, e);
+		throw await jr(l) ? j(t.where, "it cannot be decoded") : Mr(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
-	throw u.close(), D(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
+	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-async function U(e, t, n, r, i = 1) {
-	let a = Ut(n, 1, t.textures), [o, s] = Qt(e, t, r && [r[0], a * r[1]]), c = await $t(e, t, [o, s], a === 1 ? i : 1);
-	if (a === 1) return [{
-		bitmap: c,
+async function kr(e, t, n, r = 1) {
+	if (t.bits === 8) return Ar(e, t, n, r);
+	let i = t.pieces * t.textures, [a, o] = Dr(e, t, n && [n[0], i * n[1]]), s = await vr(e, a, o);
+	if (!s) return Ar(e, t, n, r);
+	let c = o / i;
+	return Array.from({ length: i }, (e, t) => {
+		if (r === 1) return {
+			picture: s,
+			row: t * c,
+			rows: c
+		};
+		let n = yr(s, t * c, c, r);
+		return {
+			picture: n,
+			row: 0,
+			rows: n.height
+		};
+	});
+}
+async function Ar(e, t, n, r = 1) {
+	let i = t.pieces * t.textures, [a, o] = Dr(e, t, n && [n[0], i * n[1]]), s = await Or(e, t, [a, o], i === 1 ? r : 1);
+	if (i === 1) return [{
+		picture: s,
 		row: 0,
-		rows: c.height
+		rows: s.height
 	}];
-	let l = s / a, u = Array.from({ length: a }, (e, t) => ({
-		bitmap: c,
-		row: t * l,
-		rows: l
+	let c = o / i, l = Array.from({ length: i }, (e, t) => ({
+		picture: s,
+		row: t * c,
+		rows: c
 	}));
-	if (i === 1) return u;
-	let [d, f] = [Math.ceil(o / i), Math.ceil(l / i)], p = {
-		...Xt,
-		resizeWidth: d,
-		resizeHeight: f,
+	if (r === 1) return l;
+	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
+		...Tr,
+		resizeWidth: u,
+		resizeHeight: d,
 		resizeQuality: "high"
-	}, m = await Promise.all(u.map(({ row: e }) => createImageBitmap(c, 0, e, o, l, p)));
-	return c.close(), m.map((e) => ({
-		bitmap: e,
+	}, p = await Promise.all(l.map(({ row: e }) => createImageBitmap(s, 0, e, a, c, f)));
+	return s.close(), p.map((e) => ({
+		picture: e,
 		row: 0,
-		rows: f
+		rows: d
 	}));
 }
-function W(e) {
-	for (let { bitmap: t } of e) t.close();
+function G(e) {
+	for (let { picture: t } of e) "close" in t && t.close();
 }
-async function en(e) {
-	let t = Zt[e];
+async function jr(e) {
+	let t = Er[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1231,63 +1821,63 @@ async function en(e) {
 		return !1;
 	}
 }
-function tn(e, t, n) {
-	return new E("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+function Mr(e, t, n) {
+	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/strength.ts
-var G = 128, nn = .98;
-async function rn(e, t, n, r) {
+var K = 128, Nr = .98;
+async function Pr(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = i === 3 ? 1 : i, l = await U(await r(o.view), o, i, e.size), u = new OffscreenCanvas(G, G).getContext("2d", { willReadFrequently: !0 });
-	if (!u) return 1;
-	u.imageSmoothingEnabled = !1;
-	let d = [];
-	l.slice(c * s, c * (s + 1)).forEach(({ bitmap: e, row: t, rows: r }, a) => {
-		u.drawImage(e, 0, t, e.width, r, 0, 0, G, G);
-		let { data: c } = u.getImageData(0, 0, G, G);
-		(i === 3 ? [
+	let s = t - (a - o.textures), c = cr(o), l = o.pieces < i, u = await Ar(await r(o.view), o, e.size), d = new OffscreenCanvas(K, K).getContext("2d", { willReadFrequently: !0 });
+	if (!d) return 1;
+	d.imageSmoothingEnabled = !1;
+	let f = [];
+	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
+		d.drawImage(e, 0, t, e.width, r, 0, 0, K, K);
+		let { data: u } = d.getImageData(0, 0, K, K);
+		(l ? [
 			0,
 			1,
 			2
 		] : [a]).forEach((e) => {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
-			for (let t = i === 3 ? e : 0; t < c.length; t += 4) d.push(Math.abs(((c[t] ?? 0) - (r ?? 0)) * a));
+			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), W(l), d.sort((e, t) => e - t);
-	let f = d[Math.floor(nn * d.length)] ?? 0;
-	return f > 0 ? .45 / f : 1;
+	}), G(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Nr * f.length)] ?? 0;
+	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/gpu.ts
-function an(e, t) {
+function Fr(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function on(e, [t, n], r, i) {
-	return ln(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, e.RGBA8, t, n, r);
+function Ir(e, [t, n], r, i, a) {
+	return zr(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function sn(e, t, n) {
+function Lr(e, t, n) {
 	let { width: r, height: i } = n;
-	un(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	Br(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function cn(e, [t, n]) {
-	return ln(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
+function Rr(e, [t, n], r = !1) {
+	return zr(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function ln(e, t, n) {
+function zr(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return un(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Br(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function un(e, t, n, r) {
+function Br(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -1302,39 +1892,50 @@ function un(e, t, n, r) {
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
 // eigenfield-three/src/packing.ts
-var dn = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", fn = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform int channel;\nout vec4 code;\nvoid main() {\n  code = vec4(texelFetch(picture, ivec2(gl_FragCoord.xy), 0)[channel]);\n}\n";
-function pn(e, t) {
-	let n = mn(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], a = e.getUniformLocation(n, "channel"), o = ({ bitmap: t, rows: o }, s, c) => {
+var Vr = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Hr = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nout vec4 code;\nvoid main() {\n  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));\n}\n";
+function Ur(e, t) {
+	let n = Kr(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], a = e.getUniformLocation(n, "factors"), o = ({ picture: t, rows: o }, s, c, l) => {
 		e.useProgram(n), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, o);
-		for (let { channel: t, layer: n, component: r } of c) e.colorMask(r === 0, r === 1, r === 2, r === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, s, 0, n), e.uniform1i(a, t), e.drawArrays(e.TRIANGLES, 0, 3);
+		for (let { channel: n, layer: r, component: i } of c) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, s, 0, r), Wr(t) ? e.uniform4f(a, 255, 65280, 0, 0) : e.uniform4fv(a, [
+			0,
+			1,
+			2,
+			3
+		].map((e) => e === n ? l : 0)), e.drawArrays(e.TRIANGLES, 0, 3);
 	};
 	return {
-		put(n, r, i) {
-			let { bitmap: a, row: s, rows: c } = n;
-			hn(e, () => un(e, e.TEXTURE_2D, t, () => {
-				e.pixelStorei(e.UNPACK_SKIP_ROWS, s), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, a.width, c, e.RGBA, e.UNSIGNED_BYTE, a), gn(e, () => o(n, r, i));
+		put(n, r, i, a) {
+			let { picture: s, row: c, rows: l } = n, u = Wr(s) ? t.codes : t.picture;
+			u && qr(e, () => Br(e, e.TEXTURE_2D, u, () => {
+				Wr(s) ? Gr(e, s, c, l) : (e.pixelStorei(e.UNPACK_SKIP_ROWS, c), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, s.width, l, e.RGBA, e.UNSIGNED_BYTE, s)), Jr(e, () => o(n, r, i, a));
 			}));
 		},
 		free() {
-			e.deleteTexture(t), e.deleteVertexArray(i), e.deleteFramebuffer(r), e.deleteProgram(n);
+			e.deleteTexture(t.picture), e.deleteTexture(t.codes), e.deleteVertexArray(i), e.deleteFramebuffer(r), e.deleteProgram(n);
 		}
 	};
 }
-function mn(e) {
+function Wr(e) {
+	return "data" in e;
+}
+function Gr(e, { data: t, width: n, stride: r }, i, a) {
+	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
+}
+function Kr(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, dn], [e.FRAGMENT_SHADER, fn]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Vr], [e.FRAGMENT_SHADER, Hr]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function hn(e, t) {
+function qr(e, t) {
 	let n = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0);
 	let r = e.getParameter(e.SAMPLER_BINDING);
 	e.bindSampler(0, null), t(), e.bindSampler(0, r), e.activeTexture(n);
 }
-function gn(e, t) {
+function Jr(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -1349,7 +1950,7 @@ function gn(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/textures.ts
-var _n = 3, vn = class {
+var Yr = 3, Xr = class {
 	parts;
 	options;
 	means;
@@ -1375,14 +1976,17 @@ var _n = 3, vn = class {
 		this.decoded = e.means;
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
-			channels: e
-		}))), s = r.planes.map(({ channels: e }, t) => ({
-			size: i[t] ?? [1, 1],
-			channels: e
+			channels: e,
+			deep: sr(t.pictures)
+		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
+			size: i[n] ?? [1, 1],
+			channels: e,
+			pieces: t.pieces,
+			deep: sr([t])
 		}));
 		this.needs = {
-			atlas: we(r, i),
-			means: [...s],
+			atlas: bt(r, i),
+			means: s,
 			bases: o,
 			rays: a,
 			geometry: t
@@ -1410,7 +2014,7 @@ var _n = 3, vn = class {
 	attach(e) {
 		if (this.disposed) return;
 		let t = e.getContext();
-		if (!(t instanceof WebGL2RenderingContext)) throw new E("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+		if (!(t instanceof WebGL2RenderingContext)) throw new A("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.onLost), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
 		let n = this.turn;
 		this.load(t, n).catch((e) => {
@@ -1418,7 +2022,7 @@ var _n = 3, vn = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(W), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(G), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -1435,38 +2039,38 @@ var _n = 3, vn = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new E("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
+		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new A("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
 		let { packer: n, plan: r } = this.makeRoom(e);
 		if (this.plan = r, this.packer = n, this.onPlan(r), await this.loadMeans(e, t, r.meanDown), t !== this.turn) return;
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < _n && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < Yr && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), W(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), G(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(W).catch(() => void 0);
+			for (let e of a) e.then(G).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = a === 3 ? 1 : a;
+		let u = this.needs.bases[i]?.deep ? 255 * cr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
-			for (let r = 0; r < u; r++) {
-				let i = (e) => a * Math.floor(t / 4) + e, s = (a === 3 ? [
+			for (let r = 0; r < s.pieces; r++) {
+				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
 					0,
 					1,
 					2
 				] : [r]).map((e) => ({
-					channel: a === 3 ? e : 0,
+					channel: d ? e : 0,
 					layer: i(e),
 					component: t % 4
-				})), l = e[(t - o) * u + r];
-				l && n.put(l, c, s);
+				})), f = e[(t - o) * s.pieces + r];
+				f && n.put(f, c, l, u);
 			}
 			l[t] = !0;
 		}
@@ -1474,38 +2078,55 @@ var _n = 3, vn = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		for (let r = this.options.memory ?? Ge();; r /= 2) {
-			let i = Ze(this.needs, an(e, r)), { meanDown: a, scaleDown: o, usable: s } = i, c = a > 1 || o > 1, l = [...t.map(({ size: t, channels: n }) => on(e, R(t, a), Je(n), c)), ...n.map(({ size: t, channels: n, count: r }) => {
-				let i = Math.min(r, s);
-				return on(e, i ? R(t, o) : [1, 1], i ? Ye(i, n) : 1, c);
-			})], u = cn(e, et(this.needs, a, o));
-			if (u && l.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = l[t] ?? null), {
-				packer: pn(e, u),
+		for (let r = this.options.memory ?? Ut();; r /= 2) {
+			let i = Yt(this.needs, Fr(e, r)), { meanDown: a, scaleDown: o, usable: s } = i, c = a > 1 || o > 1, l = [...t.map(({ size: t, channels: n, deep: r }) => Ir(e, V(t, a), Kt(n), c, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
+				let a = Math.min(r, s);
+				return Ir(e, a ? V(t, o) : [1, 1], a ? qt(a, n) : 1, c, i);
+			})], u = $t(this.needs, a, o), d = Rr(e, u), f = [...t, ...n].some(({ deep: e }) => e), p = f ? Rr(e, u, !0) : null;
+			if (d && (p || !f) && l.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = l[t] ?? null), {
+				packer: Ur(e, {
+					picture: d,
+					codes: p
+				}),
 				plan: i
 			};
-			for (let t of [...l, u]) e.deleteTexture(t);
-			if (!s) throw new E("unsupported", "The graphics memory is full; close other pages and try again.");
+			for (let t of [
+				...l,
+				d,
+				p
+			]) e.deleteTexture(t);
+			if (!s) throw new A("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i, meanSizes: a } = this.parts, { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(W), o = await Promise.all(r.planes.map(async ({ mean: e, channels: t }, r) => U(await i(e.view), e, t, a[r] ?? null, n)))), o.forEach((n, r) => {
-			let [i] = n, a = this.means[r]?.sourceTexture;
-			t === this.turn && i && a instanceof WebGLTexture && (n.length === 1 ? sn(e, a, i.bitmap) : n.forEach((e, t) => {
-				this.packer?.put(e, a, [{
-					channel: 0,
-					layer: Math.floor(t / 4),
-					component: t % 4
-				}]);
-			})), W(n);
+		this.decoded = null, (!o || n > 1) && (o?.forEach(G), o = await Promise.all(r.planes.map(async ({ mean: e }, t) => kr(await i(e.view), e, a[t] ?? null, n)))), o.forEach((n, i) => {
+			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), G(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
+	}
+	putMean(e, t, n, r) {
+		let i = sr([n]), [a] = t;
+		if (a && t.length === 1 && !i && "close" in a.picture) {
+			Lr(e, r, a.picture);
+			return;
+		}
+		let o = i ? 255 * cr(n) : 1;
+		t.forEach((e, t) => {
+			let n = [{
+				channel: 0,
+				layer: Math.floor(t / 4),
+				component: t % 4
+			}];
+			this.packer?.put(e, r, n, o);
+		});
 	}
 	decode(e, t) {
 		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: n, channels: r, picture: i } = e, a = this.parts.bytes(i.view).then((e) => U(e, i, r, n.size, t));
-		return a.catch(() => void 0), a;
+		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => kr(e, r, n.size, t));
+		return i.catch(() => void 0), i;
 	}
-}, yn = 1.5, bn = .001, xn = class extends l {
+}, Zr = 1.5, Qr = .001, $r = class extends l {
 	parts;
 	mesh;
 	info;
@@ -1536,15 +2157,15 @@ var _n = 3, vn = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = Ce(n), this.counts = P(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = yt(n), this.counts = R(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new vn(e, wn(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Xr(e, ri(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = jt(s), this.complete = new Promise((e, t) => {
+		this.material = Mn(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Re(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Ft(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -1574,7 +2195,7 @@ var _n = 3, vn = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...F(this.info.viewPlane, n.centre));
+		return this.componentWeights(...wt(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -1588,7 +2209,7 @@ var _n = 3, vn = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return yn * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Zr * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -1605,30 +2226,30 @@ var _n = 3, vn = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Cn(t, n), [i, a] = F(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = ni(t, n), [i, a] = wt(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = Ot[this.filter];
+		let l = On[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new vt(i, Mt(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new vn(i, pr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === B.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === kn.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === B.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === kn.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && gt(this.info.viewPlane, t),
+			eye: t && gn(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -1640,7 +2261,7 @@ var _n = 3, vn = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = B[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = kn[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -1648,7 +2269,7 @@ var _n = 3, vn = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Tn(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ii(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -1659,7 +2280,7 @@ var _n = 3, vn = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				rn(s, e, o, r).then((t) => {
+				Pr(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -1669,13 +2290,13 @@ var _n = 3, vn = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= bn * Math.max(...r);
+		return Math.abs(i) <= Qr * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Et(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = En(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -1683,33 +2304,33 @@ var _n = 3, vn = class {
 		}, n;
 	}
 	fail(e) {
-		if (En(e)) return;
-		let t = se(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
+		if (ai(e)) return;
+		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
-			error: new E(t.code, `${t.message} ${n}`, t.where)
+			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, Sn = new _(), K = new T();
-function Cn(e, t) {
-	return K.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Sn.copy(t.matrixWorld).invert()), [
-		K.x,
-		K.y,
-		K.z
+}, ei = new _(), ti = new O();
+function ni(e, t) {
+	return ti.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ei.copy(t.matrixWorld).invert()), [
+		ti.x,
+		ti.y,
+		ti.z
 	];
 }
-function wn(e) {
+function ri(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function Tn(e) {
+function ii(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function En(e) {
+function ai(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Dn = class {
+var oi = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -1740,7 +2361,7 @@ var Dn = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(oe(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ne(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -1752,53 +2373,53 @@ var Dn = class {
 		}
 		return n.buffer;
 	}
-}, On = 1179937895, kn = 1313821514, An = 5130562;
-async function jn(e) {
+}, si = 1179937895, ci = 1313821514, li = 5130562;
+async function ui(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof E && t.code === "truncated" ? In(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? hi(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== On) throw In(!1);
+	if (new DataView(t).getUint32(0, !0) !== si) throw hi(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new E("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw D("8", "a length of no file");
+	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== kn) throw D("16", "it does not begin with JSON");
-	if (o > ue) throw D("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw D("12", "a chunk longer than the file");
-	let s = Nn(await e.read(20, 20 + o));
+	if (a.getUint32(4, !0) !== ci) throw j("16", "it does not begin with JSON");
+	if (o > se) throw j("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw j("12", "a chunk longer than the file");
+	let s = fi(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: Pn(s),
-		binary: () => Mn(e, 20 + o, i)
+		json: pi(s),
+		binary: () => di(e, 20 + o, i)
 	};
 }
-async function Mn(e, t, n) {
+async function di(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
-		if (r + 8 + i > n) throw D(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === An) return r + 8;
+		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
+		if (t.getUint32(4, !0) === li) return r + 8;
 		r += 8 + i;
 	}
-	throw D(String(t), "no binary chunk");
+	throw j(String(t), "no binary chunk");
 }
-function Nn(e) {
+function fi(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw D("20", "its JSON is not UTF-8");
+		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function Pn(e) {
-	if (Fn(e) > 64) throw D("20", "its JSON is nested too deep");
+function pi(e) {
+	if (mi(e) > 64) throw j("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw D("20", "its JSON cannot be read");
+		throw j("20", "its JSON cannot be read");
 	}
 }
-function Fn(e) {
+function mi(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -1809,210 +2430,597 @@ function Fn(e) {
 	}
 	return n;
 }
-function In(e) {
-	return new E("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function hi(e) {
+	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
-// eigenfield-three/src/document.ts
-var Ln = {
-	5121: 1,
-	5123: 2,
-	5125: 4,
-	5126: 4
-}, Rn = {
-	SCALAR: 1,
-	VEC2: 2,
-	VEC3: 3
-}, zn = 5125;
-function Bn(e) {
-	let t = new Ft(e, "");
-	try {
-		return t.key("extensions").key(ce).exists;
-	} catch {
-		return !1;
+var gi = 2 ** 24, _i = class {
+	points;
+	start;
+	end;
+	opposite;
+	before;
+	after;
+	status;
+	into;
+	heap;
+	key;
+	gates = 0;
+	waiting = 0;
+	constructor(e, t) {
+		this.points = e;
+		let n = 3 * t;
+		this.start = new Int32Array(n), this.end = new Int32Array(n), this.opposite = new Int32Array(n), this.before = new Int32Array(n), this.after = new Int32Array(n), this.status = new Uint8Array(n), this.into = new Int32Array(e.length / 3).fill(-1), this.heap = new Int32Array(n), this.key = new Float64Array(n);
+	}
+	seed(e) {
+		let t = this.gates;
+		for (let t = 0; t < 3; t++) this.add(e[t], e[(t + 1) % 3], e[(t + 2) % 3]);
+		for (let e = 0; e < 3; e++) this.link(t + e, t + (e + 1) % 3);
+	}
+	next() {
+		let { heap: e, key: t } = this;
+		for (; this.waiting > 0;) {
+			let n = e[0], r = --this.waiting, [i, a] = [e[r], t[r]], o = 0;
+			for (; 2 * o + 1 < r;) {
+				let n = 2 * o + 1;
+				if (n + 1 < r && t[n + 1] < t[n] && (n += 1), t[n] >= a) break;
+				e[o] = e[n], t[o] = t[n], o = n;
+			}
+			if (e[o] = i, t[o] = a, this.status[n] === 1) return n;
+		}
+		return -1;
+	}
+	closeLeft(e) {
+		let [t, n] = [this.before[e], this.after[e]], r = this.start[t];
+		if (this.status[e] = this.status[t] = 0, this.status[n] === 1 && this.end[n] === r && n !== t) {
+			this.status[n] = 0, this.link(this.before[t], this.after[n]);
+			return;
+		}
+		let i = this.before[t], a = this.add(r, this.end[e], this.start[e]);
+		this.link(i, a), this.link(a, n);
+	}
+	closeRight(e) {
+		let [t, n] = [this.before[e], this.after[e]];
+		this.status[e] = this.status[n] = 0;
+		let r = this.after[n], i = this.add(this.start[e], this.end[n], this.end[e]);
+		this.link(t, i), this.link(i, r);
+	}
+	openOut(e, t) {
+		let [n, r, i] = [
+			this.before[e],
+			this.after[e],
+			this.into[t]
+		];
+		this.status[e] = 0;
+		let a = this.add(this.start[e], t, this.end[e]), o = this.add(t, this.end[e], this.start[e]);
+		i >= 0 && this.status[i] !== 0 ? (this.link(a, this.after[i]), this.link(i, o)) : this.link(a, o), this.link(n, a), this.link(o, r), this.into[t] = a;
+	}
+	link(e, t) {
+		this.after[e] = t, this.before[t] = e;
+	}
+	add(e, t, n) {
+		let { heap: r, key: i, points: a } = this, o = this.gates++;
+		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
+		let s = (a[3 * e] + a[3 * t]) * gi + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		for (; c > 0;) {
+			let e = c - 1 >> 1;
+			if (i[e] <= s) break;
+			r[c] = r[e], i[c] = i[e], c = e;
+		}
+		return r[c] = o, i[c] = s, o;
+	}
+}, vi = 2 ** 20, yi = .8, bi = 44, xi = 385, Si = 897, Ci = 1086, wi = 1095, [Ti, Ei, Di, Oi, ki] = [
+	0,
+	1,
+	2,
+	3,
+	15
+];
+function Ai(e) {
+	return Math.floor(Math.min(Math.max(e, -vi), vi) + .5);
+}
+function ji(e, t, n) {
+	let r = Math.max((1 << n) - 1, 1);
+	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
+}
+function Mi(e, t, n, r, i) {
+	i.flat ? Ni(e, t, n, r, i.fine) : Pi(e, t, n, r);
+}
+function Ni(e, t, n, r, i) {
+	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
+		t[3 * a],
+		t[3 * a + 1],
+		t[3 * o],
+		t[3 * o + 1]
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? yi : -.8, _ = 1 << i >> 1, v = Ai((l + d) * .5 + g * m) + _ >> i, y = Ai((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(F(Math.floor((p * p + m * m) / b)), 23), S = Math.min(F(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Ti), T = Math.min(F(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(xi + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Ei);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
+	let k = ji(t, a, i) + 4 * ji(t, o, i);
+	if (e.flag(Si + k, 913 + ji(t, s, i), 917 + c, ki)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+}
+function Pi(e, t, n, { a: r, b: i, o: a }) {
+	let o = 0;
+	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
+	let s = Math.min(F(o), 43), c = 0;
+	for (let o = 0; o < 3; o++) {
+		let l = Ai(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, bi + o * 24 + c, 116 + o * bi + s, Di);
+		t[3 * n + o] = l + u, c = Math.min(F(Math.abs(u)), 23);
 	}
 }
-function Vn(e) {
-	let t = new Ft(e, ""), n = t.key("extensions").key(ce), r = Hn(n), i = Un(t), a = Gn(t, i), o = (e) => e.integer(0, i.length - 1);
-	Wn(t);
-	let s = Jn(t, o), c = n.key("cameras"), l = Yn(c), u = Xn(c, l.length), d = u.filter((e) => !e).length, f = Rt(n, d, s, a, o), p = zt(n, f), m = l.length, h = c.key("colour");
-	if (h.exists && p.length < 3) throw h.wrong("needs three channels");
-	let g = n.key("viewPlane"), _ = g.key("triangles"), v = t.key("meshes").at(0).key("primitives").at(0), y = v.key("mode");
-	if (y.exists && y.integer(0, 6) !== 4) throw y.wrong("no triangles");
-	let b = v.key("attributes"), x = n.key("generator");
-	return {
-		version: r,
-		generator: x.exists ? x.text(j) : "",
-		planes: f,
-		colours: p,
-		names: l,
-		heldOut: u,
-		reference: n.key("reference").integer(0, m - 1),
-		intrinsics: a(c.key("intrinsics"), "SCALAR", [V], 5 * m),
-		poses: a(c.key("poses"), "SCALAR", [V], 12 * m),
-		sizes: a(c.key("sizes"), "SCALAR", [zn], 2 * m),
-		colour: h.exists ? a(h, "SCALAR", [V], 6 * m) : null,
-		...Zn(g),
-		triangles: _.exists ? qn(a(_, "SCALAR", [zn], null)) : null,
-		settings: Qn(n.key("settings")),
-		scores: Qn(n.key("scores")),
-		views: i,
-		position: Kn(a(b.key("POSITION"), "VEC3", [V], null), he),
-		uv: Kn(a(b.key("TEXCOORD_0"), "VEC2", [V], null), he),
-		indices: qn(a(v.key("indices"), "SCALAR", [
-			5121,
-			5123,
-			zn
-		], null)),
-		preview: s
+function Fi(e, t, n, r, i) {
+	for (let a = 0; a < (i ? 2 : 3); a++) {
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -vi), vi) : 0, o = Ci + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Oi);
+	}
+}
+// eigenfield-three/src/mesh-faces.ts
+var Ii = 13, Li = 11, Ri = 12, q = 169, zi = 8, Bi = wi, Vi = Bi + q + 104 + 26, Hi = Vi + q + 104 + Ii, Ui = Hi + 64 + 64 + q, Wi = Ui + q + 4 + 1, Gi = Wi + 6, [Ki, qi, Ji, Yi, Xi] = [
+	4,
+	5,
+	6,
+	7,
+	8
+], Zi = [
+	-1,
+	-.4,
+	0,
+	.3,
+	.6,
+	.9,
+	1.3,
+	2,
+	4
+];
+function Qi(e, t, n, r, i) {
+	let a = new Int32Array(3 * t), o = {
+		points: a,
+		faces: new Int32Array(3 * n),
+		parents: new Int32Array(3 * t).fill(-1)
+	}, s = new Int32Array(t), c = new _i(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+		o.faces.set([
+			e,
+			t,
+			n
+		], 3 * u), u += 1;
+		for (let r of [
+			e,
+			t,
+			n
+		]) s[r] += 1;
+	}, f = () => {
+		if (l >= t) throw j(i, "more places than announced");
+		return l++;
+	}, p = () => {
+		let t = e.raw(F(l - 1));
+		if (t >= l) throw j(i, "a place that is not there yet");
+		return t;
+	}, m = () => {
+		let t = [
+			-1,
+			-1,
+			-1
+		];
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Wi + n, Wi + 3 + n, Wi + n, Xi)) t[n] = p();
+		else {
+			let i = t[n] = f();
+			Fi(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+		}
+		let [n, o, s] = t;
+		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
+		d(n, o, s), c.seed(t);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Ri : c.status[t] !== 1 || n === i || t === e ? Li : $i(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	for (; u < n;) {
+		let t = c.next();
+		if (t < 0) {
+			m();
+			continue;
+		}
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Ii + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Bi + q + 104 + 2 * y + +(_ === v);
+		if (y < Li && e.flag(Bi + x, Bi + q + y * zi + S, w, Ki)) {
+			d(l, n, _), c.closeLeft(t);
+			continue;
+		}
+		if (b < Li && (v !== _ || y >= Li) && e.flag(Vi + x, Vi + q + b * zi + C, Vi + q + 104 + b, qi)) {
+			d(l, n, v), c.closeRight(t);
+			continue;
+		}
+		let T = +(y === Ri) + (b === Ri ? 2 : 0), E = ji(a, n, r.fine) + 4 * ji(a, l, r.fine), D = Hi + 64 + S * zi + C;
+		if (e.flag(Hi + T * 16 + E, D, Hi + 64 + 64 + x, Ji)) {
+			c.status[t] = 2;
+			continue;
+		}
+		let O;
+		if (e.flag(Ui + x, Ui + q + T, Ui + q + 4, Yi)) {
+			O = f();
+			let i = c.opposite[t];
+			o.parents.set([
+				n,
+				l,
+				i
+			], 3 * O), Mi(e, a, O, {
+				a: n,
+				b: l,
+				o: i,
+				pair: x
+			}, r);
+		} else if (O = p(), O === n || O === l) throw j(i, "a face of two corners");
+		d(l, n, O), c.openOut(t, O);
+	}
+	if (l !== t) throw j(i, "fewer places than announced");
+	return o;
+}
+function $i(e, t, n, r, i, a) {
+	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
+		o(n, 0),
+		o(n, 1),
+		o(n, 2)
+	], [u, d, f] = [
+		o(r, 0),
+		o(r, 1),
+		o(r, 2)
+	], [p, m, h] = [
+		o(i, 0),
+		o(i, 1),
+		o(i, 2)
+	], [g, _, v] = [
+		c * f - l * d,
+		l * u - s * f,
+		s * d - c * u
+	], [y, b, x] = [
+		c * h - l * m,
+		l * p - s * h,
+		s * m - c * p
+	], S = Math.sqrt(g * g + _ * _ + v * v);
+	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Zi.findIndex((e) => C < e);
+	return w < 0 ? 10 : w + 1;
+}
+// eigenfield-three/src/mesh-corners.ts
+var ea = 32, ta = 4, [na, ra, ia, aa] = [
+	0,
+	1,
+	2,
+	3
+], oa = Gi, sa = oa + 64 + 12 + 16, J = sa + ta + 1, ca = J + 4, [la, ua, da] = [
+	9,
+	10,
+	11
+];
+function fa(e, t) {
+	let n = new Int32Array(t + 1);
+	for (let t of e) n[t + 1] += 1;
+	for (let e = 0; e < t; e++) n[e + 1] += n[e];
+	let r = n.slice(), i = new Int32Array(e.length);
+	return e.forEach((e, t) => i[r[e]++] = t), {
+		first: n,
+		corners: i
 	};
 }
-function Hn(e) {
-	let t = e.key("version").text(j);
-	if (!/^1\.\d+$/.test(t)) throw new E("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
-	let n = e.key("needs");
-	for (let e of n.exists ? n.items(O) : []) {
-		let t = e.text(j);
-		if (!le.has(t)) throw new E("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+function pa(e, t, n, r, i, a) {
+	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
+		faces: new Int32Array(3 * o),
+		place: new Int32Array(n),
+		chart: new Int32Array(n),
+		kinds: new Uint8Array(s),
+		maps: new Uint32Array(6 * s)
+	}, l = new Int32Array(t.points.length / 3).fill(-1), u = new Int32Array(n), d = [
+		-1,
+		-1,
+		-1
+	], f = [
+		0,
+		0,
+		0
+	], p = new Int32Array(ta), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+		0,
+		0,
+		-1
+	], v = (e, n) => {
+		for (let r = 0; r < 3; r++) if (t.faces[3 * e + r] === n) return r;
+		return -1;
+	}, y = (e, n) => {
+		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + ea); t++) {
+			let n = Math.floor(i[t] / 3);
+			if (n >= e) break;
+			if (v(n, o) >= 0) return n;
+		}
+		return -1;
+	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
+		let i = t.faces[3 * n + r], o = l[i];
+		if (o < 0) return -1;
+		m.fill(aa);
+		let s = 0;
+		for (let e of [r, (r + 2) % 3]) {
+			if (d[e] < 0) continue;
+			let t = b(d[e], i);
+			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
+		}
+		for (let e = 0; e < ea && s < ta && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		let g = -1;
+		for (let t = 0; t < s && g < 0; t++) {
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = oa + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(oa + t * 16 + n * 4 + i, oa + 64 + t * 3 + r, a, la) && (g = p[t]);
+		}
+		if (g < 0) {
+			if (e.flag(sa + s, sa + s, sa + ta, ua)) return -1;
+			if (g = e.raw(F(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
+		}
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? ra : ia);
+		return g;
+	}, S = () => {
+		let t = g++;
+		if (!e.flag(J, J, J, da)) return c.kinds[t] = e.flag(J + 1, J + 1, J + 1, da) ? 2 : 0, t;
+		c.kinds[t] = 1;
+		let n = _;
+		if (_ = t, n >= 0 && e.flag(J + 2, J + 2, J + 2, da)) {
+			let n = e.raw(F(t - 1));
+			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
+			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
+		}
+		let r = n >= 0 && e.flag(J + 3, J + 3, J + 3, da);
+		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
+		return t;
+	};
+	for (let e = 0; e < o; e++) {
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = na;
+		let r = -1, i = [];
+		for (let o = 0; o < 3; o++) {
+			let s = x(e, o);
+			if (s >= 0) r = c.chart[s];
+			else {
+				if (h >= n) throw j(a, "more vertices than announced");
+				s = h++;
+				let r = t.faces[3 * e + o];
+				c.place[s] = r, u[s] = l[r], l[r] = s, i.push(s);
+			}
+			c.faces[3 * e + o] = s;
+		}
+		r < 0 && (r = S());
+		for (let e of i) c.chart[e] = r;
 	}
-	return t;
+	if (h !== n) throw j(a, "fewer vertices than announced");
+	return c;
 }
-function Un(e) {
-	let t = e.key("buffers").at(0);
-	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
-	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(O).map((e) => {
-		let t = e.key("byteOffset"), r = e.key("byteStride");
-		e.key("buffer").integer(0, 0);
-		let i = {
-			offset: t.exists ? t.integer(0, n) : 0,
-			length: e.key("byteLength").integer(1, n),
-			stride: r.exists ? r.integer(4, 252) : 0
-		};
-		if (i.offset + i.length > n) throw e.wrong("outside the buffer");
-		return i;
-	});
+// eigenfield-three/src/mesh-values.ts
+var ma = 16, ha = 6, ga = 13, _a = 14, va = 20, ya = ca, ba = ya + 169 + 280 + 182, xa = ba + 144 + 576 + 48, [Sa, Ca] = [12, 13], wa = [
+	.5,
+	1.5,
+	3,
+	6,
+	12,
+	30
+];
+function Ta(e, t) {
+	return Ai(Number.isNaN(e) ? t : e);
 }
-function Wn(e) {
-	let t = e.key("nodes").items(O), n = Array(t.length).fill(!1);
-	for (let e of t) {
-		let r = e.key("children");
-		for (let e of r.exists ? r.items(t.length) : []) {
-			let r = e.integer(0, t.length - 1);
-			if (n[r]) throw e.wrong("a node with two parents");
-			n[r] = !0;
+function Ea(e) {
+	let t = wa.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? ha - t : ha + t;
+}
+function Da(e, t, n, r) {
+	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
+		let [n, r, i] = [
+			c(t) - c(e),
+			l(t) - l(e),
+			u(t)
+		], a = 1 / (1 + n * n + r * r);
+		return s[0] += a, s[1] += a * n, s[2] += a * r, s[3] += a * n * n, s[4] += a * n * r, s[5] += a * r * r, s[6] += a * i, s[7] += a * n * i, s[8] += a * r * i, a;
+	}, [f, p, m] = [
+		0,
+		0,
+		0
+	];
+	for (let t = 0; t < i.length / 3; t++) {
+		s.fill(0);
+		let [h, g, _, v] = [
+			0,
+			0,
+			Infinity,
+			-Infinity
+		];
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + ma); e++) for (let i = 1; i < 3; i++) {
+			let o = Oa(a, r[e], i);
+			if (o >= t) continue;
+			let s = d(t, o);
+			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + ma); e++) for (let n = 1; n < 3; n++) {
+				let i = Oa(a, r[e], n);
+				i < t && d(t, i);
+			}
+		}
+		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
+		g > 0 && (y = Math.min(F(v - _), 12), b = h / g, x = Math.min(Math.max(ka(s), p), m));
+		let S = b, [C, w, T] = [
+			o[3 * t],
+			o[3 * t + 1],
+			o[3 * t + 2]
+		];
+		if (C >= 0) {
+			let [e, n, r, i] = [
+				c(w) - c(C),
+				l(w) - l(C),
+				c(T) - c(C),
+				l(T) - l(C)
+			], [a, o] = [c(t) - c(C), l(t) - l(C)], s = e * i - n * r;
+			if (s !== 0) {
+				let [t, c] = [(a * i - o * r) / s, (e * o - n * a) / s];
+				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
+			}
+		}
+		let E = Ta(x, b), [D, O] = [Ea(S - E), Ea(b - E)], ee = e.integer(ya + D * ga + O, ya + 169 + y * va + f, ya + 169 + 280 + D * _a + y, Sa), k = E + ee;
+		i[3 * t + 2] = k, f = Math.min(F(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+	}
+}
+function Oa(e, t, n) {
+	let r = t % 3;
+	return e[t - r + (r + n) % 3];
+}
+function ka(e) {
+	let [t, n, r] = [
+		e[0],
+		e[1],
+		e[2]
+	], [i, a, o] = [
+		e[3] + 1,
+		e[4],
+		e[5] + 1
+	], [s, c, l] = [
+		e[6],
+		e[7],
+		e[8]
+	], [u, d, f] = [
+		i * o - a * a,
+		n * o - a * r,
+		n * a - i * r
+	];
+	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
+}
+function Aa(e, t, n, r, i) {
+	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
+	for (let t = 0; t < c.length; t++) {
+		let f = s[o[t]];
+		if (f === 1) continue;
+		let [p, m, h, g, _] = [
+			0,
+			0,
+			0,
+			-1,
+			0
+		];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + ma); e++) {
+			let [r, s] = [Oa(a, i[e], 1), Oa(a, i[e], 2)];
+			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
+			let [u, d] = ja(n, c, l, t, r, s, f === 2);
+			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
+			p += u, m += d, h += 1;
+			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
+			_ = Math.max(_, F(v));
+		}
+		g < 0 && (g = d), d = t;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = ba + 144;
+		for (let n = 0; n < 2; n++) {
+			let r = e.integer(ba + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Ca + n);
+			l[2 * t + n] = Ta(y[n], 0) + r, u[n] = Math.min(F(Math.abs(r)), 23);
 		}
 	}
-	for (let r of e.key("scenes").items(O)) {
-		let e = r.key("nodes");
-		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
+	return l;
+}
+function ja(e, t, n, r, i, a, o) {
+	let [s, c, l] = [
+		0,
+		0,
+		0
+	];
+	for (let n = 0; n < 3; n++) {
+		let o = e[3 * t[i] + n], u = e[3 * t[a] + n] - o, d = e[3 * t[r] + n] - o;
+		s += u * u, c += u * d, l += d * d;
 	}
+	let [u, d] = [n[2 * a] - n[2 * i], n[2 * a + 1] - n[2 * i + 1]], f = c / s, p = Math.sqrt(Math.max(l / s - f * f, 0)), m = o ? -p : p;
+	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
-function Gn(e, t) {
-	let n = e.key("accessors").items(O);
-	return (e, r, i, a) => {
-		let o = n[e.integer(0, n.length - 1)];
-		if (!o) throw e.wrong("no such accessor");
-		let s = o.key("componentType").integer(5120, 5126);
-		if (!i.includes(s)) throw o.wrong(`component type ${s}`);
-		if (o.key("type").text(1024) !== r) throw o.wrong(`not ${r}`);
-		if (o.key("sparse").exists) throw o.wrong("sparse");
-		let c = o.key("normalized");
-		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Rn[r] ?? 1, u = o.key("count").integer(1, _e);
-		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
-		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
-		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Ln[s] * l;
-		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
-		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Ln[s]) throw o.wrong("not aligned");
-		return {
-			view: d,
-			offset: m,
-			count: u,
-			items: l,
-			type: s,
-			where: o.where
-		};
-	};
+// eigenfield-three/src/mesh-decoder.ts
+var Ma = 144, Na = 18, Pa = 8;
+function Fa(e, t = "mesh") {
+	let n = I(e, Ma, t), [r, i, a] = [
+		n.getUint8(1),
+		n.getUint8(2),
+		n.getUint8(3)
+	], [o, s, c] = [
+		4,
+		8,
+		12
+	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
+	if (o > ge || c > ge || s > _e) throw j(t, `${c} vertices and ${s} faces`);
+	if (Ne(e, Math.max(o, s, c), _e, t), r > 1 || a > Pa * r || i < 1 || i > Na || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let u = new Me(e.subarray(Ma), xa, 16), d = Qi(u, o, s, {
+		flat: r === 1,
+		fine: a
+	}, t);
+	u.checkEnd(t);
+	let f = fa(d.faces, o);
+	r && Da(u, d, f.first, f.corners);
+	let p = pa(u, d, c, f.first, f.corners, t), m = Ia(d.points, l), h = fa(p.faces, c), g = Aa(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), Ra(La(d, p, m, g, 2 ** i), t);
 }
-function Kn(e, t) {
-	if (e.count > t) throw D(e.where, `more than ${t}`);
-	return e;
-}
-function qn(e) {
-	if (e.count % 3) throw D(e.where, "torn triangles");
-	return Kn(e, 3 * ge);
-}
-function Jn(e, t) {
-	let n = e.key("images");
-	if (!n.exists) return null;
-	let r = n.at(0).key("bufferView");
-	return r.exists ? t(r) : null;
-}
-function Yn(e) {
-	let t = e.key("names").items(pe).map((e) => e.text(j));
-	if (!t.length) throw e.key("names").wrong("no cameras");
-	if (new Set(t).size !== t.length) throw e.key("names").wrong("a name stands twice");
-	let n = t.findIndex((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e));
-	if (n >= 0) throw e.key("names").at(n).wrong("control characters");
-	return t;
-}
-function Xn(e, t) {
-	let n = Array(t).fill(!1), r = e.key("heldOut");
-	if (!r.exists) return n;
-	for (let e of r.items(t)) {
-		let r = e.integer(0, t - 1);
-		if (n[r]) throw e.wrong("named twice");
-		n[r] = !0;
+function Ia(e, t) {
+	let n = new Float64Array(e.length);
+	for (let r = 0; r < e.length; r += 3) {
+		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
+		for (let e = 0; e < 3; e++) n[r + e] = i(e) / a;
 	}
-	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Zn(e) {
-	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
-	for (let i of [
-		r(t, t) - 1,
-		r(n, n) - 1,
-		r(t, n)
-	]) if (!(Math.abs(i) <= 2e-4)) throw e.wrong("axes not at right angles, or not of length 1");
-	let [i = 0, a = 0] = e.key("extent").numbers(2, 0);
-	return {
-		origin: e.key("origin").triple(),
-		right: t,
-		up: n,
-		extent: [i, a]
+function La(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
+	return n.forEach((t, n) => {
+		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
+		let a = 6 * r[n], f = i[r[n]] === 1;
+		for (let r = 0; r < 2; r++) {
+			let i = a + 2 * r;
+			u[2 * n + r] = f ? d[i] * e.points[3 * t] + d[i + 1] * e.points[3 * t + 1] + d[a + 4 + r] : s[2 * n + r] / c;
+		}
+	}), {
+		positions: l,
+		uv: u,
+		indices: new Uint32Array(t)
 	};
 }
-function Qn(e) {
-	return e.exists ? e.object() : {};
+function Ra(e, t) {
+	let n = (e) => Math.abs(e) <= ye;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
+	return e;
+}
+// eigenfield-three/src/proxy.ts
+var za = 65535;
+function Ba(e, t) {
+	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
+	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
+	for (let e = 0; e < n.count; e++) {
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw j(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw j(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+	}
+	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
+}
+async function Va({ view: n, where: r }, i) {
+	let { positions: a, uv: o, indices: s } = Fa(new Uint8Array(await i(n)), r);
+	if (!s.length) throw j(r, "a mesh without faces");
+	let c = new t();
+	c.setAttribute("position", new e(a, 3)), c.setAttribute("uv", new e(o, 2));
+	let l = a.length / 3 <= za;
+	return c.setIndex(new e(l ? Uint16Array.from(s) : s, 1)), c;
+}
+function Ha(e) {
+	return {
+		vertices: e.getAttribute("position").count,
+		triangles: (e.index?.count ?? 0) / 3
+	};
 }
 // eigenfield-three/src/grid.ts
-function $n(e) {
+function Ua(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = er(e, n, r) ?? (n === r ? null : er(e, r, n));
+		let r = t / n, i = Wa(e, n, r) ?? (n === r ? null : Wa(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function er(e, t, n) {
-	let [r, i] = [nr(e, 0), nr(e, 1)];
-	if (t === 1 && rr(i) > 0 || n === 1 && rr(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => q(i, e) - q(i, t));
+function Wa(e, t, n) {
+	let [r, i] = [Ka(e, 0), Ka(e, 1)];
+	if (t === 1 && qa(i) > 0 || n === 1 && qa(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Y(i, e) - Y(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => q(r, e) - q(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Y(r, e) - Y(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return tr(n, t, (e, t) => q(r, o(t, e))) && tr(t, n, (e, t) => q(i, o(e, t))) ? {
+	return Ga(n, t, (e, t) => Y(r, o(t, e))) && Ga(t, n, (e, t) => Y(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function tr(e, t, n) {
+function Ga(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -2022,33 +3030,33 @@ function tr(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function nr(e, t) {
+function Ka(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function rr(e) {
+function qa(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var q = (e, t) => e[t] ?? 0, ir = 1e-6, J = 32, ar = class {
+var Y = (e, t) => e[t] ?? 0, Ja = 1e-6, Ya = 32, Xa = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = $n(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ua(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(or(e), this.isLine ? 0 : or(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Za(e), this.isLine ? 0 : Za(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => mr(e, t, this.places) : e === "bilinear" && this.grid ? gr(this.places, this.grid) : lr(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => oo(e, t, this.places) : e === "bilinear" && this.grid ? co(this.places, this.grid) : eo(this.places, this.triangles);
 	}
 };
-function or(e) {
+function Za(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function sr(e) {
+function Qa(e) {
 	let t = {
 		camera: [
 			0,
@@ -2067,58 +3075,58 @@ function sr(e) {
 		t.camera[r] = e, t.weight[r] = n;
 	}), t;
 }
-var Y = (e, t) => e[2 * t] ?? 0, X = (e, t) => e[2 * t + 1] ?? 0;
-function cr(e, t, n, r, i, a) {
-	let [o, s] = [Y(n, r), X(n, r)], [c, l] = [Y(n, i) - o, X(n, i) - s], [u, d] = [Y(n, a) - o, X(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
+var X = (e, t) => e[2 * t] ?? 0, Z = (e, t) => e[2 * t + 1] ?? 0;
+function $a(e, t, n, r, i, a) {
+	let [o, s] = [X(n, r), Z(n, r)], [c, l] = [X(n, i) - o, Z(n, i) - s], [u, d] = [X(n, a) - o, Z(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
 		p,
 		m
 	];
 }
-function lr(e, t) {
+function eo(e, t) {
 	if (!t.length) {
-		let t = pr(e, fr(e));
-		return (n, r) => $(n, r, e, t);
+		let t = ao(e, io(e));
+		return (n, r) => ro(n, r, e, t);
 	}
-	let n = ur(e, t, 3), r = dr(t);
+	let n = to(e, t, 3), r = no(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[Q(a) * J + Q(i)] ?? []) {
+		for (let r of n[$(a) * Ya + $(i)] ?? []) {
 			let [n, l, u] = [
-				Z(t, r, 0),
-				Z(t, r, 1),
-				Z(t, r, 2)
-			], d = cr(i, a, e, n, l, u), f = Math.min(...d);
+				Q(t, r, 0),
+				Q(t, r, 1),
+				Q(t, r, 2)
+			], d = $a(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? $(i, a, e, r) : sr(c.map((e, n) => [Z(t, o, n), e]));
+		return s < -1e-9 ? ro(i, a, e, r) : Qa(c.map((e, n) => [Q(t, o, n), e]));
 	};
 }
-var Z = (e, t, n) => e[3 * t + n] ?? 0;
-function Q(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * J)));
+var Q = (e, t, n) => e[3 * t + n] ?? 0;
+function $(e) {
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ya)));
 }
-function ur(e, t, n) {
+function to(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
-		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Y(e, t)), s = a.map((t) => X(e, t));
-		for (let e = Q(Math.min(...s)); e <= Q(Math.max(...s)); e++) for (let t = Q(Math.min(...o)); t <= Q(Math.max(...o)); t++) r[e * J + t]?.push(i);
+		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => X(e, t)), s = a.map((t) => Z(e, t));
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ya + t]?.push(i);
 	}
 	return r;
 }
-function dr(e) {
+function no(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Z(e, n, r), Z(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Q(e, n, r), Q(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -2127,14 +3135,14 @@ function dr(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function $(e, t, n, r) {
+function ro(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
 		0
 	];
 	for (let o = 0; o + 1 < r.length; o += 2) {
-		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [Y(n, s), X(n, s)], [d, f] = [Y(n, c) - l, X(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
+		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [X(n, s), Z(n, s)], [d, f] = [X(n, c) - l, Z(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
 		h < i && ([i, a] = [h, [
 			s,
 			c,
@@ -2142,33 +3150,33 @@ function $(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return sr([[o, 1 - c], [s, c]]);
+	return Qa([[o, 1 - c], [s, c]]);
 }
-function fr(e) {
+function io(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function pr(e, t) {
+function ao(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
-	for (let n of t) r[0] = (r[0] ?? 0) + Y(e, n) / t.length, r[1] = (r[1] ?? 0) + X(e, n) / t.length;
+	for (let n of t) r[0] = (r[0] ?? 0) + X(e, n) / t.length, r[1] = (r[1] ?? 0) + Z(e, n) / t.length;
 	let [i, a, o] = [
 		0,
 		0,
 		0
 	];
 	for (let n of t) {
-		let [t, s] = [Y(e, n) - (r[0] ?? 0), X(e, n) - (r[1] ?? 0)];
+		let [t, s] = [X(e, n) - (r[0] ?? 0), Z(e, n) - (r[1] ?? 0)];
 		[i, a, o] = [
 			i + t * t,
 			a + t * s,
 			o + s * s
 		];
 	}
-	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Y(e, t) * Math.cos(s) + X(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
+	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => X(e, t) * Math.cos(s) + Z(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function mr(e, t, n) {
+function oo(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -2179,15 +3187,15 @@ function mr(e, t, n) {
 		Infinity
 	];
 	for (let l = 0; 2 * l < n.length; l++) {
-		let [u, d] = [Y(n, l) - e, X(n, l) - t], f = u * u + d * d;
+		let [u, d] = [X(n, l) - e, Z(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || hr(n, r, i, a) <= ir) return $(e, t, n, pr(n, [
+	if (a < 0 || so(n, r, i, a) <= Ja) return ro(e, t, n, ao(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = cr(e, t, n, r, i, a);
+	let [l, u, d] = $a(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -2203,15 +3211,15 @@ function mr(e, t, n) {
 		]
 	};
 }
-function hr(e, t, n, r) {
-	let [i, a] = [Y(e, n) - Y(e, t), X(e, n) - X(e, t)], [o, s] = [Y(e, r) - Y(e, t), X(e, r) - X(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
+function so(e, t, n, r) {
+	let [i, a] = [X(e, n) - X(e, t), Z(e, n) - Z(e, t)], [o, s] = [X(e, r) - X(e, t), Z(e, r) - Z(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function gr(e, t) {
+function co(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = pr(e, fr(e));
-		return (n, r) => $(n, r, e, t);
+		let t = ao(e, io(e));
+		return (n, r) => ro(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -2220,7 +3228,7 @@ function gr(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ur(e, o.flat(), 4), c = [];
+	let s = to(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -2228,12 +3236,12 @@ function gr(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[Q(n) * J + Q(t)] ?? []) {
-			let s = o[a], c = s ? _r(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Ya + $(t)] ?? []) {
+			let s = o[a], c = s ? lo(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return $(t, n, e, l);
-		let [a, c] = vr(t, n, e, r);
+		if (!r || i < -1e-9) return ro(t, n, e, l);
+		let [a, c] = uo(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -2245,25 +3253,25 @@ function gr(e, t) {
 		};
 	};
 }
-function _r(e, t, n, r) {
+function lo(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
-		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Y(n, o), X(n, o)];
-		i = Math.min(i, (Y(n, s) - c) * (t - l) - (X(n, s) - l) * (e - c));
+		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [X(n, o), Z(n, o)];
+		i = Math.min(i, (X(n, s) - c) * (t - l) - (Z(n, s) - l) * (e - c));
 	}
 	return i;
 }
-function vr(e, t, n, r) {
+function uo(e, t, n, r) {
 	let [i, a, o, s] = [
-		Y(n, r[0]),
 		X(n, r[0]),
-		Y(n, r[1]),
-		X(n, r[1])
+		Z(n, r[0]),
+		X(n, r[1]),
+		Z(n, r[1])
 	], [c, l, u, d] = [
-		Y(n, r[2]),
 		X(n, r[2]),
-		Y(n, r[3]),
-		X(n, r[3])
+		Z(n, r[2]),
+		X(n, r[3]),
+		Z(n, r[3])
 	], [f, p, m, h, g, _] = [
 		e - i,
 		t - a,
@@ -2271,24 +3279,24 @@ function vr(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), ee = -(g * y - _ * v), te = Math.sqrt(Math.max(x * x - 4 * b * ee, 0)), S = yr(-2 * b / (x + (x < 0 ? -te : te))), [C, w] = [m + S * v, h + S * y];
-	return [yr(((f - S * g) * C + (p - S * _) * w) / (C * C + w * w)), S];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = fo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [fo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function yr(e) {
+function fo(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var br = class {
+var po = class {
 	parser;
 	options;
-	name = ce;
+	name = ae;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Bn(e.json);
+		this.parser = e, this.options = t, this.ours = Rn(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Vn(this.parser.json));
+		this.ours && (this.scene = zn(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -2303,30 +3311,35 @@ var br = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = xr(e, this.parser), [r] = n;
-		if (!r) throw D("/meshes/0", "no node shows it");
-		Cr(r.geometry, t);
+		let n = mo(e, this.parser), [r] = n;
+		if (!r) throw j("/meshes/0", "no node shows it");
+		Ba(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ve(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = await Promise.all(t.planes.map(({ mean: e }) => i(e.view))), [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map(({ mean: e, channels: t, meanSize: n }, r) => U(a[r] ?? /* @__PURE__ */ new ArrayBuffer(0), e, t, n))),
-			ye(t, i),
-			Se(t, i),
-			Te(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new ar(Float64Array.from(u.flatMap((e) => F(t, e.centre))), l, t.extent[1] === 0), f = o.map(([e]) => [e?.bitmap.width ?? 1, e?.rows ?? 1]), p = Ee(t, s, f, d.grid, this.fileBytes()), m = {
+		}, a = await Promise.all(t.planes.map(({ mean: e }) => i(e.view))), o = t.mesh && await Va(t.mesh, i);
+		if (o) {
+			r.geometry.dispose();
+			for (let e of n) e.geometry = o;
+		}
+		let [s, c, l, u] = await Promise.all([
+			Promise.all(t.planes.map(({ mean: e, meanSize: t }, n) => kr(a[n] ?? /* @__PURE__ */ new ArrayBuffer(0), e, t))),
+			dt(t, i),
+			_t(t, i),
+			xt(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Xa(Float64Array.from(d.flatMap((e) => wt(t, e.centre))), u, t.extent[1] === 0), p = s.map(([e]) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = St(t, c, p, f.grid, this.fileBytes(), Ha(r.geometry)), h = {
 			scene: t,
-			info: p,
+			info: m,
 			meshes: n,
-			means: o,
-			meanSizes: f,
-			rays: p.facesPlane,
-			omega: c,
-			weights: d,
+			means: s,
+			meanSizes: p,
+			rays: m.facesPlane,
+			omega: l,
+			weights: f,
 			bytes: i
 		};
-		e.userData.eigenfield = new xn(m, this.options);
+		e.userData.eigenfield = new $r(h, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -2334,54 +3347,44 @@ var br = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function xr(e, t) {
+function mo(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Sr(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		ho(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Sr(e) {
+function ho(e) {
 	return e.isMesh === !0;
 }
-function Cr(e, t) {
-	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new E("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count < n.count) throw D(t.uv.where, "too few texture coordinates");
-	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw D(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw D(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
-	}
-	for (let e of i.array) if (e >= n.count) throw D(t.indices.where, `no vertex ${e}`);
-}
 // eigenfield-three/src/load.ts
-async function wr(e, t = {}) {
+async function go(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Dn(), i = new AbortController(), a = () => {
+	let r = new oi(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Dr(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = yo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await jn(r);
-		if (!Bn(e.json)) return {
-			gltf: await Er(r, e, o),
+		let e = await ui(r);
+		if (!Rn(e.json)) return {
+			gltf: await vo(r, e, o),
 			field: null
 		};
-		let i = await Tr(r, e, t);
+		let i = await _o(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof xn ? a : null
+			field: a instanceof $r ? a : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), se(e);
+		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function Tr(e, t, n) {
-	let r = new ae(), i = t.binary();
+async function _o(e, t, n) {
+	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
 		total: t.length,
@@ -2390,51 +3393,51 @@ async function Tr(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new br(e, {
+	return r.register((e) => new po(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Er(e, t, n) {
+async function vo(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		return await new ae().parseAsync(r, "");
+		return await new te().parseAsync(r, "");
 	} catch (e) {
-		let t = se(e).message;
-		throw new E("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		let t = ie(e).message;
+		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Dr(e, t, n, r) {
+async function yo(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Or(e) : await kr(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? bo(e) : await xo(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Ar(t.received, e);
+			throw n.aborted ? e : So(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Or(e) {
+function bo(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function kr(e, t) {
+async function xo(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new E("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new E("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new A("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Ar(e, t) {
-	return new E("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function So(e, t) {
+	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { xn as EigenField, br as EigenfieldPlugin, E as SceneError, Ge as defaultMemory, wr as loadEigenfield, ke as novelCamera, Ne as placeCamera };
+export { $r as EigenField, po as EigenfieldPlugin, A as SceneError, Ut as defaultMemory, go as loadEigenfield, Et as novelCamera, At as placeCamera };
