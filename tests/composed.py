@@ -3,19 +3,20 @@ with reference pictures for the tests of the web viewer."""
 
 from __future__ import annotations
 
-import io
 import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from glb_surgery import EXTENSION, join, split
 from PIL import Image
 from scenes import smooth_pictures
 from viewer_scenes import FREE, PLACES, SIDE, free_camera, scene
 
 from eigenfield.camera import Camera
 from eigenfield.format import save
+from eigenfield.format.pictures import encode, stacked
+from eigenfield.format.quantise import Affine, mean_codes, mean_values
+from eigenfield.format.stored import PictureFile, keep_files
 from eigenfield.mesh import Mesh
 from eigenfield.rendering import draw_texture, view_weights, viewpoint
 from eigenfield.scene import Basis, Plane, Scene
@@ -28,8 +29,8 @@ def layered_scene() -> Scene:
     chroma at odd sizes; textures are codes. Geometry and weights as `viewer_scenes.scene`."""
     plain = scene()
     weights = plain.planes[0].bases[0].weights
-    luma = as_coded(plain.planes[0].mean[..., :1])
-    chroma = as_coded(0.1 * smooth_pictures(1, 40, 48, 2, seed=4)[0])
+    luma, chroma = plain.planes[0].mean[..., :1], 0.1 * smooth_pictures(1, 40, 48, 2, seed=4)[0]
+    luma, chroma = (mean_values(*mean_codes(mean)) for mean in (luma, chroma))  # as a file keeps them
     planes = (
         Plane(
             luma,
@@ -44,12 +45,6 @@ def layered_scene() -> Scene:
         ),
     )
     return replace(plain, planes=planes, to_rgb=TO_RGB)
-
-
-def as_coded(mean: np.ndarray) -> np.ndarray:
-    """A mean as 256 steps between its least and its largest value keep it."""
-    low, high = mean.min(), mean.max()
-    return (low + np.rint((mean - low) / (high - low) * 255) * (high - low) / 255).astype(np.float32)
 
 
 def coded(
@@ -141,9 +136,11 @@ def write(folder: Path) -> None:
         missing = dict.fromkeys(("at", "camera", "free", "count"))
         pictures.append({"scene": f"{name}.glb", "file": file, "filter": filter, **missing, **what, **size})
 
-    layered, level = layered_scene(), flat(layered_scene(), 0.0, 1.0)
+    layered = layered_scene()
+    level = flat(layered, 0.0, 1.0)
+    keep_png(layered)  # the planes of both
     for name, made in (("layered", layered), ("flat", level)):
-        save_layered(made, folder / f"{name}.glb")
+        save(made, folder / f"{name}.glb", overwrite=True)
     for filter in ("bilinear", "bicubic"):
         for count, at in ((None, PLACES[1]), (None, PLACES[2]), (0, PLACES[1]), (2, PLACES[1]), (4, PLACES[1])):
             camera, weights = viewpoint(layered, at=at)
@@ -157,54 +154,17 @@ def write(folder: Path) -> None:
     listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")
 
 
-def save_layered(made: Scene, path: Path) -> None:
-    """Write a scene of 8-bit codes as format 1.2 has it, in PNG: the first texture of a basis alone, the rest in
-    one picture."""
-    plain = replace(made, planes=(Plane(np.zeros((SIDE, SIDE, 3), np.float32), ()),), to_rgb=None)
-    save(plain, path, codec="png", overwrite=True)
-    gltf, binary = split(path.read_bytes())
-    data = bytearray(binary)
+def keep_png(made: Scene) -> None:
+    """Files of PNG for a scene of 8-bit codes: of each basis the first texture alone, the rest in one picture."""
+    for plane in made.planes:
+        codes, affine = mean_codes(plane.mean)
+        keep_files(plane, [PictureFile(encode(codes, "png", 0), "image/png", 8, 1, affine)])
+        for basis in plane.bases:
+            keep_files(basis, [png_file(basis, part) for part in (slice(0, 1), slice(1, None))])
 
-    def view(part: bytes) -> int:
-        data.extend(bytes(-len(data) % 4))
-        gltf["bufferViews"].append({"buffer": 0, "byteOffset": len(data), "byteLength": len(part)})
-        data.extend(part)
-        gltf["buffers"][0]["byteLength"] = len(data)
-        return len(gltf["bufferViews"]) - 1
 
-    def picture(codes: np.ndarray) -> dict:
-        """(k, h, w, C) codes, one below the other; channels too unless there are three."""
-        k, h, w, channels = codes.shape
-        stacked = codes.reshape(k * h, w, 3) if channels == 3 else codes.transpose(0, 3, 1, 2).reshape(-1, w)
-        file = io.BytesIO()
-        Image.fromarray(np.ascontiguousarray(stacked)).save(file, "PNG")
-        return {"bufferView": view(file.getvalue()), "mimeType": "image/png"}
-
-    def basis(own: Basis) -> dict:
-        (rows, columns), (top, left) = own.size, own.corner
-        h, w = own.textures.shape[1:3]
-        weights = {"bufferView": view(own.weights.astype("<f4").tobytes()), "componentType": 5126, "type": "SCALAR"}
-        gltf["accessors"].append({**weights, "count": own.weights.size})
-        listed = []
-        for part in (slice(0, 1), slice(1, None)):
-            numbers = {"scale": own.scale[part].ravel().tolist(), "zero": own.zero[part].ravel().tolist()}
-            count = len(own.textures[part])
-            listed.append(picture(own.textures[part]) | numbers | ({"count": count} if count > 1 else {}))
-        whole = {"grid": [columns, rows], "corner": [left, top]} if own.grid else {}
-        return {"size": [w, h], **whole, "textures": listed, "weights": len(gltf["accessors"]) - 1}
-
-    def mean(values: np.ndarray) -> dict:
-        low, high = values.min(), values.max()
-        codes = np.rint((values - low) / (high - low) * 255).astype(np.uint8)
-        numbers = {"scale": [float(high - low) / 255] * values.shape[2], "zero": [float(-low / (high - low)) * 255]}
-        numbers["zero"] *= values.shape[2]
-        return picture(codes[None]) | numbers | {"size": [values.shape[1], values.shape[0]]}
-
-    extension = gltf["extensions"][EXTENSION]
-    extension["version"], extension["needs"] = "1.2", ["toRGB", "regions", "stacks"]
-    extension["toRGB"] = made.to_rgb.ravel().tolist()
-    extension["planes"] = [
-        {"channels": plane.mean.shape[2], "mean": mean(plane.mean), "bases": [basis(own) for own in plane.bases]}
-        for plane in made.planes
-    ]
-    path.write_bytes(join(gltf, bytes(data)))
+def png_file(basis: Basis, part: slice) -> PictureFile:
+    codes = np.concatenate([stacked(texture) for texture in basis.textures[part]])
+    affine = Affine(*(numbers[part].ravel().astype(np.float64) for numbers in (basis.scale, basis.zero)))
+    data = encode(codes if codes.ndim == 3 else codes[..., None], "png", 0)
+    return PictureFile(data, "image/png", 8, len(basis.textures[part]), affine)

@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import coded_scenes
 import composed
 import pytest
 import viewer_scenes
@@ -36,6 +37,7 @@ def folder(tmp_path_factory):
     made = tmp_path_factory.mktemp("viewer")
     viewer_scenes.write(made)
     composed.write(made)
+    coded_scenes.write(made)
     return made
 
 

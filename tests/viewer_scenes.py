@@ -168,9 +168,9 @@ def write(folder: Path) -> None:
     save(replace(plain, names=hostile + plain.names[4:]), folder / "names.glb", codec="png", overwrite=True)
     _bad_files(folder)
     _capture(folder / "capture", ef.load(folder / "scene.glb"))
-    pictures = [*_references(folder, "scene.glb"), *_references(folder, "line.glb", PLACES[:2])]
-    pictures += [*_references(folder, "one.glb", PLACES[1:2]), *_references(folder, "four.glb", PLACES[1:2])]
-    pictures += _references(folder, "grey.glb", PLACES[1:2])
+    pictures = [*references(folder, "scene.glb"), *references(folder, "line.glb", PLACES[:2])]
+    pictures += [*references(folder, "one.glb", PLACES[1:2]), *references(folder, "four.glb", PLACES[1:2])]
+    pictures += references(folder, "grey.glb", PLACES[1:2])
     pictures += [*_counted_references(folder, "scene.glb"), *_free_references(folder, "scene.glb")]
     (folder / "references.json").write_text(json.dumps(pictures, indent=1), encoding="utf-8")
     weights = [{"scene": name, "places": _weights(folder / name)} for name in ("scene.glb", "line.glb", "held-out.glb")]
@@ -196,7 +196,7 @@ def _colours(count: int) -> np.ndarray:
     return np.concatenate([gains, offsets], axis=1).astype(np.float32)
 
 
-def _references(folder: Path, name: str, places: tuple[tuple[float, float], ...] = PLACES) -> list[dict]:
+def references(folder: Path, name: str, places: tuple[tuple[float, float], ...] = PLACES) -> list[dict]:
     loaded = ef.load(folder / name)
     listed = []
     for filter in ("bilinear", "bicubic"):

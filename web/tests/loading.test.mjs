@@ -248,9 +248,91 @@ const LAYERED_CHANGES = {
   "a second plane without a mean": (e) => delete e.planes[1].mean,
 };
 
+const CODED_CHANGES = {
+  "codes of 9 bits": (e) => (e.planes[0].mean.bits = 9),
+  "10 bits of a type that has 8": (e) => (e.planes[0].mean.mimeType = "image/png"),
+  "a mean of 10 bits without scale": (e) => delete e.planes[0].mean.scale,
+  "a mean of 10 bits without both": (e) => ["scale", "zero"].forEach((key) => delete e.planes[0].mean[key]),
+  "scales for some textures": (e) => (e.planes[0].bases[0].textures[0].scale = [1, 1, 1, 1]),
+  "pictures of 8 bits, three times as high": (e) => delete e.planes[0].mean.bits,
+  "a size of no whole number": (e) => (e.cameras.size = [320, 240.5]),
+  "a size of no pixels": (e) => (e.cameras.size = [0, 240]),
+  "a size of three numbers": (e) => (e.cameras.size = [320, 240, 1]),
+  "photographs of 4 thousand million pixels": (e) => (e.cameras.size = [65535, 65535]),
+  "cameras in a view that is not there": (e) => (e.cameras.coded = 999),
+  "a camera more": (e) => e.cameras.names.push("one more"),
+  "a camera less": (e) => e.cameras.names.pop() && (e.reference = 0),
+  "a texture less": (e) => (e.planes[0].bases[0].textures[0].count = 5),
+  "weights in no view": (e) => (e.planes[0].bases[0].codedWeights = "4"),
+  "a camera without weights": (e) => (e.cameras.heldOut = [3]),
+  "a mesh that is a number": (e) => (e.mesh = 4),
+  "a mesh without a view": (e) => (e.mesh = {}),
+  "a mesh that is none": (e) => (e.mesh.bufferView = e.planes[0].mean.bufferView),
+  "no coarse mesh": (_e, json) => delete json.meshes[0].primitives[0].attributes.POSITION,
+};
+
+/** First byte and length of each coded part within the binary chunk. */
+function streamsOf(json) {
+  const { mesh, cameras, planes } = find(json);
+  const views = { mesh: mesh.bufferView, coded: cameras.coded, codedWeights: planes[0].bases[0].codedWeights };
+  return Object.entries(views).map(([name, view]) => {
+    const { byteOffset, byteLength } = json.bufferViews[view];
+    return { name, view, start: byteOffset, length: byteLength };
+  });
+}
+
+test("damaged coded parts are refused by name", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("coded.glb"));
+  for (const { name, view, start, length } of streamsOf(json)) {
+    for (const [byte, value] of [[0, 2], [1, 255]]) {
+      const data = Buffer.from(binary);
+      data[start + byte] = value;
+      routes["/stream.glb"] = { body: writeGlb({ json, binary: data }) };
+      const found = await tryLoad(page, "stream.glb");
+      assert.equal(found.code, "damaged", `${name}, byte ${byte}: ${JSON.stringify(found)}`);
+      assert.match(found.where, new RegExp(`/${name}$`));
+      assert.match(found.message, /^The file is damaged \(.+\); make or download it again\.$/);
+    }
+    for (const kept of [8, Math.floor(length / 2)]) {
+      const short = structuredClone(json);
+      short.bufferViews[view].byteLength = kept;
+      routes["/stream.glb"] = { body: writeGlb({ json: short, binary }) };
+      const { code, message } = await tryLoad(page, "stream.glb");
+      assert.ok(code === "truncated" || code === "damaged", `${name} of ${kept} bytes: ${code}`);
+      assert.match(message, new RegExp(`^The file is (damaged|cut off) \\(.+/${name}.*\\); `), name);
+    }
+  }
+  await close();
+});
+
+test("coded parts with any byte changed load or are refused, and nothing else", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("coded.glb"));
+  for (const { name, start, length } of streamsOf(json)) {
+    for (let k = 0; k < 8; k++) {
+      const data = Buffer.from(binary);
+      data[start + Math.floor((k * length) / 8) + (k % 3)] ^= 1 << k;
+      routes["/stream.glb"] = { body: writeGlb({ json, binary: data }) };
+      const { code = "loaded" } = await tryLoad(page, "stream.glb");
+      assert.match(code, /^(loaded|damaged|truncated)$/, name);
+    }
+  }
+  await close();
+});
+
+test("8 bits that are said to be 10 are refused", async () => {
+  const { page, close } = await lab.open();
+  const { code, message } = await tryLoad(page, "shallow.glb");
+  assert.equal(code, "damaged");
+  assert.match(message, /planes\/0\/mean: no picture of 10 bits/);
+  await close();
+});
+
 test("a document that cannot be is refused by name", async () => {
   const { page, close } = await lab.open();
-  for (const [scene, changes] of [["avif.glb", CHANGES], ["layered.glb", LAYERED_CHANGES]]) {
+  const all = { "avif.glb": CHANGES, "layered.glb": LAYERED_CHANGES, "coded.glb": CODED_CHANGES };
+  for (const [scene, changes] of Object.entries(all)) {
     const { json, binary } = readGlb(sceneBytes(scene));
     for (const [what, change] of Object.entries(changes)) {
       const changed = structuredClone(json);

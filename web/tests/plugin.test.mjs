@@ -202,7 +202,7 @@ test("held-out cameras have the weights of their place, encoded ones their row",
 
 test("a single eigen texture is what its step of the slider adds", async () => {
   const { page, close } = await lab.open();
-  for (const [name, total] of [["scene.glb", 6], ["grey.glb", 5]]) {
+  for (const [name, total] of [["scene.glb", 6], ["grey.glb", 5], ["coded.glb", 6]]) {
     await load(page, name);
     const shot = async (settings) => {
       const { gain, weights } = await page.evaluate((values) => {
@@ -360,6 +360,62 @@ test("planes, regions and pictures of several textures: bytes, sizes and little 
   await drawReference(page, reference);
   const { mean: off } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
   assert.ok(off < 4, `mean difference ${off}`);
+  await close();
+});
+
+test("a coded mesh is drawn in place of glTF's, which is for others", async () => {
+  const { page, close } = await lab.open();
+  await load(page, "coded.glb");
+  const { info, shown, coarse } = await page.evaluate(async () => {
+    const { field, lab } = window;
+    const facesOf = (gltf) => {
+      const found = [];
+      gltf.scene.traverse((part) => part.isMesh && found.push(part.geometry.index.count / 3));
+      return found;
+    };
+    const { gltf } = await lab.loadEigenfield("coded.glb");
+    return { info: field.info, shown: facesOf(gltf), coarse: facesOf(await lab.plainLoad("coded.glb", false)) };
+  });
+  assert.deepEqual([info.vertices, info.triangles, shown], [24 * 24, 2 * 23 * 23, [2 * 23 * 23]]);
+  assert.ok(coarse.length === 1 && coarse[0] <= 256, `${coarse}`);
+  assert.deepEqual(info.cameras.map(({ width, height }) => [width, height]), Array(25).fill([320, 240]));
+  const { total, mesh, mean, weights, other, textures } = info.bytes;
+  assert.equal(mesh + mean + weights + other + textures.reduce((a, b) => a + b, 0), total);
+  assert.ok(weights > 50 && weights < 25 * 6 * 4, `${weights} bytes of weights`);
+  await close();
+});
+
+test("a browser that does not give codes of 10 bits draws nearly the same with 8", async () => {
+  const { page, close } = await lab.open();
+  await page.evaluate(() => delete window.ImageDecoder);
+  for (const name of ["coded.glb", "fitted.glb"]) {
+    await load(page, name);
+    for (const reference of references.filter(({ scene }) => scene === name)) {
+      await drawReference(page, reference);
+      const { largest, mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
+      // half a code of 8 bits is up to 0.5 grey levels of the mean and 1 of a texture or of chroma, six times at weights
+      // of about 1: as if random 0.3 and 1.4; where a texture is flat its errors are one level's, and are seen most
+      assert.ok(mean <= 1.5 && largest <= 8, `${reference.file}: mean ${mean}, largest ${largest}`);
+      assert.ok(mean > 0.55, `${reference.file}: mean ${mean}, as if all ten bits were there`);
+    }
+  }
+  await close();
+});
+
+test("textures of 10 bits in little memory", async () => {
+  const { page, close } = await lab.open();
+  await load(page, "coded.glb");
+  const whole = await page.evaluate(() => window.field.gpuBytes);
+  for (const [part, down] of [[0.9, 2], [0.36, 4]]) {
+    await page.evaluate(() => window.field.dispose());
+    await load(page, "coded.glb", { memory: part * whole });
+    const state = await page.evaluate(() => [window.field.gpuBytes, window.field.scaleDown, window.field.usable]);
+    assert.ok(state[0] <= part * whole && state[1] === down && state[2] === 6, `${state} of ${whole}`);
+    await drawReference(page, references.find(({ scene }) => scene === "coded.glb"));
+    const { file } = references.find(({ scene }) => scene === "coded.glb");
+    const { mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(file))));
+    assert.ok(mean < 6, `1/${down}: mean ${mean}`);
+  }
   await close();
 });
 
