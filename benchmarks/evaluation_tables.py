@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from measure import latest
+from measure import runs
 
 Captures = dict[str, dict[str, Any]]
 
@@ -166,12 +166,23 @@ def _cost(value: Any) -> str:
     return decimals(value["psnr"] if isinstance(value, dict) else value)
 
 
-def origin(figures: dict[str, Any], link: str) -> str:
-    machine = figures["machine"]
-    return (
-        f"[`{figures['command']}`]({link}), commit {', '.join(figures['commits'])}, {machine['processor']},"
-        f" {machine['cores']} cores, {figures['date'][:10]}.\n"
-    )
+def newest(history: Sequence[Mapping[str, Any]]) -> tuple[Captures, list[Mapping[str, Any]]]:
+    """Each capture as the newest run that has it measured it, in the order in which they came first; and the runs that
+    are shown so, the oldest first."""
+    last = {name: number for number, run in enumerate(history) for name in run["captures"]}
+    captures = {name: history[number]["captures"][name] for name, number in last.items()}
+    return captures, [history[number] for number in sorted(set(last.values()))]
+
+
+def origin(shown: Sequence[Mapping[str, Any]], link: str) -> str:
+    lines = []
+    for run in shown:
+        machine = run["machine"]
+        lines.append(
+            f"[`{run['command']}`]({link}), commit {', '.join(run['commits'])}, {machine['processor']},"
+            f" {machine['cores']} cores, {run['date'][:10]}"
+        )
+    return ";\n".join(lines) + ".\n"
 
 
 SECTIONS: tuple[tuple[str, Callable[[Captures], str]], ...] = (
@@ -188,17 +199,15 @@ SECTIONS: tuple[tuple[str, Callable[[Captures], str]], ...] = (
 
 def page() -> str:
     """The tables of docs/evaluation.md."""
-    figures = latest("report")
-    captures: Captures = figures["captures"]
+    captures, shown = newest(runs("report"))
     parts = [f"### {title}\n\n{of(captures)}\n" for title, of in SECTIONS]
     parts.insert(3, f"The losses by size:\n\n{largest(captures)}{truth(captures)}\n")
-    return "".join(parts) + origin(figures, "../benchmarks/results/report.json")
+    return "".join(parts) + origin(shown, "../benchmarks/results/report.json")
 
 
 def brief() -> str:
     """The README's section."""
-    figures = latest("report")
-    captures: Captures = figures["captures"]
+    captures, shown = newest(runs("report"))
     anchor = ANCHORS[0]
     rows = []
     for name, one in captures.items():
@@ -216,5 +225,5 @@ def brief() -> str:
         " any captures and makes one page of it; [what it shows, and what not](docs/evaluation.md). Bytes against AV1:"
         f" at equal PSNR of the captured views, + means that ours needs more ({anchor}, one key frame); last, views"
         " that were held out, as simpler ways draw them and as the scene does, in dB.\n\n"
-        + table(head, rows) + "\n" + origin(figures, "benchmarks/results/report.json") + "\n"
+        + table(head, rows) + "\n" + origin(shown, "benchmarks/results/report.json") + "\n"
     )  # fmt: skip

@@ -38,6 +38,20 @@ def captures():
     return {"one": whole, "two": {"title": "Two", "views": None, "hold_out": "every:2"}}
 
 
+def run_of(commit, **captures):
+    machine = {"processor": "P", "cores": 2}
+    return {"command": "c", "commits": [commit], "machine": machine, "date": "2026-11-01T00", "captures": captures}
+
+
+def test_a_capture_is_shown_as_its_newest_run_measured_it():
+    history = [run_of("aaa", one=1, two=2), run_of("bbb", gone=0), run_of("ccc", two=3, gone=4)]
+    captures, shown = tables.newest(history)
+    assert captures == {"one": 1, "two": 3, "gone": 4} and list(captures) == ["one", "two", "gone"]
+    assert [run["commits"] for run in shown] == [["aaa"], ["ccc"]]
+    text = tables.origin(shown, "there")
+    assert text.count("commit") == 2 and "aaa" in text and "bbb" not in text
+
+
 def cells(text, row):
     return [cell.strip() for cell in text.splitlines()[2 + row].strip("|").split("|")]
 

@@ -16,13 +16,15 @@ from eigenfield.format.deep_code import code_basis, code_plane, with_weights
 from eigenfield.format.geometry import (
     CAMERA_STEP,
     DEPTH_ERROR,
-    FINE,
+    PIXEL_STEP,
     checked_streams,
     coarse_mesh,
     code_cameras_of,
     code_mesh,
 )
+from eigenfield.format.relief_lattice import relief_lattice
 from eigenfield.format.weight_coder import code_weights
+from eigenfield.mesh import Mesh
 from eigenfield.scene import Scene
 
 
@@ -48,11 +50,50 @@ def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
     stream, coded = code_mesh(mesh, cameras, 4)
     assert len(coded.faces) == len(mesh.faces) and len(stream) < mesh.vertices.nbytes / 4
-    most = 2.0**-FINE / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
+    most = PIXEL_STEP / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(coded.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
         assert apart.max() < most
+
+
+def relief(camera: Camera, phase: float, virtual: bool) -> Mesh:
+    """The pixels of a camera pushed into depth, in a mesh whose texture coordinates they are."""
+    y, x = np.mgrid[0:40, 0:48].astype(np.float64) + phase
+    depth = 3 + 0.5 * np.sin(x / 7) * np.cos(y / 5)
+    rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(camera.K).T
+    points = (rays * depth[..., None]).reshape(-1, 3) @ camera.R + camera.centre
+    if not virtual:  # some vertices between pixels, as contours have them
+        y.ravel()[::5] += 0.25
+        points = ((np.stack([x, y, np.ones_like(x)], -1) @ np.linalg.inv(camera.K).T) * depth[..., None]).reshape(-1, 3)
+        points = points @ camera.R + camera.centre
+    corner = (np.arange(39)[:, None] * 48 + np.arange(47)).ravel()
+    upper = np.stack([corner, corner + 1, corner + 48], axis=1)
+    faces = np.concatenate([upper, np.stack([corner + 1, corner + 49, corner + 48], axis=1)])
+    uv = np.stack([x.ravel() + 5, y.ravel() + 9], axis=1) / 64
+    return Mesh(points.astype(np.float32), faces.astype(np.int32), uv.astype(np.float32))
+
+
+@pytest.mark.parametrize("virtual", [False, True])
+def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
+    cameras = row_grid(9)
+    made_in = cameras[5] if not virtual else replace(cameras[4], t=cameras[4].t + np.array([0.07, -0.03, 0.01]))
+    mesh = relief(made_in, 0.5, virtual)
+    found = relief_lattice(mesh, cameras, DEPTH_ERROR)
+    assert found is not None
+    stream, coded = code_mesh(mesh, cameras, 4)
+    assert len(stream) < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
+    for camera in cameras:
+        before, after = camera.project(mesh.vertices)[0], camera.project(coded.vertices)[0]
+        apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
+        assert apart.max() < 2 * DEPTH_ERROR + 0.02
+
+
+def test_other_meshes_are_no_relief():
+    mesh = bumpy_square(20)
+    assert mesh.uv is not None
+    bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
+    assert relief_lattice(bent, row_grid(9), DEPTH_ERROR) is None
 
 
 def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():

@@ -42,7 +42,8 @@ Examples:
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
   eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
   eigenfield encode photos/ --proxy mesh.obj --uv-ssim 0.98 --hold-out odd -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --codec png --align -o scene.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --codec png --align -o scene.glb
+  eigenfield encode photos/ --proxy mesh.glb --fit photographs --quality 80 -o small.glb"""
 )
 @click.argument("capture", type=click.Path(path_type=Path))
 @click.option(

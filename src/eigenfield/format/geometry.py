@@ -5,6 +5,7 @@ How far a rounding moves anything is said in pixels of the photographs.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -15,10 +16,11 @@ from eigenfield.errors import FormatError
 from eigenfield.format.camera_coder import code_cameras, decode_cameras
 from eigenfield.format.lattice import camera_lattice, world_lattice
 from eigenfield.format.mesh_coder import decode_mesh, encode_mesh
+from eigenfield.format.relief_lattice import relief_lattice
 from eigenfield.mesh import Mesh
 from eigenfield.scene import Scene
 
-FINE = 2  # binary digits of a pixel that contours may have
+PIXEL_STEP = 0.25  # pixels of the reference camera, for meshes that are no relief
 DEPTH_ERROR = 0.04  # pixels by which a rounded depth moves a point in the camera that is farthest from the reference
 WORLD_STEP = 0.1  # pixels of the reference camera at the median depth: of a mesh that is not all before that camera
 CAMERA_STEP = 0.02  # pixels
@@ -27,8 +29,12 @@ COARSE = 256  # triangles of the mesh that other viewers show
 
 
 def code_mesh(mesh: Mesh, cameras: Sequence[Camera], reference: int) -> tuple[bytes, Mesh]:
-    """The stream, and the mesh that it holds: rounded to pixels and inverse depth of the reference camera where that
-    has all of it before it, else to a grid in the world."""
+    """The stream, and the mesh that it holds: rounded to pixels and inverse depth of the camera that a relief was made
+    in, else of the reference camera where that has all of the mesh before it, else to a grid in the world."""
+    relief = relief_lattice(mesh, cameras, DEPTH_ERROR)
+    if relief is not None:
+        with contextlib.suppress(ValueError):  # too far off the picture for the lattice
+            return encode_mesh(mesh, relief[0], uv_bits=UV_BITS, fine=relief[1])
     camera = cameras[reference]
     depth = camera.project(mesh.vertices)[1]
     if (depth > 0).all():
@@ -36,10 +42,8 @@ def code_mesh(mesh: Mesh, cameras: Sequence[Camera], reference: int) -> tuple[by
         inverse = 2 * DEPTH_ERROR / max(float(np.linalg.norm(shifts, axis=1).max()), 1e-9)
         inverse = max(inverse, float(1 / depth.min() / 2**19))
         matrix = camera.K @ np.hstack([camera.R, camera.t[:, None]])
-        try:
-            return encode_mesh(mesh, camera_lattice(matrix, 2.0**-FINE, inverse), uv_bits=UV_BITS, fine=FINE)
-        except ValueError:  # too far off the picture for the lattice
-            pass
+        with contextlib.suppress(ValueError):  # as above
+            return encode_mesh(mesh, camera_lattice(matrix, PIXEL_STEP, inverse), uv_bits=UV_BITS)
     low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else float(np.linalg.norm(high - low))
     step = max(WORLD_STEP * near / float(camera.K[0, 0]), float((high - low).max()) / 2**19)
