@@ -8,13 +8,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
+from coded_scenes import coded_scene
 from scenes import bumpy_square, tiny_scene
 
 SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
 
 def main(folder: Path) -> None:
-    """Write every combination, and one mesh that needs long indices."""
+    """Write every combination, one mesh that needs long indices, and a scene of which everything is coded."""
     folder.mkdir(parents=True, exist_ok=True)
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
@@ -23,6 +24,7 @@ def main(folder: Path) -> None:
     large = replace(tiny_scene(), mesh=bumpy_square(256))
     large.save(folder / "large.glb", codec="png", overwrite=True)
     tiny_scene(cameras=2).save(folder / "line.glb", overwrite=True)
+    coded_scene().save(folder / "coded.glb", overwrite=True)
 
 
 if __name__ == "__main__":
