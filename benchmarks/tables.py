@@ -13,6 +13,8 @@ import evaluation_tables
 from evaluation_tables import table
 from measure import latest, runs
 
+import rate_tables
+
 README = Path(__file__).parents[1] / "README.md"
 CAPTURES = ("tarot", "tarot-5x4", "cube", "demo")
 SCENES = (
@@ -216,7 +218,7 @@ def between_marks(text: str, made: str) -> str:
 def main() -> None:
     made = {
         README: f"## Figures\n\n{quality()}{reconstruction()}{evaluation_tables.brief()}{encoding()}{drawing()}",
-        EVALUATION: evaluation_tables.page(),
+        EVALUATION: rate_tables.section() + evaluation_tables.page(),
     }
     for path, figures in made.items():
         text = path.read_text(encoding="utf-8")

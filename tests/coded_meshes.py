@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
+from hypothesis import strategies as st
 
 from eigenfield.format.lattice import camera_lattice, world_lattice
 from eigenfield.mesh import Mesh
@@ -87,3 +88,12 @@ def corner_set(mesh, lattice, bits):
     apart = (corner[..., :3] != np.roll(corner[..., :3], 1, axis=1)).any(axis=2).all(axis=1)
     rows = [min(tuple(np.roll(face, -k, axis=0).reshape(-1)) for k in range(3)) for face in corner[apart]]
     return np.array(sorted(rows), np.int64).reshape(-1, 15)
+
+
+def damaged(data, stream: bytes) -> bytes:
+    """`stream` with a few bytes changed, perhaps cut off; data: hypothesis's."""
+    changed = bytearray(stream)
+    for _ in range(data.draw(st.integers(1, 4))):
+        changed[data.draw(st.integers(0, len(changed) - 1))] = data.draw(st.integers(0, 255))
+    cut = data.draw(st.integers(0, len(changed)))
+    return bytes(changed[:cut] if data.draw(st.booleans()) else changed)

@@ -15,8 +15,8 @@ from viewer_scenes import PLACES, cameras, references, scene
 
 import eigenfield as ef
 from eigenfield.format import save
-from eigenfield.format.deep_code import code_basis, code_plane, with_weights
-from eigenfield.format.geometry import code_cameras_of, code_mesh
+from eigenfield.format.deep_code import code_basis, coded_plane, with_weights
+from eigenfield.format.geometry import coded_cameras, coded_mesh
 from eigenfield.format.pictures import encode
 from eigenfield.format.quantise import Affine
 from eigenfield.format.stored import PictureFile, keep_files
@@ -29,20 +29,18 @@ STEP = 2e-3  # of pictures, in the photographs' range
 
 def coded_scene() -> Scene:
     """The scene of `viewer_scenes`, as its streams and pictures keep it: one plane of R, G and B."""
-    plain = scene()
-    stream, views = code_cameras_of(plain.cameras, plain.mesh, GRID)
-    mesh_stream, mesh = code_mesh(plain.mesh, views, plain.reference)
+    return coded(scene(), GRID)
+
+
+def coded(plain: Scene, grid: np.ndarray) -> Scene:
+    """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
+    views = coded_cameras(plain.cameras, plain.mesh, grid)
     (plane,) = plain.planes
     (basis,) = plane.bases
-    weight_stream, weights = code_weights(basis.weights, 0.01, GRID)
-    coded = with_weights(code_basis(basis, STEP, 8), weights, weight_stream)
-    return replace(
-        plain,
-        mesh=mesh,
-        cameras=views,
-        planes=(code_plane(plane.mean, (coded,), STEP, 8),),
-        streams={"mesh": mesh_stream, "cameras": stream},
-    )
+    stream, weights = code_weights(basis.weights, 0.01, grid)
+    textures = with_weights(code_basis(basis, STEP, 8), weights, stream)
+    mesh = coded_mesh(plain.mesh, views, plain.reference)
+    return replace(plain, mesh=mesh, cameras=views, planes=(coded_plane(plane.mean, (textures,), STEP, 8),))
 
 
 def fitted_scene() -> Scene:
@@ -67,9 +65,9 @@ def write(folder: Path) -> None:
     """Write coded.glb, fitted.glb and shallow.glb; add pictures of the first two to references.json, which is there."""
     listing = folder / "references.json"
     pictures = json.loads(listing.read_text(encoding="utf-8"))
-    coded = coded_scene()
-    save(shallow(coded), folder / "shallow.glb", overwrite=True)
-    for name, made in (("coded.glb", coded), ("fitted.glb", fitted_scene())):
-        save(made, folder / name, overwrite=True)
+    made = coded_scene()
+    save(shallow(made), folder / "shallow.glb", overwrite=True)
+    for name, one in (("coded.glb", made), ("fitted.glb", fitted_scene())):
+        save(one, folder / name, overwrite=True)
         pictures += references(folder, name, PLACES[:2])
     listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")

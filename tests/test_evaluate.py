@@ -9,72 +9,22 @@ import cv2
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from redrawn import HELD, drawn, lighter, write_capture
 from scenes import tiny_scene
 
 from eigenfield.camera import Camera
-from eigenfield.capture import LightField, View
 from eigenfield.errors import CaptureError, EigenfieldError, OptionError, OutputError
-from eigenfield.evaluation import PSNR_CAP, Circle, evaluate, flip, read_circles, reconstructions, stored_scores
-from eigenfield.evaluation.plots import write_plots
+from eigenfield.evaluation import PSNR_CAP, Circle, evaluate, flip, reconstructions, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.format import load, save
 from eigenfield.parallel import set_threads
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.texturing import make_atlas, texture_map
 
-HELD = (4,)
-
 
 @pytest.fixture
 def scene():
     return tiny_scene(textures=3, cameras=9, size=48, held_out=HELD)
-
-
-def drawn(scene, index):
-    """What the scene shows of one of its cameras, with 8 bits."""
-    return Renderer(scene).draw(scene.cameras[index], camera_weights(scene, index)).to_uint8()
-
-
-def write_capture(scene, folder, change=None, masks=None, only=None):
-    """Photographs as the scene draws them, `change`d, with their transforms.json; a LightField of them."""
-    folder.mkdir(exist_ok=True)
-    views, frames = [], []
-    for index, (name, camera) in enumerate(zip(scene.names, scene.cameras, strict=True)):
-        if only is not None and index not in only:
-            continue
-        picture = drawn(scene, index)
-        if change is not None:
-            picture = change(index, picture)
-        path = folder / f"{name}.png"
-        cv2.imwrite(str(path), picture[..., ::-1])
-        mask = None
-        if masks is not None:
-            mask = folder / f"{name}.mask.png"
-            cv2.imwrite(str(mask), masks(index))
-        views.append(View(name, path, camera, mask=mask))
-        frames.append(frame(name, camera))
-    (folder / "transforms.json").write_text(json.dumps({"frames": frames}))
-    return LightField(folder, tuple(views), (), "transforms")
-
-
-def frame(name, camera: Camera):
-    pose = np.eye(4)
-    pose[:3, :3], pose[:3, 3] = camera.R, camera.t
-    world = np.linalg.inv(pose) @ np.diag([1.0, -1.0, -1.0, 1.0])
-    K = camera.K
-    return {
-        "file_path": f"{name}.png", "fl_x": K[0, 0], "fl_y": K[1, 1], "cx": K[0, 2], "cy": K[1, 2],
-        "w": camera.width, "h": camera.height, "transform_matrix": world.tolist(),
-    }  # fmt: skip
-
-
-def lighter(at):
-    """Ten grey levels more (or less, where there is no room) on camera `at`'s photograph."""
-
-    def change(index, picture):
-        return np.where(picture < 128, picture + 10, picture - 10).astype(np.uint8) if index == at else picture
-
-    return change
 
 
 def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
@@ -189,49 +139,6 @@ def test_luma_of_the_whole_frame(scene, tmp_path):
     part = evaluate(scene, write_capture(scene, tmp_path / "c", green))["image"]["held_out"]
     assert part["psnr_luma_full"] == pytest.approx(20 * np.log10(255 / 0.7152), abs=1e-4)
     assert part["psnr_full"] == pytest.approx(10 * np.log10(255**2 * 3), abs=1e-4)
-
-
-def test_a_circle_holds_the_pixels_whose_centre_it_holds():
-    assert np.argwhere(~Circle(2.5, 1.5, 1.0).outside(5, 4)).tolist() == [[0, 2], [1, 1], [1, 2], [1, 3], [2, 2]]
-
-
-def test_circles_are_matched_by_name_then_by_file(tmp_path):
-    path = tmp_path / "ball.json"
-    one = {"cx": 1, "cy": 2.5, "r": 3}
-    path.write_text(json.dumps({"about": "", "circles": {"images/a.jpg": one, "x/b.jpg": one, "y/b.jpg": one}}))
-    assert read_circles(path, ["a.jpg", "c.jpg"]) == {"a.jpg": Circle(1, 2.5, 3)}
-    assert read_circles(path, ["y/b.jpg", "z/a.jpg"]) == {"y/b.jpg": Circle(1, 2.5, 3), "z/a.jpg": Circle(1, 2.5, 3)}
-    with pytest.raises(OptionError) as caught:  # two files of that name in the scene: which is meant?
-        read_circles(path, ["p/a.jpg", "q/a.jpg", "c.jpg", "b.jpg"])
-    assert caught.value.code == "circles-unmatched"
-
-
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
-        ("{", "circles-unreadable"),
-        ("[]", "circles-malformed"),
-        ('{"circles": []}', "circles-malformed"),
-        ('{"circles": {"a": {"cx": 1, "cy": 2}}}', "circles-malformed"),
-        ('{"circles": {"a": {"cx": 1, "cy": NaN, "r": 1}}}', "circles-malformed"),
-        ('{"circles": {"a": {"cx": 1, "cy": 2, "r": -1}}}', "circles-malformed"),
-        ('{"circles": {"a": 7}}', "circles-malformed"),
-        ('{"circles": {"b": {"cx": 1, "cy": 2, "r": 1}}}', "circles-unmatched"),
-    ],
-)
-def test_circle_files_that_cannot_be_used(tmp_path, text, code):
-    path = tmp_path / "ball.json"
-    path.write_text(text)
-    with pytest.raises(OptionError) as caught:
-        read_circles(path, ["a"])
-    assert caught.value.code == code
-    assert str(path) in str(caught.value)
-
-
-def test_a_circle_file_that_is_not_there(tmp_path):
-    with pytest.raises(OptionError) as caught:
-        read_circles(tmp_path / "none.json", ["a"])
-    assert caught.value.code == "circles-unreadable"
 
 
 def test_reconstruction_is_equation_8_at_every_count(scene):
@@ -481,18 +388,3 @@ def test_the_verb_leaves_nothing_when_it_cannot(scene, tmp_path):
     assert result.stdout == ""
     assert not (tmp_path / "plots").exists()
     assert (tmp_path / "scene.glb").read_bytes() == before
-
-
-def test_plots_of_scenes_with_little_to_show(tmp_path):
-    line = tiny_scene(textures=0, cameras=4, held_out=(1,))
-    names = ("$x^{2$ 照片.png", "b" * 90, "_c", "d")
-    scene = dataclasses.replace(line, names=names)
-    capture = write_capture(line, tmp_path / "c", only=(0, 1))
-    views = tuple(dataclasses.replace(v, name=n) for v, n in zip(capture.views, names, strict=False))
-    capture = dataclasses.replace(capture, views=views)
-    figures = evaluate(scene, capture, curve="all")
-    assert [p.name for p in write_plots(figures, scene, capture, tmp_path / "p")] == [
-        "uv-curve.png",
-        "cameras.png",
-        "contact-sheet.png",
-    ]

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+from itertools import pairwise
 
 import numpy as np
 import pytest
 from evidence import codecs, stills
-from evidence.codecs import VIDEO, VideoCodec, order, serpentine
+from evidence.codecs import VIDEO, VideoCodec, order, orders, serpentine, spiral
 from evidence.stills import STILLS
+from scenes import row_grid
 
 from eigenfield.camera import Camera
 from eigenfield.metrics import psnr
@@ -144,3 +146,20 @@ def test_cameras_without_a_grid_are_walked_from_one_to_the_nearest():
     way = [int(shuffled[place]) for place in order(cameras_at(arc[shuffled]))]
     assert way in (list(range(6)), list(range(6))[::-1])
     assert order(cameras_at([(0, 0)])) == [0]
+
+
+def test_a_spiral_goes_outwards_from_neighbour_to_neighbour():
+    assert sorted(spiral(5, 7)) == list(range(35))
+    places = [divmod(place, 5) for place in spiral(5, 5)]
+    assert places[0] == (2, 2)
+    rings = [max(abs(row - 2), abs(column - 2)) for row, column in places]
+    assert rings == sorted(rings)
+    steps = [max(abs(a - c), abs(b - d)) for (a, b), (c, d) in pairwise(places)]
+    assert max(steps) == 1
+
+
+def test_orders_of_a_grid_and_of_cameras_anywhere():
+    cameras = row_grid(9, 32, 24)
+    assert set(orders(cameras)) == {"rows", "serpentine", "spiral"}
+    for way in orders(cameras).values():
+        assert sorted(way) == list(range(9))

@@ -16,13 +16,26 @@ import eigenfield as ef
 from eigenfield.cli import main
 from eigenfield.errors import OptionError
 from eigenfield.evaluation import evaluate
-from eigenfield.fitting import PlaneSettings, fit_plane, fitted_textures, open_shots
+from eigenfield.fitting import (
+    PRESETS,
+    Coded,
+    Pixels,
+    PlaneSettings,
+    Rate,
+    Shots,
+    Target,
+    code_plane,
+    fit_plane,
+    fitted_textures,
+    open_shots,
+    thinned,
+)
 from eigenfield.fitting.colour import LUMA, split_matrix, to_rgb
-from eigenfield.fitting.kernels import add_laplacian, draw_back
-from eigenfield.fitting.model import Block, Finers, Model, make_finer
-from eigenfield.fitting.passes import NONE, look, psnr_of
-from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, whiten
-from eigenfield.format import parts, validate
+from eigenfield.fitting.kernels import bend, draw, put_back, squares_of
+from eigenfield.fitting.model import Block, Model, make_composer
+from eigenfield.fitting.passes import look, psnr_of
+from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, residual, whiten
+from eigenfield.format import encode_scene, parts, validate
 from eigenfield.metrics import psnr, to_codes
 from eigenfield.parallel import set_threads
 from eigenfield.rendering import Renderer, camera_weights
@@ -30,6 +43,7 @@ from eigenfield.rendering.drawing import make_surface
 
 SIDE, GRID = 64, (40, 36)
 RGB = np.eye(3, dtype=np.float32)
+CAMERAS = row_grid(9, 72, 60)
 
 
 def true_model(cameras: int, seed: int = 0) -> Model:
@@ -43,95 +57,93 @@ def true_model(cameras: int, seed: int = 0) -> Model:
 @pytest.fixture(scope="module")
 def world():
     """Nine cameras that see what `true_model` draws, rounded to codes."""
-    cameras, mesh = row_grid(9, 72, 60), bumpy_square(12)
+    mesh = bumpy_square(12)
     model = true_model(9)
     surface = make_surface(mesh, SIDE, SIDE)
-    finers = Finers(None, make_finer(surface, GRID))
-    scene = replace(tiny_scene(cameras=9), mesh=mesh, cameras=cameras)
+    composer = make_composer(surface, model)
+    scene = replace(tiny_scene(cameras=9), mesh=mesh, cameras=CAMERAS)
     pictures = []
-    for index, camera in enumerate(cameras):
+    for index, camera in enumerate(CAMERAS):
         texture = np.zeros((3, SIDE, SIDE), np.float32)
-        finers.grid.up(model.sums(slice(index, index + 1))[0], texture)
+        composer.grid.up(model.sums(slice(index, index + 1))[0], texture)
         texture += model.mean
         plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
         drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9), samples=1)
         pictures.append(to_codes(drawn.image).astype(np.float32) / 255)
-    with open_shots(cameras, lambda index: (pictures[index], None), mesh, (SIDE, SIDE)) as shots:
-        yield shots, finers, model
+    with open_shots(CAMERAS, lambda index: (pictures[index], None), mesh, (SIDE, SIDE)) as shots:
+        yield shots, composer, model
 
 
 def test_the_fit_draws_what_the_renderer_draws(world):
-    shots, finers, model = world
-    found = look(
-        shots, model, finers, mean=model.mean, textures=[model.blocks[0].textures], weights=[model.blocks[0].weights],
-        photographs=True, wanted=(False, False, False),
-    )  # fmt: skip
-    error = np.sqrt(found.squares / found.pixels / 3)
-    assert (error < 0.5 / 255).all()  # rounding to codes alone: a step's deviation is 0.29 of it
-    assert (found.pixels > 1000).all()
+    shots, composer, model = world
+    for how, most in ((composer, 0.5 / 255), (None, 0.8 / 255)):  # rounding to codes alone: a deviation of 0.29
+        found = residual(shots, model, composer=how)
+        assert (np.sqrt(found.squares / found.pixels / 3) < most).all()
+        assert (found.pixels > 1000).all()
+
+
+def test_thinned_pixels_are_some_of_all(world):
+    shots, _, _ = world
+    with thinned(shots, 2) as some:
+        assert len(some) == len(shots)
+        for index in range(len(shots)):
+            all_places = {tuple(place) for place in shots.places(index).reshape(-1, 2)}
+            assert {tuple(place) for place in some.places(index).reshape(-1, 2)} <= all_places
+            assert some.photograph(index).shape[:2] == some.places(index).shape[:2]
+            assert 0.2 < np.prod(some.shapes[index]) / np.prod(shots.shapes[index]) < 0.3
+    with thinned(shots, 1) as same:
+        assert same is shots
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.integers(2, 40), st.integers(2, 40), st.integers(1, 3), st.integers(0, 2**31))
 def test_drawing_and_its_transpose(height, width, channels, seed):
     random = np.random.default_rng(seed)
-    places = random.uniform(0, 1, (7, 9, 2)).astype(np.float32) * np.float32([width - 1, height - 1])
+    size = (int(random.integers(2, 60)), int(random.integers(2, 60)))
+    places = random.uniform(0, 1, (7, 9, 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
     places[random.random((7, 9)) < 0.2] = -1
-    a, b = random.normal(size=(2, channels, height, width)).astype(np.float32)
+    covered = places[..., 0] >= 0
+    texture = random.normal(size=(channels, height, width)).astype(np.float32)
+    image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
     weight = random.uniform(0, 1, (7, 9)).astype(np.float32)
-    matrix = np.zeros((channels, 3), np.float32)
-
-    def normal(texture):
-        out = np.zeros_like(texture)
-        squares, total = draw_back(places, texture, NONE, matrix, weight, 0, 1, out)
-        return out, squares, total
-
-    (image, squares, total), (other, _, _) = normal(a), normal(b)
-    assert squares == pytest.approx(float((a * image).sum()), rel=1e-3, abs=1e-4)  # |G a|^2 = <a, G^T G a>
-    assert float((b * image).sum()) == pytest.approx(float((a * other).sum()), rel=1e-3, abs=1e-3)
-    assert total == pytest.approx(weight[places[..., 0] >= 0].sum(), rel=1e-5)
-    halves = [np.zeros_like(a), np.zeros_like(a)]
-    for first in range(2):
-        draw_back(places, a, NONE, matrix, weight, first, 2, halves[first])
-    np.testing.assert_allclose(halves[0] + halves[1], image, atol=1e-4)
-
-
-@settings(max_examples=30, deadline=None)
-@given(st.integers(1, 60), st.integers(1, 60), st.integers(0, 2**31))
-def test_making_finer_and_its_transpose(rows, columns, seed):
-    random = np.random.default_rng(seed)
-    finer = make_finer(make_surface(bumpy_square(), SIDE, SIDE), (rows, columns))
-    coarse, fine = random.normal(size=(2, rows, columns)), random.normal(size=(2, SIDE, SIDE))
-    up, down = np.zeros(fine.shape, np.float32), np.zeros(coarse.shape, np.float32)
-    finer.up(coarse.astype(np.float32), up)
-    finer.down(fine.astype(np.float32), down)
-    assert float((up * fine).sum()) == pytest.approx(float((coarse * down).sum()), rel=1e-3, abs=1e-2)
+    drawn, back = np.zeros_like(image), np.zeros_like(texture)
+    draw(places, size, texture, np.float32(1), drawn)
+    put_back(places, size, image, weight, back)
+    assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
+    squares, total = squares_of(places, drawn, weight)
+    assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
+    assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
+    ones = np.zeros_like(drawn)
+    draw(places, size, np.ones_like(texture), np.float32(1), ones)
+    np.testing.assert_allclose(ones, np.broadcast_to(covered, ones.shape), atol=1e-5)
 
 
 def test_the_laplacian_is_that_of_a_quadratic():
     y, x = np.mgrid[0:9, 0:9].astype(np.float32)
-    out = np.zeros((1, 9, 9), np.float32)
-    add_laplacian((x * x + 2 * y * y)[None], np.float32(0.5), out)
-    np.testing.assert_allclose(out[0, 1:-1, 1:-1], -3)  # -(2 + 4) / 2
-    assert out.sum() == pytest.approx(0, abs=1e-3)
+    quadratic, out = (x * x + 2 * y * y)[None], np.ones((1, 9, 9), np.float32)
+    product = bend(quadratic, np.float32(0.5), out)
+    np.testing.assert_allclose(out[0, 1:-1, 1:-1], 1 - 3)  # -(2 + 4) / 2
+    assert out.sum() == pytest.approx(81, abs=1e-3)
+    assert product == pytest.approx(float((quadratic * out).sum()), rel=1e-5)
 
 
 def test_the_weights_of_known_textures_are_found(world):
-    shots, finers, model = world
+    shots, _, model = world
     true = model.blocks[0].weights
     guess = Model(RGB, model.mean, GRID, [Block(model.blocks[0].rectangle, model.blocks[0].textures, true * 0)])
-    fit_weights(shots, guess, finers, 12)
+    fit_weights(shots, guess, 12)
     np.testing.assert_allclose(guess.blocks[0].weights, true, atol=0.05)
 
 
 def test_mean_and_textures_of_known_weights_draw_the_photographs(world):
-    shots, finers, model = world
+    shots, _, model = world
     block = model.blocks[0]
     guess = Model(RGB, np.full_like(model.mean, 0.5), GRID, [replace_textures(block, block.textures * 0)])
-    scales = measure_scales(shots, guess, finers)
-    before = fit_textures(shots, guess, finers, scales, 25)
-    after = fit_textures(shots, guess, finers, scales, 0)
-    assert after < before / 1000
+    scales = measure_scales(shots, guess)
+    left = residual(shots, guess)
+    before = left.squares.sum()
+    fit_textures(shots, guess, scales, left, 25)
+    assert residual(shots, guess).squares.sum() < before / 1000
 
 
 def replace_textures(block: Block, textures: np.ndarray) -> Block:
@@ -139,13 +151,13 @@ def replace_textures(block: Block, textures: np.ndarray) -> Block:
 
 
 def test_whitening_changes_no_sum_and_orders_by_strength(world):
-    shots, finers, model = world
+    shots, _, model = world
     block = model.blocks[0]
     mixed = np.array([[1, 0.4, 0], [0.2, 2, 0.1], [0, 0.3, 0.7]], np.float32)
     textures = np.tensordot(np.linalg.inv(mixed), block.textures, 1).astype(np.float32)
     skewed = Model(RGB, model.mean, GRID, [Block(block.rectangle, textures, block.weights @ mixed)])
     before = skewed.sums(slice(0, 9))
-    scales = measure_scales(shots, skewed, finers)
+    scales = measure_scales(shots, skewed)
     whiten(skewed, scales)
     np.testing.assert_allclose(skewed.sums(slice(0, 9)), before, atol=1e-4)
     weights = skewed.blocks[0].weights
@@ -155,19 +167,36 @@ def test_whitening_changes_no_sum_and_orders_by_strength(world):
 
 
 def settings_of(textures: int = 3) -> PlaneSettings:
-    return PlaneSettings(RGB, (SIDE, SIDE), (64, 64), textures, 1, 1e-3, 1e-3, 8)
+    return PlaneSettings(RGB, (SIDE, SIDE), (64, 64), textures)
+
+
+def fit_and_code(shots: Shots, rounds: int) -> Coded:
+    return code_plane(fit_plane(Pixels(shots, shots, shots), settings_of(), "test", rounds), Rate(1e-3, 1e-3, 8))
 
 
 def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
     shots, _, _ = world
-    reached = [fit_plane(shots, settings_of(), "test", rounds=rounds) for rounds in (0, 3)]
+    reached = [fit_and_code(shots, rounds) for rounds in (0, 3)]
     assert reached[1].uncoded > reached[0].uncoded + 1
     assert reached[1].coded > 38
     plane = reached[1].plane
-    scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=shots.cameras, planes=(plane,))
-    drawn = [Renderer(scene).draw(camera, np.eye(9)[i], samples=1) for i, camera in enumerate(shots.cameras)]
+    scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=CAMERAS, planes=(plane,))
+    drawn = [Renderer(scene).draw(camera, np.eye(9)[i], samples=1) for i, camera in enumerate(CAMERAS)]
     errors = [(d.image - shots.photograph(i) / np.float32(255))[d.coverage > 0] for i, d in enumerate(drawn)]
     assert np.mean([-10 * np.log10(np.square(e).mean()) for e in errors]) == pytest.approx(reached[1].coded, abs=0.02)
+
+
+def test_components_that_are_not_worth_their_bytes_are_left_out(world):
+    shots, _, _ = world
+    settings = replace(settings_of(), textures=8)  # of which the photographs have three
+    fit = fit_plane(Pixels(shots, shots, shots), settings, "test", 1)
+    counts, reached = [], []
+    for step in (1e-3, 0.05, 0.5):
+        coded = code_plane(fit, Rate(step, step, 8))
+        counts.append(sum(basis.count for basis in coded.plane.bases))
+        reached.append(coded.coded)
+    assert counts[0] >= 3 and counts[0] > counts[1] >= counts[2] == 0, counts
+    assert reached[0] > reached[1] > reached[2]
 
 
 def test_the_number_of_threads_changes_nothing(world):
@@ -176,7 +205,7 @@ def test_the_number_of_threads_changes_nothing(world):
     for threads in (1, 3):
         set_threads(threads)
         try:
-            planes.append(fit_plane(shots, settings_of(), "test", rounds=1).plane)
+            planes.append(fit_and_code(shots, 1).plane)
         finally:
             set_threads(None)
     np.testing.assert_array_equal(planes[0].mean, planes[1].mean)
@@ -185,7 +214,7 @@ def test_the_number_of_threads_changes_nothing(world):
 
 
 def test_what_a_mask_hides_does_not_count(world):
-    shots, finers, model = world
+    shots, composer, model = world
     pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
     pictures[4][20:40, 20:50] = 1.0  # somebody walked by
     mask = np.ones(pictures[4].shape[:2], np.float32)
@@ -196,12 +225,12 @@ def test_what_a_mask_hides_does_not_count(world):
     }  # fmt: skip
     for masks, good in ((None, False), (mask, True)):
         with open_shots(
-            shots.cameras,
+            CAMERAS,
             lambda i, masks=masks: (pictures[i], masks if i == 4 else None),
             bumpy_square(12),
             (SIDE, SIDE),
         ) as others:
-            found = look(others, model, finers, **options)
+            found = look(others, model, composer=composer, **options)
             assert (psnr_of(found.squares[4:5], found.pixels[4:5], 3) > 45) == good
 
 
@@ -214,7 +243,7 @@ def test_luma_and_chroma_make_the_colours_again():
     np.testing.assert_allclose(parts[:, 0], random @ LUMA, atol=1e-6)
 
 
-@pytest.mark.parametrize(("cameras", "expected"), [(2, 1), (20, 7), (81, 27), (1000, 96)])
+@pytest.mark.parametrize(("cameras", "expected"), [(2, 1), (20, 19), (81, 40), (1000, 96)])
 def test_more_cameras_more_textures(cameras, expected):
     assert fitted_textures(cameras) == expected
 
@@ -271,10 +300,53 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
 @pytest.mark.parametrize(
     ("options", "code"),
     [({"align": "dis"}, "fit"), ({"uv_ssim": 0.9}, "fit"), ({"harmonise": "gain"}, "fit"), ({"fit": "magic"}, "fit"),
-     ({"quality": 101}, "quality"), ({"keep_maps": "maps"}, "fit")],
+     ({"quality": 101}, "quality"), ({"preset": "huge"}, "preset"), ({"keep_maps": "maps"}, "fit")],
 )  # fmt: skip
 def test_options_that_do_not_go_with_a_fit(fitted, options, code):
     folder, _ = fitted
     with pytest.raises(OptionError) as caught:
         ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", **{"fit": "photographs", **options})
     assert caught.value.code == code
+
+
+@pytest.mark.parametrize(
+    ("options", "code"),
+    [({"target": Target(size=50_000), "fit": "none"}, "target"), ({"target": Target(psnr=30), "quality": 50}, "target"),
+     ({"target": Target()}, "target"), ({"target": Target(ssim=0.9, psnr=30)}, "target")],
+)  # fmt: skip
+def test_targets_that_do_not_go_with_the_rest(fitted, options, code):
+    folder, _ = fitted
+    with pytest.raises(OptionError) as caught:
+        ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", **{"fit": "photographs", **options})
+    assert caught.value.code == code
+
+
+def test_presets_differ_in_bytes(fitted):
+    folder, _ = fitted
+    options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}
+    sizes = [len(encode_scene(ef.encode(ef.open_capture(folder), **options, preset=name))) for name in PRESETS]
+    assert sizes == sorted(sizes) and sizes[0] < sizes[-1]
+
+
+def test_a_size_is_kept_to(fitted, tmp_path, monkeypatch):
+    folder, output = fitted
+    limit = output.stat().st_size * 9 // 10
+    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q", "--target-size", f"{limit}"]
+    monkeypatch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(tmp_path / "small.glb")])
+    main()
+    size = (tmp_path / "small.glb").stat().st_size
+    assert 0.85 * limit < size <= limit
+    assert validate(tmp_path / "small.glb") == []
+
+
+def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fitted, caplog):
+    folder, _ = fitted
+    capture = ef.open_capture(folder)
+    options = {"proxy": folder / "proxy.ply", "textures": 4, "fit": "photographs"}
+    scene = ef.encode(capture, **options, target=Target(psnr=36))
+    figures = evaluate(scene, capture)["image"]["encoded"]
+    assert 36 <= figures["psnr"] < 38
+    assert not caplog.records
+    best = ef.encode(capture, **options, target=Target(psnr=80))
+    assert best.settings["fitted"]["quality"] == 99
+    assert "80 cannot be reached" in caplog.text

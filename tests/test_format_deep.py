@@ -14,8 +14,8 @@ import eigenfield as ef
 from eigenfield.errors import FormatError
 from eigenfield.format import validate
 from eigenfield.format.deep import FLAT, TOP, crf_of, decode_deep, encode_deep, encoder_step
-from eigenfield.format.deep_code import code_basis, code_mean, code_plane, with_weights
-from eigenfield.format.stored import files_of, weights_of
+from eigenfield.format.deep_code import code_basis, code_mean, coded_plane, with_weights
+from eigenfield.format.stored import files_of, stream_of
 from eigenfield.scene import Plane
 
 
@@ -78,7 +78,7 @@ def test_textures_are_stacked_and_share_one_step():
     other = with_weights(coded, coded.weights * 2, b"coded")
     assert (
         files_of(other) == files
-        and weights_of(other) == b"coded"
+        and stream_of(other) == b"coded"
         and files_of(replace(coded, weights=coded.weights)) is None
     )
 
@@ -93,9 +93,9 @@ def test_means_of_any_range(channels):
 def scene_of_planes():
     scene = tiny_scene(3, 0)
     bases = (code_basis(float_basis(5, 3, 64, 64, 1), 1e-3, 8),)
-    luma = code_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, 8)
+    luma = coded_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, 8)
     local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, 8)
-    chroma = code_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, 8)
+    chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, 8)
     matrix = np.array([[1, 0.5, 0.25], [1, -0.5, 0.5], [1, 0.125, -1]], np.float32)
     return replace(scene, planes=(luma, chroma), to_rgb=matrix)
 

@@ -1,4 +1,4 @@
-"""Mesh, cameras and weights in a file as coded streams: near enough, kept as they are, dropped when they are stale."""
+"""Mesh, cameras and weights in a file as coded streams: near enough, kept as they are, gone with what they are of."""
 
 from __future__ import annotations
 
@@ -6,53 +6,34 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from coded_scenes import coded
 from scenes import bumpy_square, row_grid, tiny_scene
 
 import eigenfield as ef
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
 from eigenfield.format import parts, validate
-from eigenfield.format.deep_code import code_basis, code_plane, with_weights
-from eigenfield.format.geometry import (
-    CAMERA_STEP,
-    DEPTH_ERROR,
-    PIXEL_STEP,
-    checked_streams,
-    coarse_mesh,
-    code_cameras_of,
-    code_mesh,
-)
+from eigenfield.format.coarse import coarse_mesh
+from eigenfield.format.container import parse_glb, read_file
+from eigenfield.format.geometry import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
 from eigenfield.format.relief_lattice import relief_lattice
-from eigenfield.format.weight_coder import code_weights
+from eigenfield.format.stored import cameras_stream, stream_of
 from eigenfield.mesh import Mesh
 from eigenfield.scene import Scene
 
 
 def coded_scene() -> Scene:
-    """A scene whose mesh, cameras and weights are coded; 9 cameras on a grid."""
-    scene = tiny_scene(3, 4, 9, 64)
-    mesh_stream, mesh = code_mesh(bumpy_square(40), scene.cameras, scene.reference)
-    grid = np.arange(9).reshape(3, 3)
-    camera_stream, cameras = code_cameras_of(scene.cameras, mesh, grid)
-    basis = code_basis(scene.planes[0].bases[0], 1e-3, 8)
-    stream, weights = code_weights(basis.weights, 0.05, grid)
-    plane = code_plane(scene.planes[0].mean, (with_weights(basis, weights, stream),), 1e-3, 8)
-    streams = {"mesh": mesh_stream, "cameras": camera_stream}
-    return replace(scene, mesh=mesh, cameras=cameras, planes=(plane,), streams=streams)
-
-
-def surface_points(mesh):
-    corners = mesh.vertices[mesh.faces].astype(np.float64)
-    return corners.mean(axis=1)
+    """Nine cameras on a grid before a bumpy square."""
+    return coded(replace(tiny_scene(3, 4, 9, 64), mesh=bumpy_square(40)), np.arange(9).reshape(3, 3))
 
 
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
-    stream, coded = code_mesh(mesh, cameras, 4)
-    assert len(coded.faces) == len(mesh.faces) and len(stream) < mesh.vertices.nbytes / 4
+    found = coded_mesh(mesh, cameras, 4)
+    assert len(found.faces) == len(mesh.faces) and len(stream_of(found) or b"") < mesh.vertices.nbytes / 4
     most = PIXEL_STEP / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
     for camera in cameras:
-        before, after = camera.project(mesh.vertices)[0], camera.project(coded.vertices)[0]
+        before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
         assert apart.max() < most
 
@@ -79,12 +60,11 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     cameras = row_grid(9)
     made_in = cameras[5] if not virtual else replace(cameras[4], t=cameras[4].t + np.array([0.07, -0.03, 0.01]))
     mesh = relief(made_in, 0.5, virtual)
-    found = relief_lattice(mesh, cameras, DEPTH_ERROR)
-    assert found is not None
-    stream, coded = code_mesh(mesh, cameras, 4)
-    assert len(stream) < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
+    assert relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
+    found = coded_mesh(mesh, cameras, 4)
+    assert len(stream_of(found) or b"") < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
-        before, after = camera.project(mesh.vertices)[0], camera.project(coded.vertices)[0]
+        before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
         assert apart.max() < 2 * DEPTH_ERROR + 0.02
 
@@ -100,8 +80,8 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    _, coded = code_mesh(mesh, inside, 0)
-    apart = np.linalg.norm(mesh.vertices[:, None] - coded.vertices[None], axis=2).min(axis=1)
+    found = coded_mesh(mesh, inside, 0)
+    apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
 
 
@@ -109,9 +89,9 @@ def test_cameras_are_near_what_they_were():
     mesh, cameras = bumpy_square(), row_grid(9)
     random = np.random.default_rng(0)
     shaken = [replace(c, t=c.t + random.normal(0, 0.01, 3)) for c in cameras]
-    stream, coded = code_cameras_of(shaken, mesh, None)
-    assert len(stream) < 12 * 4 * 9
-    for before, after in zip(shaken, coded, strict=True):
+    found = coded_cameras(shaken, mesh, None)
+    assert len(cameras_stream(found) or b"") < 12 * 4 * 9
+    for before, after in zip(shaken, found, strict=True):
         moved = np.abs(before.project(mesh.vertices)[0] - after.project(mesh.vertices)[0])
         assert moved.max() < 4 * CAMERA_STEP
 
@@ -130,19 +110,22 @@ def test_a_coded_scene_through_a_file(tmp_path):
         assert (one.width, one.height) == (two.width, two.height)
     back.save(tmp_path / "again.glb")
     assert (tmp_path / "again.glb").read_bytes() == path.read_bytes()
-    plain = replace(scene, streams={})
+    plain = replace(scene, mesh=replace(scene.mesh))  # a copy has no stream
     plain.save(tmp_path / "plain.glb")
     assert parts(path)["mesh"] < parts(tmp_path / "plain.glb")["mesh"] / 3
 
 
-def test_streams_of_another_mesh_or_other_cameras_are_not_written():
+def test_streams_of_another_mesh_or_other_cameras_are_not_written(tmp_path):
     scene = coded_scene()
-    assert set(checked_streams(scene)) == {"mesh", "cameras"}
-    other = replace(scene, mesh=bumpy_square(12))
-    assert set(checked_streams(other)) == {"cameras"}
-    moved = tuple(replace(camera, t=camera.t + 0.1) for camera in scene.cameras)
-    assert set(checked_streams(replace(scene, cameras=moved))) == {"mesh"}
-    assert not checked_streams(replace(scene, streams={"mesh": b"nothing"}))
+    assert cameras_stream(scene.cameras) is not None and stream_of(scene.mesh) is not None
+    turned = (*scene.cameras[1:], scene.cameras[0])
+    for cameras in (turned, scene.cameras[:-1], (replace(scene.cameras[0]), *scene.cameras[1:])):
+        assert cameras_stream(cameras) is None
+    path = tmp_path / "other.glb"
+    replace(scene, mesh=bumpy_square(12), cameras=tuple(replace(camera) for camera in scene.cameras)).save(path)
+    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    assert extension["needs"] == ["bits", "codedWeights", "stacks"] and "mesh" not in extension
+    assert len(ef.load(path).mesh.faces) == len(bumpy_square(12).faces)
 
 
 def test_the_mesh_for_other_viewers_is_coarse_and_textured():
@@ -166,7 +149,6 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
     ],
 )  # fmt: skip
 def test_streams_that_do_not_belong_are_refused(tmp_path, change, codes):
-    from eigenfield.format.container import parse_glb, read_file
     from eigenfield.format.document import Document
     from eigenfield.format.findings import Findings
     from eigenfield.format.layout import read_layout
@@ -178,3 +160,29 @@ def test_streams_that_do_not_belong_are_refused(tmp_path, change, codes):
     with pytest.raises(FormatError) as caught:
         read_layout(Document(glb), Findings(strict=True))
     assert caught.value.code in codes
+
+
+def test_the_coarse_mesh_of_many_pieces_is_coarse_and_lies_where_they_lie():
+    """Two layers and islands, none of which a simplifier that keeps every piece can take away."""
+    side = 12
+    y, x = np.mgrid[0:side, 0:side] / (side - 1)
+    corner = np.arange(side * side).reshape(side, side)
+    quads = np.stack([corner[:-1, :-1], corner[:-1, 1:], corner[1:, 1:], corner[1:, :-1]], axis=-1).reshape(-1, 4)
+    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    places = [(0.02, 0.02, 0.4, 0), (0.52, 0.02, 0.4, 1)] + [(0.01 * i, 0.9, 0.008, i % 2) for i in range(90)]
+    vertices, texels = [], []
+    for left, top, size, layer in places:
+        u, v = left + size * x, top + size * y
+        vertices.append(np.stack([u, v, 0.02 * np.sin(9 * u) + 0.1 * layer], axis=-1).reshape(-1, 3))
+        texels.append(np.stack([u, v], axis=-1).reshape(-1, 2))
+    triangles = np.concatenate([faces + number * side * side for number in range(len(places))])
+    mesh = Mesh(
+        np.concatenate(vertices).astype(np.float32), triangles.astype(np.int32),
+        np.concatenate(texels).astype(np.float32),
+    )  # fmt: skip
+    coarse = coarse_mesh(mesh, 150)
+    assert 20 < len(coarse.faces) <= 150
+    known = {tuple(row) for row in np.concatenate([mesh.vertices, mesh.uv], axis=1).tolist()}
+    assert {tuple(row) for row in np.concatenate([coarse.vertices, coarse.uv], axis=1).tolist()} <= known
+    depth = coarse.vertices[coarse.faces][..., 2]
+    assert np.ptp(depth, axis=1).max() < 0.06  # no triangle from one layer to the other

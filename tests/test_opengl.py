@@ -17,21 +17,9 @@ import eigenfield as ef
 from eigenfield.errors import EigenfieldError, FormatError, OptionError
 from eigenfield.format import file_bytes, save
 from eigenfield.rendering import OpenGLRenderer, camera_colour, view_weights, viewpoint, weight_map
-from eigenfield.rendering import opengl as opengl_module
 from eigenfield.scene import Basis, Plane
 
 LARGEST, MEAN = 2, 0.5  # grey levels by which renderers may differ away from edges
-
-
-@pytest.fixture(scope="module")
-def context():
-    pytest.importorskip("moderngl", reason="needs moderngl: pip install 'eigenfield[gpu]'")
-    try:
-        made = opengl_module.make_context()
-    except OptionError as error:
-        pytest.skip(f"needs an OpenGL driver: {error}")
-    yield made
-    made.release()
 
 
 @pytest.fixture(scope="module")

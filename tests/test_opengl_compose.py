@@ -11,24 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from viewer_scenes import scene
 
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.errors import FormatError
 from eigenfield.rendering import OpenGLRenderer, draw_texture, view_weights, viewpoint
-from eigenfield.rendering import opengl as opengl_module
 from eigenfield.rendering.composer import Composer
 from eigenfield.scene import Plane, Scene
 
 CLOSE = 1.5 / 255  # of values up to 2; half-floats there are 1 / 1024 apart, and each part that is added rounds once
-
-
-@pytest.fixture(scope="module")
-def context():
-    pytest.importorskip("moderngl", reason="needs moderngl: pip install 'eigenfield[gpu]'")
-    try:
-        made = opengl_module.make_context()
-    except OptionError as error:
-        pytest.skip(f"needs an OpenGL driver: {error}")
-    yield made
-    made.release()
 
 
 def texture_of(context, made: Scene, count: int, weights=None, eye=(0.0, 0.0, 0.0)) -> np.ndarray:

@@ -205,7 +205,7 @@ def read(folder):
 
 
 def test_a_world_far_from_its_origin_is_said(caplog):
-    from eigenfield.pipeline import _warn_of_rounding
+    from eigenfield.draft import _warn_of_rounding
 
     far = np.array([500_000.37, 4_000_000.61, 100.0])
     cameras = [Camera(c.K, c.R, c.t - c.R @ far, c.width, c.height) for c in row_grid(4)]

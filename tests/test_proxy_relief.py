@@ -174,7 +174,8 @@ def test_every_pixel_of_noise_is_cut_without_crossings(seed):
     a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     area = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
     assert (area > 0).all()
-    assert area.sum() == pytest.approx(26 * 26, rel=0.03)  # a pixel more all round
+    # a pixel more all round, less the corners cut off where the border's pixels differ: 2 % in the median, 3.1 at most
+    assert 0.95 * 26 * 26 < area.sum() <= 26 * 26
     assert covers(sheet, everywhere(d))
 
 

@@ -146,3 +146,16 @@ def test_a_novel_camera_of_a_rectified_array_keeps_the_plane_of_zero_parallax():
         camera = novel_camera(scene, at)
         np.testing.assert_allclose(camera.project(point)[0], still, atol=1e-9)
         np.testing.assert_allclose(camera.centre, plane.point(*at), atol=1e-9)
+
+
+@pytest.mark.parametrize("mode", ["delaunay", "bilinear"])
+def test_weights_on_an_edge_are_those_of_its_ends(mode):
+    """Rounding may put such a point outside the triangles, or cells, on both sides: it must not fall to the rim."""
+    random = np.random.default_rng(3)
+    scene, places = scene_at(jittered(5, 5))
+    rows = [(5 * row + column, 5 * row + column + 1) for row, column in np.ndindex(5, 4)]
+    edges = rows if mode == "bilinear" else scene.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
+    for first, second in edges:
+        for part in random.uniform(0.05, 0.95, 40):
+            weights = view_weights(scene, tuple((1 - part) * places[first] + part * places[second]), mode)
+            assert weights[[first, second]] == pytest.approx([1 - part, part], abs=1e-6) and weights.min() >= 0

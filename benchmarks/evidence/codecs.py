@@ -103,6 +103,27 @@ def serpentine(rows: int, columns: int) -> list[int]:
     return [int(place) for place in places.ravel()]
 
 
+def spiral(rows: int, columns: int) -> list[int]:
+    """The places of a grid from its middle outwards, round and round."""
+    middle = np.array([(rows - 1) / 2, (columns - 1) / 2])
+    places = np.stack(np.divmod(np.arange(rows * columns), columns), axis=1) - middle
+    ring = np.abs(places / np.maximum([rows, columns], 1)).max(axis=1)
+    turn = np.arctan2(places[:, 0], places[:, 1])
+    return [int(place) for place in np.lexsort([turn, np.round(ring, 6)])]
+
+
+def orders(cameras: Sequence[Camera]) -> dict[str, list[int]]:
+    """The ways in which a codec may be led through an array's views, as positions in `cameras`."""
+    grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
+    if grid is None:
+        return {"nearest": order(cameras)}
+    ways = {
+        "rows": range(grid.rows * grid.columns), "serpentine": serpentine(grid.rows, grid.columns),
+        "spiral": spiral(grid.rows, grid.columns),
+    }  # fmt: skip
+    return {name: [int(grid.index.flat[place]) for place in way] for name, way in ways.items()}
+
+
 def order(cameras: Sequence[Camera]) -> list[int]:
     """The order in which an array's views are coded, as positions in `cameras`.
 

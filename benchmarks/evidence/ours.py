@@ -59,19 +59,20 @@ def ours(
                 "parts": dict(parts(path)),
                 "encode_seconds": round(seconds, 2),
                 "access_seconds": access(path, order[len(order) // 2]),
-                **_figures(path, order, photographs, covered, names),
+                **figures(path, order, photographs, covered, names),
             }
         )
     return {"name": "eigenfield", "kind": "ours", "points": points}
 
 
-def _figures(
+def figures(
     path: Path,
     order: Sequence[int],
     photographs: Sequence[NDArray[np.uint8]],
     covered: Sequence[NDArray[np.bool_]],
     names: Sequence[str],
 ) -> dict[str, Any]:
+    """`rates.point` of a file's captured views, read and drawn again."""
     scene = ef.load(path)
     renderer = Renderer(scene)
     return rates.point(
@@ -94,7 +95,12 @@ def access(path: Path, index: int) -> dict[str, float]:
 
 def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) -> list[NDArray[np.bool_]]:
     """The covered pixels of each view: what the whole proxy covers, within the mask where there is one."""
-    scene = ef.load(prepared.work / "all.glb")
+    return covered_pixels(prepared.work / "all.glb", order, light_field)
+
+
+def covered_pixels(path: Path, order: Sequence[int], light_field: LightField) -> list[NDArray[np.bool_]]:
+    """The pixels that a file's mesh covers in some of a light field's views, within the mask where there is one."""
+    scene = ef.load(path)
     renderer, cameras = Renderer(scene), dict(zip(scene.names, range(len(scene.names)), strict=True))
 
     def of_view(index: int) -> NDArray[np.bool_]:

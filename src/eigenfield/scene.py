@@ -91,8 +91,6 @@ class Scene:
         its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
     to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what is
         drawn.
-    streams: coded forms of `mesh` and `cameras` by these names (docs/coding.md): a file holds them instead of plain
-        numbers as long as they decode to what the scene has.
     """
 
     mesh: Mesh
@@ -108,7 +106,6 @@ class Scene:
     generator: str = ""
     colours: NDArray[np.float32] | None = None
     to_rgb: NDArray[np.float32] | None = None
-    streams: Mapping[str, bytes] = field(default_factory=dict)
 
     @property
     def atlas(self) -> tuple[int, int]:

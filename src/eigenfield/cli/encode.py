@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,15 @@ def _atlas(context: click.Context, parameter: click.Parameter, value: str | None
     raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
 
 
+def _size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+    if value is None:
+        return None
+    found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", value.strip().lower())
+    if found is None:
+        raise click.BadParameter("a size in bytes, kB or MB: 500kB, 1.5MB, 300000")
+    return round(float(found[1]) * {"": 1, "k": 1e3, "m": 1e6, "g": 1e9}[found[2]])
+
+
 @click.command(
     epilog="""\b
 Examples:
@@ -43,7 +53,8 @@ Examples:
   eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
   eigenfield encode photos/ --proxy mesh.obj --uv-ssim 0.98 --hold-out odd -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --codec png --align -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --fit photographs --quality 80 -o small.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --fit photographs --quality 80 -o small.glb
+  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb"""
 )
 @click.argument("capture", type=click.Path(path_type=Path))
 @click.option(
@@ -121,15 +132,35 @@ Examples:
     type=click.Choice(["avif", "webp", "png"]),
     help="Pictures in the file: avif is lossy and small, webp and png keep 8 bits exactly.  [default: avif]",
 )
-@click.option("--quality", type=click.IntRange(0, 100), metavar="Q", help="Quality of avif, 0 to 100.  [default: 70]")
+@click.option(
+    "--quality",
+    type=click.IntRange(0, 100),
+    metavar="Q",
+    help="Quality of avif, 0 to 100.  [default: 70; of a fit the preset's]",
+)
 @click.option(
     "--fit",
     type=click.Choice(["none", "photographs"]),
-    default="none",
-    show_default=True,
     help="none: project the photographs into the textures, as the paper does. photographs: fit the textures until the "
-    "drawn pictures match the photographs; smaller, better, takes minutes.",
+    "drawn pictures match the photographs; smaller, better, takes minutes.  [default: none; photographs with a target]",
 )
+@click.option(
+    "--preset",
+    type=click.Choice(["small", "balanced", "best"]),
+    default="balanced",
+    show_default=True,
+    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first.",
+)
+@click.option(
+    "--target-size",
+    callback=_size,
+    metavar="SIZE",
+    help="The best file of at most this size (500kB, 1.5MB, 300000), by the quality of a fit.",
+)
+@click.option(
+    "--target-psnr", type=float, metavar="DB", help="The smallest file with this PSNR, RGB, of captured views."
+)
+@click.option("--target-ssim", type=float, metavar="S", help="The smallest file with this SSIM of captured views.")
 @click.option(
     "--keep-maps",
     type=click.Path(path_type=Path),
@@ -172,8 +203,12 @@ def command(
     hold_out: str | None,
     resampling: str,
     codec: str | None,
-    fit: str,
+    fit: str | None,
+    preset: str,
     quality: int | None,
+    target_size: int | None,
+    target_psnr: float | None,
+    target_ssim: float | None,
     keep_maps: Path | None,
     work: Path | None,
     overwrite: bool,
@@ -191,18 +226,22 @@ def command(
     from eigenfield.format import parts, save
     from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
     from eigenfield.mesh import Mesh
-    from eigenfield.pipeline import Options, check_options, encode
+    from eigenfield.pipeline import Options, Target, check_options, encode
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
     check_codec(codec or DEFAULT_CODEC, quality)
+    target = None
+    if any(value is not None for value in (target_size, target_psnr, target_ssim)):
+        target = Target(target_size, target_psnr, target_ssim)
+    fit = fit or ("none" if target is None else "photographs")
     if fit != "none" and codec is not None:
         raise OptionError("codec", "a fit codes its pictures itself (10-bit AVIF)", remedy="leave --codec out")
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
         textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
-        quality,
+        preset, quality, target,
     )  # fmt: skip
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
@@ -236,8 +275,8 @@ def command(
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
-            metres_per_unit=metres_per_unit, fit=fit, quality=quality, keep_maps=keep_maps, work=scratch,
-            progress=progress,
+            metres_per_unit=metres_per_unit, fit=fit, preset=preset, quality=quality, target=target,
+            keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         kept = fit != "none"  # coded already
         save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.format.layout import Layout, PlaneLayout
+    from eigenfield.format.layout import Layout
+    from eigenfield.format.layout_planes import PlaneLayout
 
 AXES = (
     "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "

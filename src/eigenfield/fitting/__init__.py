@@ -2,17 +2,28 @@
 
 from __future__ import annotations
 
-from eigenfield.fitting.fit import Fitted, PlaneSettings, fit_plane
-from eigenfield.fitting.planes import FIT_QUALITY, fit_planes, fitted_textures
-from eigenfield.fitting.shots import Shots, open_shots
+from eigenfield.fitting.colour import to_rgb
+from eigenfield.fitting.fit import Coded, Pixels, PlaneSettings, Rate, code_plane, fit_plane
+from eigenfield.fitting.planes import PRESETS, Fits, fitted_textures, open_fits
+from eigenfield.fitting.shots import Shots, open_shots, thinned
+from eigenfield.fitting.target import Target, reach, reached
 
 __all__ = [
-    "FIT_QUALITY",
-    "Fitted",
+    "PRESETS",
+    "Coded",
+    "Fits",
+    "Pixels",
     "PlaneSettings",
+    "Rate",
     "Shots",
+    "Target",
+    "code_plane",
     "fit_plane",
-    "fit_planes",
     "fitted_textures",
+    "open_fits",
     "open_shots",
+    "reach",
+    "reached",
+    "thinned",
+    "to_rgb",
 ]

@@ -1,8 +1,8 @@
 """The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
 
 Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
-weights, in turns, until a round gains less than `STOP`. Then closed loop: the textures are coded, weights and mean are
-fitted again to what the coded ones draw, and the mean is coded last.
+weights, in turns, until a round gains less than `STOP`. Then closed loop, at any rates: the textures are coded, weights
+and mean are fitted again to what the coded ones draw, and the mean is coded last.
 """
 
 from __future__ import annotations
@@ -10,18 +10,20 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.errors import CaptureError
-from eigenfield.fitting.model import Block, Finers, Model, make_finer
+from eigenfield.fitting.model import Block, Composer, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
 from eigenfield.fitting.shots import Shots
-from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, whiten
+from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.fitting.start import principal_block
-from eigenfield.format.deep_code import code_basis, code_plane, with_weights
+from eigenfield.format.deep_code import code_basis, coded_plane, first_pictures, with_weights
+from eigenfield.format.stored import files_of
 from eigenfield.format.weight_coder import code_weights
 from eigenfield.progress import Progress
 from eigenfield.scene import Basis, Plane
@@ -29,13 +31,14 @@ from eigenfield.scene import Basis, Plane
 log = logging.getLogger("eigenfield.fit")
 
 STOP = 0.05  # dB that a round must gain for another to follow
-ROUNDS = 3  # at most
 MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
 TEXTURE_STEPS = 5
 WEIGHT_STEPS = 4
 WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
 WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
 CLOSING_STEPS = 3  # for the mean, after coding
+LAGRANGE = 0.134  # squared error per bit in steps^2, as video encoders weigh them (0.85 2^((QP - 12) / 3), H.264)
+WEIGHT_BYTES = 0.4  # of a coded weight: what weak components' take
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,23 +46,48 @@ class PlaneSettings:
     """What one plane is to be.
 
     matrix: (C, 3) its channels from R, G, B. mean, grid: (rows, columns) of mean and components. textures: N.
-    step: every how many-th pixel of a row the fit looks at. mean_step, texture_step: of the
-    quantiser, in the photographs' range. preset: of the encoder.
     """
 
     matrix: NDArray[np.float32]
     mean: tuple[int, int]
     grid: tuple[int, int]
     textures: int
-    step: int
+
+
+@dataclass(frozen=True)
+class Rate:
+    """How finely a plane is coded. mean_step, texture_step: of the quantiser, in the photographs' range. preset: of the
+    encoder."""
+
     mean_step: float
     texture_step: float
     preset: int
 
 
 @dataclass(frozen=True, eq=False)
-class Fitted:
-    """A coded plane; dB of its channels before coding and after, mean over cameras, what is drawn not rounded."""
+class Pixels:
+    """Those of all photographs, and those that mean and textures, and weights, are fitted to (see `thinned`)."""
+
+    every: Shots
+    fitted: Shots
+    weighed: Shots
+
+
+@dataclass(frozen=True, eq=False)
+class OpenFit:
+    """A plane fitted, not coded. uncoded: dB of its channels, mean over cameras, what is drawn not rounded."""
+
+    name: str
+    pixels: Pixels
+    model: Model
+    scales: Scales
+    composer: Composer
+    uncoded: float
+
+
+@dataclass(frozen=True, eq=False)
+class Coded:
+    """A plane as its files give it back, and dB as `OpenFit.uncoded` before coding and after."""
 
     plane: Plane
     uncoded: float
@@ -67,55 +95,133 @@ class Fitted:
 
 
 def fit_plane(
-    shots: Shots,
+    pixels: Pixels,
     settings: PlaneSettings,
     name: str,
-    rounds: int = ROUNDS,
-    grid: NDArray[np.int64] | None = None,
+    rounds: int,
     work: Path | None = None,
     progress: Progress | None = None,
-) -> Fitted:
-    """Fit and code one plane. grid: (rows, columns) camera indices where they stand on a regular array, -1 where none
-    stands, None where they do not. Raises CaptureError `nothing-seen` where no camera covers a pixel."""
-    surface = shots.surface
-    finers = Finers(
-        None if settings.mean == surface.size else make_finer(surface, settings.mean),
-        make_finer(surface, settings.grid),
-    )
-    channels = len(settings.matrix)
+) -> OpenFit:
+    """Fit one plane in open loop, by at most so many rounds. Raises CaptureError `nothing-seen` where no camera covers
+    a pixel."""
+    fitted, channels = pixels.fitted, len(settings.matrix)
     grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
     model = Model(settings.matrix, grey.astype(np.float32), settings.grid, [])
-    tick = _ticker(progress, f"fit {name}", 4 + 2 * rounds)
-    scales = measure_scales(shots, model, finers)
+    tick = _ticker(progress, f"fit {name}", 3 + 2 * rounds)
+    scales = measure_scales(fitted, model)
     if not scales.mean.any():
         raise CaptureError(
             "nothing-seen",
             "no camera sees any texel of the proxy",
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
-    fit_textures(shots, model, finers, scales, MEAN_STEPS, settings.step, mean_only=True)
+    _fit_mean(fitted, model, scales, MEAN_STEPS)
     tick()
-    count = min(settings.textures, len(shots) - 1)
+    count = min(settings.textures, len(fitted) - 1)
     if count:
         rows, columns = settings.grid
-        model.blocks = [principal_block(shots, model, finers, scales, count, (0, rows, 0, columns), work)]
+        model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), work)]
         whiten(model, scales)
     tick()
-    best = _measure(shots, model, finers)
+    left = residual(fitted, model)
+    best = psnr_of(left.squares, left.pixels, channels)
     for number in range(rounds if count else 0):
-        fit_textures(shots, model, finers, scales, TEXTURE_STEPS, settings.step)
+        fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
-        fit_weights(shots, model, finers, WEIGHT_STEPS, settings.step)
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         whiten(model, scales)
-        reached = _measure(shots, model, finers)
+        left = residual(fitted, model)
+        reached = psnr_of(left.squares, left.pixels, channels)
         tick()
         log.info("%s, round %d: %.2f dB (%.2f before)", name, number + 1, reached, best)
         gained, best = reached - best, max(best, reached)
         if gained < STOP:
             break
-    fitted = _code(shots, model, finers, scales, settings, grid)
+    composer = make_composer(pixels.every.surface, model)
+    uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
-    return replace(fitted, uncoded=best)
+    return OpenFit(name, pixels, model, scales, composer, uncoded)
+
+
+def code_plane(
+    fit: OpenFit, rate: Rate, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
+) -> Coded:
+    """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
+
+    The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
+    -1 where none stands, None where they do not.
+    """
+    pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
+    tick = _ticker(progress, f"code {fit.name}", 4)
+    model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
+    bases: list[Basis] = []
+    for block in open_loop.blocks:
+        coded = _code_worthwhile(block, model.grid, scales, rate)
+        if not coded.count:
+            continue
+        values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])
+        model.blocks.append(replace(block, textures=np.ascontiguousarray(values), weights=weights))
+        bases.append(coded)
+    tick()
+    if bases:
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
+        for number, block in enumerate(model.blocks):
+            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
+            bases[number] = with_weights(bases[number], block.weights, stream)
+    tick()
+    _fit_mean(pixels.fitted, model, scales, CLOSING_STEPS, fit.composer)
+    tick()
+    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
+    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.preset)
+    model.mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
+    reached = _drawn(pixels.every, model, fit.composer)
+    tick(last=True)
+    return Coded(plane, fit.uncoded, reached)
+
+
+def _code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:
+    """A block's components coded, those that are worth it."""
+    coded = code_basis(_basis(block, grid), rate.texture_step, rate.preset)
+    count = _worthwhile(coded, block, scales, rate)
+    files = files_of(coded) or ()
+    ends = list(accumulate((file.count for file in files), initial=0))
+    if count in ends:
+        return first_pictures(coded, ends.index(count))
+    few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
+    return code_basis(_basis(few, grid), rate.texture_step, rate.preset)
+
+
+def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
+    """How many components, the strongest first, are worth their bytes and their weights'.
+
+    One takes squared error off the pictures, over all cameras; it is worth its bytes where the mean's coder would need
+    more to take off as much: `LAGRANGE` step^2 a bit, times the pixels that a texel of the mean answers for.
+    """
+    seen, share = scales.mean[scales.mean > 0], scales.coarse[block.window]
+    price = 8 * LAGRANGE * rate.mean_step**2 * float(np.median(seen)) if len(seen) else 0.0  # of a byte
+    gains: list[float] = []
+    for file in files_of(coded) or ():
+        part = slice(len(gains), len(gains) + file.count)
+        before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
+        less = np.einsum("nchw,hw->n", np.square(before) - np.square(before - after), share, dtype=np.float64)
+        gains += (less - price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
+    return int(np.argmax([0.0, *np.cumsum(gains)]))
+
+
+def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
+    """dB of the photographs as the renderers draw the model."""
+    found = look(
+        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+        weights=[block.weights for block in model.blocks], photographs=True, wanted=(False, False, False),
+        composer=composer,
+    )  # fmt: skip
+    return psnr_of(found.squares, found.pixels, model.channels)
+
+
+def _fit_mean(shots: Shots, model: Model, scales: Scales, steps: int, composer: Composer | None = None) -> None:
+    """The mean alone, for textures and weights as they are. composer: and as the renderers draw them."""
+    left = residual(shots, model, True, composer)
+    fit_textures(shots, model, scales, left, steps, mean_only=True)
 
 
 def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
@@ -124,32 +230,6 @@ def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
     share = scales.coarse[block.window]
     drawn = np.sqrt((np.square(block.textures) * share).sum(axis=(1, 2, 3)) / max(float(scales.coarse.sum()), 1e-12))
     return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
-
-
-def _code(
-    shots: Shots,
-    model: Model,
-    finers: Finers,
-    scales: Scales,
-    settings: PlaneSettings,
-    grid: NDArray[np.int64] | None = None,
-) -> Fitted:
-    """Closed loop: textures coded, weights and mean fitted to them, the mean coded."""
-    bases: list[Basis] = []
-    for block in model.blocks:
-        coded = code_basis(_basis(block, settings.grid), settings.texture_step, settings.preset)
-        block.textures = np.ascontiguousarray(coded.values().transpose(0, 3, 1, 2))
-        bases.append(coded)
-    if bases:
-        fit_weights(shots, model, finers, WEIGHT_STEPS, settings.step)
-        for number, block in enumerate(model.blocks):
-            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
-            bases[number] = with_weights(bases[number], block.weights, stream)
-    fit_textures(shots, model, finers, scales, CLOSING_STEPS, settings.step, mean_only=True)
-    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = code_plane(mean, tuple(bases), settings.mean_step, settings.preset)
-    model.mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
-    return Fitted(plane, 0.0, _measure(shots, model, finers))
 
 
 def _basis(block: Block, grid: tuple[int, int]) -> Basis:
@@ -174,11 +254,3 @@ def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[..., 
             progress(stage, done, total)
 
     return tick
-
-
-def _measure(shots: Shots, model: Model, finers: Finers) -> float:
-    found = look(
-        shots, model, finers, mean=model.mean, textures=[block.textures for block in model.blocks],
-        weights=[block.weights for block in model.blocks], photographs=True, wanted=(False, False, False),
-    )  # fmt: skip
-    return psnr_of(found.squares, found.pixels, model.channels)

@@ -1,5 +1,5 @@
-"""Kernels of the fit: photographs against what is drawn of them, and back into the textures; coarse textures made finer
-and back. What goes back is the exact transpose of what is drawn, so that least squares can be solved by it."""
+"""Kernels of the fit: what is drawn of textures of any size, its exact transpose, so that least squares can be solved
+by them; coarse textures made finer."""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -9,6 +9,7 @@ import numpy as np
 
 from eigenfield.jit import kernel
 from eigenfield.rendering.kernels import filter_weights
+from eigenfield.rendering.simd import give_cubic, take_cubic
 
 
 @kernel()
@@ -27,83 +28,103 @@ def place_pixels(near, column_of, row_of, height, width, places):
                 places[row, pixel, 1] = np.float32(-1)
 
 
-@kernel(inline=True)
-def set_taps(x, y, height, width, at):
-    """at (16,): flat addresses of the 4 x 4 texels around column x, row y; returns fractions of both."""
-    left, top = np.int64(x), np.int64(y)
-    if 1 <= left < width - 2 and 1 <= top < height - 2:
-        first = (top - 1) * width + left - 1
-        for tap in range(4):
-            at[4 * tap] = first
-            at[4 * tap + 1] = first + 1
-            at[4 * tap + 2] = first + 2
-            at[4 * tap + 3] = first + 3
-            first += width
-    else:
-        for down in range(4):
-            row = min(max(top + down - 1, 0), height - 1) * width
-            for across in range(4):
-                at[4 * down + across] = row + min(max(left + across - 1, 0), width - 1)
-    return x - np.float32(left), y - np.float32(top)
-
-
 @kernel()
-def draw_back(places, texture, codes, matrix, weight, first, step, out):
-    """For the covered pixels, every `step`-th from `first` in each row: out += G^T w (target - G texture), where G
-    draws with Catmull-Rom and w weighs the pixels. Returns the sum of w (target - G texture)^2 and the sum of w.
-
-    places (h, w, 2): see `place_pixels`. texture, out (C, H, W) float32. The target is matrix (C, 3) times the codes
-    (h, w, 3) uint8; codes of no pixels stand for zero, and the sign is turned: out += G^T w G texture. weight (h, w)
-    float32, or (0, 0): ones.
-    """
-    channels, height, width = texture.shape
-    given, weighed = codes.shape[0] > 0, weight.shape[0] > 0
-    sign = np.float32(1) if given else np.float32(-1)
-    squares, total = 0.0, 0.0
-    at = np.zeros(16, np.uintp)
+def aim(places, codes, matrix, image):
+    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8 where a pixel is covered, else zero."""
     for row in range(places.shape[0]):
-        line_squares, line_total = np.float32(0), np.float32(0)
-        for pixel in range((first + row) % step, places.shape[1], step):
-            x, y = places[row, pixel, 0], places[row, pixel, 1]
-            w = weight[row, pixel] if weighed else np.float32(1)
-            if x < 0 or w <= 0:
-                continue
-            fx, fy = set_taps(x, y, height, width, at)
-            a0, a1, a2, a3 = filter_weights(4, fx)
-            d0, d1, d2, d3 = filter_weights(4, fy)
-            for k in range(channels):
-                flat = texture[k].reshape(-1)
-                value = d0 * ((a0 * flat[at[0]] + a1 * flat[at[1]]) + (a2 * flat[at[2]] + a3 * flat[at[3]]))
-                value += d1 * ((a0 * flat[at[4]] + a1 * flat[at[5]]) + (a2 * flat[at[6]] + a3 * flat[at[7]]))
-                value += d2 * ((a0 * flat[at[8]] + a1 * flat[at[9]]) + (a2 * flat[at[10]] + a3 * flat[at[11]]))
-                value += d3 * ((a0 * flat[at[12]] + a1 * flat[at[13]]) + (a2 * flat[at[14]] + a3 * flat[at[15]]))
-                rest = -value
-                if given:
-                    rest += (
+        for pixel in range(places.shape[1]):
+            covered = places[row, pixel, 0] >= 0
+            for k in range(image.shape[0]):
+                value = np.float32(0)
+                if covered:
+                    value = (
                         matrix[k, 0] * np.float32(codes[row, pixel, 0])
                         + matrix[k, 1] * np.float32(codes[row, pixel, 1])
                         + matrix[k, 2] * np.float32(codes[row, pixel, 2])
                     )
-                line_squares += w * rest * rest
-                back = sign * w * rest
-                into = out[k].reshape(-1)
-                b0, b1, b2, b3 = back * d0, back * d1, back * d2, back * d3
-                into[at[0]] += b0 * a0
-                into[at[1]] += b0 * a1
-                into[at[2]] += b0 * a2
-                into[at[3]] += b0 * a3
-                into[at[4]] += b1 * a0
-                into[at[5]] += b1 * a1
-                into[at[6]] += b1 * a2
-                into[at[7]] += b1 * a3
-                into[at[8]] += b2 * a0
-                into[at[9]] += b2 * a1
-                into[at[10]] += b2 * a2
-                into[at[11]] += b2 * a3
-                into[at[12]] += b3 * a0
-                into[at[13]] += b3 * a1
-                into[at[14]] += b3 * a2
-                into[at[15]] += b3 * a3
+                image[k, row, pixel] = value
+
+
+@kernel(inline=True)
+def position(place, ratio, last):
+    """A place in the atlas among texels of another size, `ratio` of them to one of the atlas's; clamped to 0..last."""
+    half = np.float32(0.5)
+    return min(max((place + half) * ratio - half, np.float32(0)), last)
+
+
+@kernel()
+def draw(places, size, texture, sign, image):
+    """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom, where covered.
+
+    places (h, w, 2): see `place_pixels`, in an atlas of `size` (H, W), which need not be the texture's.
+    """
+    channels, height, width = texture.shape
+    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    right, bottom = np.float32(width - 1), np.float32(height - 1)
+    flat, plane = texture.reshape(-1), height * width
+    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    for row in range(places.shape[0]):
+        for pixel in range(places.shape[1]):
+            if places[row, pixel, 0] < 0:
+                continue
+            x, y = position(places[row, pixel, 0], across, right), position(places[row, pixel, 1], down, bottom)
+            left, top, into = np.int64(x), np.int64(y), row * wide + pixel
+            a, d = filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+            if 1 <= left < width - 2 and 1 <= top < height - 2:
+                first = (top - 1) * width + left - 1
+                for k in range(channels):
+                    drawn[k * area + into] += sign * take_cubic(flat, first + k * plane, width, a, d)
+            else:
+                for k in range(channels):
+                    for v in range(4):
+                        line = k * plane + min(max(top + v - 1, 0), height - 1) * width
+                        for u in range(4):
+                            at = line + min(max(left + u - 1, 0), width - 1)
+                            drawn[k * area + into] += sign * d[v] * a[u] * flat[at]
+
+
+@kernel()
+def put_back(places, size, image, weight, out):
+    """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight (h, w) float32; (0, 0): ones."""
+    channels, height, width = out.shape
+    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    right, bottom = np.float32(width - 1), np.float32(height - 1)
+    flat, plane, weighed = out.reshape(-1), height * width, weight.shape[0] > 0
+    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    for row in range(places.shape[0]):
+        for pixel in range(places.shape[1]):
+            w = weight[row, pixel] if weighed else np.float32(1)
+            if places[row, pixel, 0] < 0 or w <= 0:
+                continue
+            x, y = position(places[row, pixel, 0], across, right), position(places[row, pixel, 1], down, bottom)
+            left, top, source = np.int64(x), np.int64(y), row * wide + pixel
+            a, d = filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+            if 1 <= left < width - 2 and 1 <= top < height - 2:
+                first = (top - 1) * width + left - 1
+                for k in range(channels):
+                    give_cubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
+            else:
+                for k in range(channels):
+                    for v in range(4):
+                        line = k * plane + min(max(top + v - 1, 0), height - 1) * width
+                        for u in range(4):
+                            at = line + min(max(left + u - 1, 0), width - 1)
+                            flat[at] += d[v] * a[u] * w * drawn[k * area + source]
+
+
+@kernel()
+def squares_of(places, image, weight):
+    """Over the covered pixels: the sum of w image^2, and of w. weight (h, w) float32, or (0, 0): ones."""
+    squares, total = 0.0, 0.0
+    weighed = weight.shape[0] > 0
+    for row in range(places.shape[0]):
+        line_squares, line_total = np.float32(0), np.float32(0)
+        for pixel in range(places.shape[1]):
+            w = weight[row, pixel] if weighed else np.float32(1)
+            if places[row, pixel, 0] < 0 or w <= 0:
+                continue
+            for k in range(image.shape[0]):
+                line_squares += w * image[k, row, pixel] * image[k, row, pixel]
             line_total += w
         squares += np.float64(line_squares)
         total += np.float64(line_total)
@@ -140,46 +161,64 @@ def enlarge(coarse, row_at, row_weight, column_at, column_weight, spans, lines, 
                     out[x] = (w[0] * l0[x] + w[1] * l1[x]) + (w[2] * l2[x] + w[3] * l3[x])
 
 
-@kernel()
-def reduce(fine, row_at, row_weight, column_at, column_weight, spans, lines, coarse):
-    """coarse (C, h, w) = the transpose of `enlarge` on fine (C, H, W), which counts as zero outside `spans`."""
-    low, high = spans[:, 0].min(), spans[:, 1].max()
-    for k in range(coarse.shape[0]):
-        lines[:] = 0
-        for y in range(fine.shape[1]):
-            first, last = spans[y, 0], spans[y, 1]
-            if first == last:
-                continue
-            source = fine[k, y]
-            for tap in range(4):
-                w, out = row_weight[y, tap], lines[row_at[y, tap]]
-                for x in range(first, last):
-                    out[x] += w * source[x]
-        for row in range(coarse.shape[1]):
-            line, out = lines[row], coarse[k, row]
-            out[:] = 0
-            for x in range(low, high):
-                value = line[x]
-                for tap in range(4):
-                    out[column_at[x, tap]] += column_weight[x, tap] * value
+# One part of a conjugate gradient's vectors, (C, h, w): the mean, or one component. Its diagonal is about
+# energy x (share + extra), share (h, w) what a texel answers for.
+
+
+@kernel(inline=True)
+def preconditioner(share, extra, energy):
+    """The inverse of the diagonal."""
+    return np.float32(1) / (energy * (share + extra) + np.float32(1e-6))
 
 
 @kernel()
-def add_laplacian(texture, strength, out):
-    """out (C, H, W) += strength times the Laplacian of texture: 4 x itself less its neighbours, those beyond
-    the border counting as itself."""
-    channels, height, width = texture.shape
+def bend(direction, strength, image):
+    """image += strength times the Laplacian of direction: 4 x itself less its neighbours, those beyond the border
+    counting as itself. Returns their scalar product."""
+    channels, height, width = direction.shape
+    total = 0.0
     for k in range(channels):
         for y in range(height):
             for x in range(width):
-                here = texture[k, y, x]
+                here = direction[k, y, x]
                 rest = np.float32(0)
                 if y > 0:
-                    rest += here - texture[k, y - 1, x]
+                    rest += here - direction[k, y - 1, x]
                 if y + 1 < height:
-                    rest += here - texture[k, y + 1, x]
+                    rest += here - direction[k, y + 1, x]
                 if x > 0:
-                    rest += here - texture[k, y, x - 1]
+                    rest += here - direction[k, y, x - 1]
                 if x + 1 < width:
-                    rest += here - texture[k, y, x + 1]
-                out[k, y, x] += strength * rest
+                    rest += here - direction[k, y, x + 1]
+                image[k, y, x] += strength * rest
+                total += np.float64(here) * np.float64(image[k, y, x])
+    return total
+
+
+@kernel()
+def advance(state, rest, direction, image, length, share, extra, energy):
+    """state += length direction, rest -= length image; returns rest . preconditioned rest."""
+    channels, height, width = state.shape
+    total = 0.0
+    for k in range(channels):
+        for y in range(height):
+            for x in range(width):
+                state[k, y, x] += length * direction[k, y, x]
+                left = rest[k, y, x] - length * image[k, y, x]
+                rest[k, y, x] = left
+                total += np.float64(left) * np.float64(left * preconditioner(share[y, x], extra, energy))
+    return total
+
+
+@kernel()
+def turn(direction, rest, ratio, share, extra, energy):
+    """direction = preconditioned rest + ratio direction; returns rest . preconditioned rest."""
+    channels, height, width = direction.shape
+    total = 0.0
+    for k in range(channels):
+        for y in range(height):
+            for x in range(width):
+                ready = rest[k, y, x] * preconditioner(share[y, x], extra, energy)
+                direction[k, y, x] = ready + ratio * direction[k, y, x]
+                total += np.float64(rest[k, y, x]) * np.float64(ready)
+    return total

@@ -9,12 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.fitting.kernels import enlarge, reduce
+from eigenfield.fitting.kernels import enlarge
+from eigenfield.parallel import pieces
 from eigenfield.rendering.drawing import Surface
 from eigenfield.rendering.kernels import TILE
 from eigenfield.rendering.resample import Taps, make_taps
 
 ZERO = np.zeros((0, 0, 0), np.float32)
+
+COLUMNS = 1 << 16  # texels whose products with weights are made at a time: no second array as large as all textures
 
 Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texels of the components' grid
 
@@ -69,44 +72,21 @@ def sums_of(
     count = len(rows[0]) if rows else 0
     total = np.zeros((count, model.channels, *model.grid), np.float32)
     for block, some, mine in zip(model.blocks, textures, rows, strict=True):
-        if block.count:
-            part = mine @ some.reshape(block.count, -1)
-            total[:, :, *block.window] += part.reshape(count, *some.shape[1:])
+        if not block.count:
+            continue
+        flat = some.reshape(block.count, -1)
+        if some.shape[2:] == model.grid:
+            into = total.reshape(count, -1)
+            for first, last in pieces(flat.shape[1], COLUMNS):
+                into[:, first:last] += mine @ flat[:, first:last]
+        else:
+            total[:, :, *block.window] += (mine @ flat).reshape(count, *some.shape[1:])
     return total
 
 
 @dataclass(frozen=True, eq=False)
-class Finers:
-    """How mean and components become as fine as the atlas that is drawn; mean: None where it is as fine itself."""
-
-    mean: Finer | None
-    grid: Finer
-
-    @property
-    def fine(self) -> tuple[int, int]:
-        """(H, W) of the atlas."""
-        return self.grid.fine
-
-    def fine_mean(self, mean: NDArray[np.float32]) -> NDArray[np.float32]:
-        """(C, H, W): a mean as fine as the atlas."""
-        if self.mean is None:
-            return mean
-        fine = np.zeros((len(mean), *self.fine), np.float32)
-        self.mean.up(mean, fine)
-        return fine
-
-    def coarse_mean(self, fine: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The transpose of `fine_mean`."""
-        if self.mean is None:
-            return fine
-        coarse = np.zeros((len(fine), *self.mean.coarse), np.float32)
-        self.mean.down(fine, coarse)
-        return coarse
-
-
-@dataclass(frozen=True, eq=False)
 class Finer:
-    """From the components' grid to the finest atlas and back, see the kernels. spans: (H, 2) columns in use."""
+    """From a coarse atlas to the finest one, see the kernel. spans: (H, 2) columns in use."""
 
     rows: Taps
     columns: Taps
@@ -120,11 +100,28 @@ class Finer:
         taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)
         enlarge(coarse, *taps, self.spans, lines, start, fine)
 
-    def down(self, fine: NDArray[np.float32], coarse: NDArray[np.float32]) -> None:
-        """coarse (C, h, w) = the transpose of `up` on fine (C, H, W)."""
-        lines = np.zeros((self.coarse[0], self.fine[1]), np.float32)
-        taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)
-        reduce(fine, *taps, self.spans, lines, coarse)
+
+@dataclass(frozen=True, eq=False)
+class Composer:
+    """Mean and components as one texture of the finest atlas, as the renderers compose it. mean: None where it is as
+    fine itself."""
+
+    mean: Finer | None
+    grid: Finer
+
+    def fine_mean(self, mean: NDArray[np.float32]) -> NDArray[np.float32]:
+        """(C, H, W): a mean as fine as the atlas."""
+        if self.mean is None:
+            return mean
+        fine = np.zeros((len(mean), *self.grid.fine), np.float32)
+        self.mean.up(mean, fine)
+        return fine
+
+
+def make_composer(surface: Surface, model: Model) -> Composer:
+    """For a model drawn on `surface`."""
+    shape = model.mean.shape[1:]
+    return Composer(None if shape == surface.size else make_finer(surface, shape), make_finer(surface, model.grid))
 
 
 def make_finer(surface: Surface, grid: tuple[int, int]) -> Finer:

@@ -1,5 +1,9 @@
 """One look at all photographs: what is drawn of them, and what the difference asks of mean, textures and weights.
 
+What a renderer draws is the sum of mean and components in the finest atlas. Here each is drawn from its own grid, and
+the drawn pictures are summed: nearly the same (Catmull-Rom once instead of twice for what is coarse) for a third of the
+work, as no camera needs an atlas of its own. A look with a `Composer` draws as the renderers do.
+
 Cameras are taken in batches, whatever the number of threads, and a batch's parts are summed in order: the same input
 gives the same numbers.
 """
@@ -13,14 +17,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.fitting.kernels import draw_back
-from eigenfield.fitting.model import ZERO, Finers, Model, sums_of
+from eigenfield.fitting.kernels import aim, draw, put_back, squares_of
+from eigenfield.fitting.model import COLUMNS, Composer, Model, sums_of
 from eigenfield.fitting.shots import Shots
 from eigenfield.parallel import parallel_map, pieces
 
 BATCH = 48  # cameras whose sums are in memory at a time: each batch reads and writes all textures once
 PIECE = 12  # of them are one thread's task
-NONE = np.zeros((0, 0, 3), np.uint8)
+PLUS, MINUS = np.float32(1), np.float32(-1)
 
 Textures = list[NDArray[np.float32]]
 
@@ -30,7 +34,8 @@ class Look:
     """What a pass brings: sums over the cameras of G^T w (photograph - drawn), or of G^T w drawn.
 
     mean: as the model's. textures: for each block (n, C, rows, columns). weights: for each block (Ne, n).
-    squares: (Ne,) of each camera, sum of w (photograph - drawn)^2. pixels: (Ne,), sum of w.
+    squares: (Ne,) of each camera, sum of w (photograph - drawn)^2. pixels: (Ne,), sum of w; both zero without
+    photographs.
     """
 
     mean: NDArray[np.float32]
@@ -43,37 +48,34 @@ class Look:
 def look(
     shots: Shots,
     model: Model,
-    finers: Finers,
     *,
     mean: NDArray[np.float32] | None,
     textures: Textures | None,
     weights: Textures,
     photographs: bool,
     wanted: tuple[bool, bool, bool],
-    step: int = 1,
+    composer: Composer | None = None,
 ) -> Look:
     """Draw every camera from a mean and textures (None: nothing) with weights, which need not be the model's own.
 
     photographs: whether they are compared with (the residual goes back), or what is drawn goes back itself. wanted:
     which of mean, textures and weights to bring; the textures asked of go with the model's weights, the weights with
-    its textures. step: every `step`-th pixel of a row counts, another one in each row and camera.
+    its textures. composer: draw exactly as the renderers do, mean and textures both given.
     """
     for_mean, for_textures, for_weights = wanted
-    blocks = model.blocks
-    shape = (model.channels, *finers.fine)
-    finer, fine_mean = finers.grid, None if mean is None else finers.fine_mean(mean)
-    total = np.zeros(shape if for_mean else (0, 0, 0), np.float32)
+    blocks, size = model.blocks, shots.surface.size
+    total = np.zeros(model.mean.shape if for_mean else (0, 0, 0), np.float32)
     found = [np.zeros_like(block.textures) for block in blocks] if for_textures else []
     asked = [np.zeros((len(shots), block.count), np.float32) for block in blocks] if for_weights else []
     squares, pixels = np.zeros(len(shots)), np.zeros(len(shots))
     coarse = any(block.count for block in blocks)
     summed, for_coarse = coarse and textures is not None, coarse and (for_textures or for_weights)
-    summed, for_coarse = coarse and textures is not None, coarse and (for_textures or for_weights)
-    matrix = (model.matrix / np.float32(255)).astype(np.float32)
+    matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
+    fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     for first, last in pieces(len(shots), BATCH):
         some = slice(first, last)
         sums = sums_of(model, textures, weights, some) if summed and textures is not None else None
-        back = np.zeros((last - first, model.channels, *model.grid), np.float32)
+        back = np.zeros((last - first if for_coarse else 0, model.channels, *model.grid), np.float32)
 
         def piece(
             part: tuple[int, int],
@@ -81,37 +83,43 @@ def look(
             sums: NDArray[np.float32] | None = sums,
             back: NDArray[np.float32] = back,
         ) -> NDArray[np.float32]:
-            added = np.zeros(shape if for_mean else (0, 0, 0), np.float32)
-            drawn, out = np.zeros(shape, np.float32), np.zeros(shape, np.float32)
+            added = np.zeros(model.mean.shape if for_mean else (0, 0, 0), np.float32)
             for at in range(*part):
-                index, source = first + at, drawn
-                if sums is not None:
-                    finer.up(sums[at], drawn, ZERO if fine_mean is None else fine_mean)
-                elif fine_mean is not None:
-                    source = fine_mean
-                into = added if for_mean and not for_coarse else out
-                if into is out:
-                    out[:] = 0
-                squares[index], pixels[index] = draw_back(
-                    shots.places(index), source, shots.photograph(index) if photographs else NONE, matrix,
-                    shots.weight(index), index % step, step, into,
-                )  # fmt: skip
+                index = first + at
+                places, weight = shots.places(index), shots.weight(index)
+                image = np.zeros((model.channels, *places.shape[:2]), np.float32)
+                if photographs:
+                    aim(places, shots.photograph(index), matrix, image)
+                if composer is not None and fine_mean is not None:
+                    texture = fine_mean
+                    if sums is not None:
+                        texture = np.zeros_like(fine_mean)
+                        composer.grid.up(sums[at], texture, fine_mean)
+                    draw(places, size, texture, sign, image)
+                else:
+                    if mean is not None:
+                        draw(places, size, mean, sign, image)
+                    if sums is not None:
+                        draw(places, size, sums[at], sign, image)
+                if photographs:
+                    squares[index], pixels[index] = squares_of(places, image, weight)
+                if for_mean:
+                    put_back(places, size, image, weight, added)
                 if for_coarse:
-                    finer.down(out, back[at])
-                    if for_mean:
-                        added += out
+                    put_back(places, size, image, weight, back[at])
             return added
 
         for added in parallel_map(piece, pieces(last - first, PIECE)):
-            if for_mean:
-                total += added
+            total += added
         for number, block in enumerate(blocks if for_coarse else ()):
             inside = np.ascontiguousarray(back[:, :, *block.window]).reshape(last - first, -1)
             if for_textures and block.count:
-                found[number] += (block.weights[some].T @ inside).reshape(block.textures.shape)
+                into = found[number].reshape(block.count, -1)
+                for left, right in pieces(into.shape[1], COLUMNS):
+                    into[:, left:right] += block.weights[some].T @ inside[:, left:right]
             if for_weights and block.count:
                 asked[number][some] = inside @ block.textures.reshape(block.count, -1).T
-    return Look(finers.coarse_mean(total) if for_mean else total, found, asked, squares, pixels)
+    return Look(total, found, asked, squares, pixels)
 
 
 def psnr_of(squares: NDArray[np.float64], pixels: NDArray[np.float64], channels: int = 1) -> float:

@@ -29,11 +29,12 @@ Decode = Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]]
 class Shots:
     """Photographs of Ne cameras as 8-bit codes, which is what the measures compare with, and where their pixels land.
 
-    codes: a flat memory map of R, G, B, landed: one of columns and rows in the atlas, both from pixel starts[c] for
-    camera c. masks: (h, w) float32 of each camera, None without one. surface: the mesh under the finest atlas.
+    shapes: (h, w) of each camera. codes: a flat memory map of R, G, B, landed: one of columns and rows in the atlas,
+    both from pixel starts[c] for camera c. masks: (h, w) float32 of each camera, None without one. surface: the mesh
+    under the finest atlas.
     """
 
-    cameras: tuple[Camera, ...]
+    shapes: tuple[tuple[int, int], ...]
     codes: NDArray[np.uint8]
     landed: NDArray[np.float32]
     starts: NDArray[np.int64]
@@ -41,7 +42,7 @@ class Shots:
     surface: Surface
 
     def __len__(self) -> int:
-        return len(self.cameras)
+        return len(self.shapes)
 
     def photograph(self, index: int) -> NDArray[np.uint8]:
         """(h, w, 3) codes."""
@@ -52,8 +53,7 @@ class Shots:
         return self._part(self.landed, index)
 
     def _part(self, of: NDArray[Any], index: int) -> NDArray[Any]:
-        camera = self.cameras[index]
-        return np.asarray(of[self.starts[index] : self.starts[index + 1]]).reshape(camera.height, camera.width, -1)
+        return np.asarray(of[self.starts[index] : self.starts[index + 1]]).reshape(*self.shapes[index], -1)
 
     def weight(self, index: int) -> NDArray[np.float32]:
         """(h, w) weights of the pixels, or (0, 0) for ones."""
@@ -73,8 +73,9 @@ def open_shots(
     """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 11 bytes a pixel:
     memory does not grow with their number (but for masks). atlas: (rows, columns) of the finest texture. Raises
     CaptureError, OutputError `disk-full`."""
-    starts = np.concatenate([[0], np.cumsum([camera.width * camera.height for camera in cameras])]).astype(np.int64)
-    total, surface = int(starts[-1]), make_surface(mesh, *atlas)
+    shapes = tuple((camera.height, camera.width) for camera in cameras)
+    starts, surface = _starts(shapes), make_surface(mesh, *atlas)
+    total = int(starts[-1])
     with scratch_array((total, 3), np.uint8, work) as codes, scratch_array((total, 2), np.float32, work) as landed:
 
         def put(index: int) -> NDArray[np.float32] | None:
@@ -89,4 +90,37 @@ def open_shots(
             return None if mask is None else (mask > 0.5).astype(np.float32)
 
         masks = tuple(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
-        yield Shots(tuple(cameras), codes, landed, starts, masks, surface)
+        yield Shots(shapes, codes, landed, starts, masks, surface)
+
+
+@contextlib.contextmanager
+def thinned(shots: Shots, step: int, work: Path | None = None) -> Iterator[Shots]:
+    """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the shots themselves."""
+    if step == 1:
+        yield shots
+        return
+
+    def corner(index: int) -> tuple[slice, slice]:
+        return slice(7 * index // step % step, None, step), slice(index % step, None, step)
+
+    def size(length: int, part: slice) -> int:
+        return len(range(length)[part])
+
+    shapes = tuple(
+        (size(h, rows), size(w, columns))
+        for (h, w), (rows, columns) in zip(shots.shapes, map(corner, range(len(shots))), strict=True)
+    )
+    starts = _starts(shapes)
+    total = int(starts[-1])
+    with scratch_array((total, 3), np.uint8, work) as codes, scratch_array((total, 2), np.float32, work) as landed:
+        masks = []
+        for index, mask in enumerate(shots.masks):
+            part, taken = slice(starts[index], starts[index + 1]), corner(index)
+            codes[part] = shots.photograph(index)[taken].reshape(-1, 3)
+            landed[part] = shots.places(index)[taken].reshape(-1, 2)
+            masks.append(None if mask is None else np.ascontiguousarray(mask[taken]))
+        yield Shots(shapes, codes, landed, starts, tuple(masks), shots.surface)
+
+
+def _starts(shapes: Sequence[tuple[int, int]]) -> NDArray[np.int64]:
+    return np.concatenate([[0], np.cumsum([h * w for h, w in shapes])]).astype(np.int64)

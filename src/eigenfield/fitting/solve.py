@@ -1,8 +1,8 @@
 """Least squares over the photographs: conjugate gradients for mean and textures together, and for the weights.
 
-Minimised is the sum over cameras c of |photograph - G_c (M + U sum_j w_cj E_j)|^2, where G_c draws a texture as the
-renderer does and U makes the coarse sum as fine as the mean, plus small Laplacians of mean and textures, which settle
-what no photograph sees. Only pixels that a camera covers count, each against what is drawn there: nothing is filled in
+Minimised is the sum over cameras c of |photograph - G_c M - G_c sum_j w_cj E_j|^2, where G_c draws a texture of any
+size as the renderer does (see `passes`), plus small Laplacians of mean and textures, which settle what no photograph
+sees. Only pixels that a camera covers count, each against what is drawn there: nothing is filled in
 first, so that this is principal component analysis with missing data, in the pictures instead of the texture maps.
 """
 
@@ -10,16 +10,18 @@ first, so that this is principal component analysis with missing data, in the pi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.fitting.kernels import add_laplacian
-from eigenfield.fitting.model import Finers, Model
-from eigenfield.fitting.passes import Look, Textures, look
+from eigenfield.fitting.kernels import advance, bend, put_back, turn
+from eigenfield.fitting.model import Composer, Model
+from eigenfield.fitting.passes import PIECE, Look, Textures, look
 from eigenfield.fitting.shots import Shots
+from eigenfield.parallel import parallel_map, pieces
 
 MEAN_SMOOTHNESS = 0.004  # of a seen texel's own part in the pictures, the median
 TEXTURE_SMOOTHNESS = 0.0025
@@ -39,23 +41,26 @@ class Scales:
     smooth: tuple[float, float]
 
 
-def measure_scales(shots: Shots, model: Model, finers: Finers) -> Scales:
-    """Row sums of the normal matrix: G^T G of ones, which Catmull-Rom's negative taps leave a little below its diagonal
-    plus all around it, and the same on the coarse grid."""
-    ones = np.ones((1, *finers.fine), np.float32)
-    direct = Finers(None, finers.grid)
-    ones = np.ones((1, *finers.fine), np.float32)
-    direct = Finers(None, finers.grid)
-    bare = Model(np.full((1, 3), 1 / 3, np.float32), ones, model.grid, [])
-    found = look(
-        shots, bare, direct, mean=ones, textures=None, weights=[], photographs=False, wanted=(True, False, False)
-    )
-    fine = np.maximum(found.mean, 0)
-    coarse = np.zeros((1, *model.grid), np.float32)
-    finers.grid.down(fine, coarse)
+def measure_scales(shots: Shots, model: Model) -> Scales:
+    """Row sums of the normal matrix, G^T G 1 = G^T 1: what Catmull-Rom's negative taps leave of its diagonal plus all
+    around it, on either grid."""
+    fine, coarse = np.zeros((1, *model.mean.shape[1:]), np.float32), np.zeros((1, *model.grid), np.float32)
+    size = shots.surface.size
+
+    def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
+        for index in range(*part):
+            ones = np.ones((1, *shots.shapes[index]), np.float32)
+            put_back(shots.places(index), size, ones, shots.weight(index), mean)
+            put_back(shots.places(index), size, ones, shots.weight(index), grid)
+        return mean, grid
+
+    for mean, grid in parallel_map(piece, pieces(len(shots), PIECE)):
+        fine += mean
+        coarse += grid
+    np.maximum(fine, 0, out=fine)
     np.maximum(coarse, 0, out=coarse)
-    mean = np.maximum(finers.coarse_mean(fine)[0], 0)
-    return Scales(mean, coarse[0], (MEAN_SMOOTHNESS * _median(mean), TEXTURE_SMOOTHNESS * _median(coarse)))
+    return Scales(fine[0], coarse[0], (MEAN_SMOOTHNESS * _median(fine), TEXTURE_SMOOTHNESS * _median(coarse)))
 
 
 def _median(values: NDArray[np.float32]) -> float:
@@ -63,58 +68,109 @@ def _median(values: NDArray[np.float32]) -> float:
     return float(np.median(seen)) if len(seen) else 1.0
 
 
+def residual(shots: Shots, model: Model, mean_only: bool = False, composer: Composer | None = None) -> Look:
+    """What the model leaves of the photographs, and what that asks of mean and textures. composer: what it leaves as
+    the renderers draw it."""
+    return look(
+        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+        weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
+        composer=composer,
+    )  # fmt: skip
+
+
 def fit_textures(
-    shots: Shots, model: Model, finers: Finers, scales: Scales, iterations: int, step: int = 1, mean_only: bool = False
-) -> float:
-    """Mean and textures of the model for its weights, or the mean alone for its textures as well; returns the sum of
-    squares before."""
+    shots: Shots,
+    model: Model,
+    scales: Scales,
+    left: Look,
+    iterations: int,
+    mean_only: bool = False,
+) -> None:
+    """Mean and textures of the model for its weights, or the mean alone for its textures as well. left: `residual` of
+    the model as it is; its sums are used up."""
     blocks = [] if mean_only else model.blocks
-    energy = [np.square(block.weights, dtype=np.float64).mean(axis=0).astype(np.float32) for block in blocks]
-    inverse = [1 / (scales.mean + np.float32(4 * scales.smooth[0] + 1e-6))[None]]
-    for block, squares in zip(blocks, energy, strict=True):
-        share = (scales.coarse[block.window] + np.float32(4 * scales.smooth[1]))[None, None]
-        inverse.append(1 / (np.maximum(squares, 1e-6)[:, None, None, None] * share + np.float32(1e-6)))
-
-    def smooth(found: list[NDArray[np.float32]], of: list[NDArray[np.float32]], sign: float) -> None:
-        add_laplacian(of[0], np.float32(sign * scales.smooth[0]), found[0])
-        for part, texture, squares in zip(found[1:], of[1:], energy, strict=True):
-            for j in range(len(texture)):
-                add_laplacian(texture[j], np.float32(sign * scales.smooth[1] * squares[j]), part[j])
-
     weights = [block.weights for block in model.blocks]
-
-    def apply(mean: NDArray[np.float32], textures: Textures | None, photographs: bool) -> Look:
-        return look(
-            shots, model, finers, mean=mean, textures=textures, weights=weights, photographs=photographs,
-            wanted=(True, not mean_only, False), step=step,
-        )  # fmt: skip
-
-    state = [model.mean, *(block.textures for block in blocks)]
-    first = apply(model.mean, [block.textures for block in model.blocks], True)
-    residual = [first.mean, *first.textures]
-    smooth(residual, state, -1)
-    direction = [m * r for m, r in zip(inverse, residual, strict=True)]
-    product = _dot(residual, direction)
+    kinds = [_Kind(scales.mean, scales.smooth[0], 1.0)]
+    for block in blocks:
+        share, energy = np.ascontiguousarray(scales.coarse[block.window]), np.square(block.weights, dtype=np.float64)
+        kinds += [_Kind(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
+    mean, textures = np.zeros_like(model.mean), [np.zeros_like(block.textures) for block in blocks]
+    descent = _Descent(
+        kinds, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
+        _parts(mean, textures),
+    )  # fmt: skip
+    product = descent.begin()
     for _ in range(iterations):
         if product <= 0:
             break
-        back = apply(direction[0], None if mean_only else direction[1:], False)
-        image = [back.mean, *back.textures]
-        smooth(image, direction, 1)
-        length = np.float32(product / _dot(direction, image))
-        for x, r, d, q in zip(state, residual, direction, image, strict=True):
-            x += length * d
-            r -= length * q
-        ready = [m * r for m, r in zip(inverse, residual, strict=True)]
-        product, before = _dot(residual, ready), product
-        turn = np.float32(product / before)
-        direction = [z + turn * d for z, d in zip(ready, direction, strict=True)]
-    return float(first.squares.sum())
+        back = look(
+            shots, model, mean=mean, textures=None if mean_only else textures, weights=weights, photographs=False,
+            wanted=(True, not mean_only, False),
+        )  # fmt: skip
+        image = _parts(back.mean, back.textures)
+        length = product / descent.bent(image)
+        product, before = descent.advance(image, length), product
+        descent.turn(product / before)
 
 
-def fit_weights(shots: Shots, model: Model, finers: Finers, iterations: int, step: int = 1) -> float:
+def _parts(mean: NDArray[np.float32], textures: Textures) -> Textures:
+    """The mean and each component, (C, rows, columns)."""
+    return [mean, *(texture for found in textures for texture in found)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Descent:
+    """The vectors of preconditioned conjugate gradients, in parts. rest: what the state leaves."""
+
+    kinds: list[_Kind]
+    state: Textures
+    rest: Textures
+    direction: Textures
+
+    def begin(self) -> float:
+        """The first direction, of what is left without the Laplacian; how much is left, by the preconditioner."""
+        self._sum(lambda i: bend(self.state[i], -self.kinds[i].strength, self.rest[i]))
+        return self.turn(0.0)
+
+    def bent(self, image: Textures) -> float:
+        """direction . A direction; image: A direction, but for the Laplacian."""
+        return self._sum(lambda i: bend(self.direction[i], self.kinds[i].strength, image[i]))
+
+    def advance(self, image: Textures, length: float) -> float:
+        """A step along the direction; how much is left, by the preconditioner."""
+        step, state, rest, along = np.float32(length), self.state, self.rest, self.direction
+        return self._sum(lambda i: advance(state[i], rest[i], along[i], image[i], step, *self.kinds[i].diagonal))
+
+    def turn(self, ratio: float) -> float:
+        """The next direction, with `ratio` of the present one."""
+        part = np.float32(ratio)
+        return self._sum(lambda i: turn(self.direction[i], self.rest[i], part, *self.kinds[i].diagonal))
+
+    def _sum(self, function: Callable[[int], float]) -> float:
+        return float(np.sum(parallel_map(function, range(len(self.kinds)))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """The mean, or one component: what its texels answer for (h, w), its Laplacian's strength at weights of mean square
+    1, and the mean square of its weights."""
+
+    share: NDArray[np.float32]
+    smooth: float
+    energy: float
+
+    @property
+    def strength(self) -> np.float32:
+        return np.float32(self.smooth * self.energy)
+
+    @property
+    def diagonal(self) -> tuple[NDArray[np.float32], np.float32, np.float32]:
+        return self.share, np.float32(4 * self.smooth), np.float32(self.energy)
+
+
+def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
     """The weights of all cameras for the model's mean and textures, each camera its own least squares, solved side by
-    side; returns the sum of squares before."""
+    side."""
     blocks = model.blocks
     textures = [block.textures for block in blocks]
     sizes = [block.count for block in blocks]
@@ -123,32 +179,31 @@ def fit_weights(shots: Shots, model: Model, finers: Finers, iterations: int, ste
     def split(rows: NDArray[np.float32]) -> Textures:
         return [np.ascontiguousarray(rows[:, a:b]) for a, b in pairwise(cuts)]
 
-    def apply(rows: NDArray[np.float32], photographs: bool) -> Look:
-        return look(
-            shots, model, finers, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
-            photographs=photographs, wanted=(False, False, True), step=step,
+    def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
+        found = look(
+            shots, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
+            photographs=photographs, wanted=(False, False, True),
         )  # fmt: skip
+        return np.concatenate(found.weights, axis=1)
 
     state = np.concatenate([block.weights for block in blocks], axis=1)
-    first = apply(state, True)
-    residual = np.concatenate(first.weights, axis=1)
+    rest = asked(state, True)
     # Whitened components draw pictures of about one size, so that the diagonal is about one number a camera
     energy = np.concatenate([np.square(texture).sum(axis=(1, 2, 3)) for texture in textures])
-    scale = np.float32(max(float(energy.mean()), 1e-12))
-    direction = residual.copy()
-    product = np.square(residual, dtype=np.float64).sum(axis=1)
+    ridge = np.float32(RIDGE * max(float(energy.mean()), 1e-12))
+    direction = rest.copy()
+    product = np.square(rest, dtype=np.float64).sum(axis=1)
     for _ in range(iterations):
-        image = np.concatenate(apply(direction, False).weights, axis=1) + np.float32(RIDGE) * scale * direction
+        image = asked(direction, False) + ridge * direction
         bent = (direction.astype(np.float64) * image).sum(axis=1)
         length = np.divide(product, bent, out=np.zeros_like(product), where=bent > 0).astype(np.float32)[:, None]
         state += length * direction
-        residual -= length * image
-        before, product = product, np.square(residual, dtype=np.float64).sum(axis=1)
+        rest -= length * image
+        before, product = product, np.square(rest, dtype=np.float64).sum(axis=1)
         turn = np.divide(product, before, out=np.zeros_like(product), where=before > 0).astype(np.float32)[:, None]
-        direction = residual + turn * direction
+        direction = rest + turn * direction
     for block, rows in zip(blocks, split(state), strict=True):
         block.weights = rows
-    return float(first.squares.sum())
 
 
 def whiten(model: Model, scales: Scales) -> None:
@@ -176,9 +231,3 @@ def whiten(model: Model, scales: Scales) -> None:
             (textures * signs[:, None].astype(np.float32)).reshape(-1, *block.textures.shape[1:])
         )
         block.weights = np.ascontiguousarray((q @ turn * signs * np.sqrt(rows)).astype(np.float32))
-
-
-def _dot(a: list[NDArray[np.float32]], b: list[NDArray[np.float32]]) -> float:
-    return float(
-        sum(np.einsum("i,i->", x.reshape(-1), y.reshape(-1), dtype=np.float64) for x, y in zip(a, b, strict=True))
-    )

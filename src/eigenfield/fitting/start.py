@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.files import scratch_array
-from eigenfield.fitting.kernels import draw_back
-from eigenfield.fitting.model import Block, Finers, Model, Rectangle
-from eigenfield.fitting.passes import NONE
+from eigenfield.fitting.kernels import aim, draw, put_back
+from eigenfield.fitting.model import Block, Model, Rectangle
+from eigenfield.fitting.passes import MINUS
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales
 from eigenfield.parallel import parallel_map, pieces
@@ -24,7 +24,6 @@ COLUMNS = 1 << 16  # numbers of a map that are summed at a time
 def principal_block(
     shots: Shots,
     model: Model,
-    finers: Finers,
     scales: Scales,
     count: int,
     rectangle: Rectangle,
@@ -40,12 +39,10 @@ def principal_block(
     size = int(np.prod(shape))
     seen = scales.coarse[scales.coarse > 0]
     floor = np.float32(FLOOR * (float(np.median(seen)) if len(seen) else 1.0) / len(shots))
-    fine_mean = finers.fine_mean(model.mean)
-    fine_mean = finers.fine_mean(model.mean)
     with scratch_array((len(shots), size), np.float32, work) as maps:
 
         def put(index: int) -> None:
-            found = _residual_map(shots, model, finers, fine_mean, index, floor)
+            found = _residual_map(shots, model, index, floor)
             maps[index] = found[:, top:bottom, left:right].reshape(-1)
 
         parallel_map(put, range(len(shots)))
@@ -63,19 +60,15 @@ def principal_block(
     return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
 
 
-def _residual_map(
-    shots: Shots, model: Model, finers: Finers, fine_mean: NDArray[np.float32], index: int, floor: np.float32
-) -> NDArray[np.float32]:
+def _residual_map(shots: Shots, model: Model, index: int, floor: np.float32) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph, on the grid."""
-    drawn = np.zeros((model.channels, *finers.fine), np.float32)
+    places, weight, size = shots.places(index), shots.weight(index), shots.surface.size
+    image = np.zeros((model.channels, *places.shape[:2]), np.float32)
+    aim(places, shots.photograph(index), (model.matrix / np.float32(255)).astype(np.float32), image)
+    draw(places, size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
-        finers.grid.up(model.sums(slice(index, index + 1))[0], drawn)
-    drawn += fine_mean
-    back, ones = np.zeros_like(drawn), np.zeros((1, *finers.fine), np.float32)
-    matrix = (model.matrix / np.float32(255)).astype(np.float32)
-    draw_back(shots.places(index), drawn, shots.photograph(index), matrix, shots.weight(index), 0, 1, back)
-    draw_back(shots.places(index), np.ones_like(ones), NONE, matrix[:1], shots.weight(index), 0, 1, ones)
-    coarse, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
-    finers.grid.down(back, coarse)
-    finers.grid.down(ones, part)
-    return np.asarray(coarse / np.maximum(part, floor), np.float32)
+        draw(places, size, model.sums(slice(index, index + 1))[0], MINUS, image)
+    back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
+    put_back(places, size, image, weight, back)
+    put_back(places, size, np.ones((1, *places.shape[:2]), np.float32), weight, part)
+    return np.asarray(back / np.maximum(part, floor), np.float32)

@@ -12,13 +12,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.format.deep import FLAT, MIME, TOP, crf_of, decode_deep, encode_deep
+from eigenfield.format.deep import MIME, TOP, crf_of, decode_deep, encode_deep
 from eigenfield.format.quantise import Affine
-from eigenfield.format.stored import PictureFile, files_of, keep_files, keep_weights
+from eigenfield.format.stored import PictureFile, files_of, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane
 
 STEP = 0.002  # of the code, in the photographs' range: half a grey level, unless a texture needs more range
+# Code of the value 0, and of most of a texture: 85 of 255 in 8 bits, exactly. Near the middle no code is exact, and
+# what every texture is off by adds up to grey levels.
+ZERO = 341
 ROWS = 4096  # of a picture of several textures, at most
 
 
@@ -29,8 +32,8 @@ def code_mean(mean: NDArray[np.float32], step: float, preset: int) -> tuple[NDAr
     if low >= -0.125 and high <= 1.125 and mean.shape[2] in (1, 3):  # a photograph's, but for what a filter overshoots
         affine = Affine(np.full(mean.shape[2], 1 / TOP), np.zeros(mean.shape[2]))
     else:
-        unit = max(STEP, max(-low / FLAT, high / (TOP - FLAT)))
-        affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(FLAT)))
+        unit = _unit(low, high)
+        affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO)))
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
     data = encode_deep(_stack(codes[None]), crf_of(step / float(affine.scale[0])), preset)
     stored = _unstack(decode_deep(data, "mean"), codes[None].shape)[0]
@@ -44,9 +47,9 @@ def code_basis(basis: Basis, step: float, preset: int) -> Basis:
     """
     count, height, _, channels = basis.textures.shape
     values = basis.values()
-    unit = max(STEP, float(np.abs(values).max(initial=0)) / (FLAT - 1))
+    unit = _unit(float(values.min(initial=0)), float(values.max(initial=0)))
     crf = crf_of(step / unit)
-    codes = np.rint(values / np.float32(unit) + FLAT).clip(0, TOP).astype(np.uint16)
+    codes = np.rint(values / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
     each = max(1, min(ROWS // (height * channels), count))
     starts = range(0, count, each)
 
@@ -54,33 +57,46 @@ def code_basis(basis: Basis, step: float, preset: int) -> Basis:
         part = codes[first : first + each]
         data = encode_deep(_stack(part), crf, preset)
         numbers = len(part) * channels
-        affine = Affine(np.full(numbers, unit), np.full(numbers, float(FLAT)))
+        affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO)))
         return PictureFile(data, MIME, 10, len(part), affine), _unstack(decode_deep(data, "textures"), part.shape)
 
     done = parallel_map(code, starts)
     stored = np.concatenate([part for _, part in done]) if done else codes
     scale = np.full((count, channels), unit, np.float32)
-    made = Basis(stored, scale, np.full_like(scale, FLAT), basis.weights, basis.grid, basis.corner)
+    made = Basis(stored, scale, np.full_like(scale, ZERO), basis.weights, basis.grid, basis.corner)
     keep_files(made, [file for file, _ in done])
+    return made
+
+
+def first_pictures(basis: Basis, count: int) -> Basis:
+    """The coded textures of a basis's first `count` picture files, with those."""
+    files = (files_of(basis) or ())[:count]
+    made = basis.truncated(sum(file.count for file in files))
+    keep_files(made, files)
     return made
 
 
 def with_weights(basis: Basis, weights: NDArray[np.float32], stream: bytes) -> Basis:
     """The same coded textures with other weights (Ne, N), and their coded form."""
     made = replace(basis, weights=weights)
-    keep_weights(made, stream)
+    keep_stream(made, stream)
     files = files_of(basis)
     if files is not None:
         keep_files(made, files)
     return made
 
 
-def code_plane(mean: NDArray[np.float32], bases: tuple[Basis, ...], step: float, preset: int) -> Plane:
+def coded_plane(mean: NDArray[np.float32], bases: tuple[Basis, ...], step: float, preset: int) -> Plane:
     """A plane of coded bases with its mean coded, as its files give it back."""
     values, file = code_mean(mean, step, preset)
     made = Plane(values, bases)
     keep_files(made, [file])
     return made
+
+
+def _unit(low: float, high: float) -> float:
+    """What a code stands for, so that low..high have codes."""
+    return max(STEP, -low / ZERO, high / (TOP - ZERO))
 
 
 def _stack(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:

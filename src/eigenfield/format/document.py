@@ -82,8 +82,8 @@ class Document:
             entry.fail("view-range", f"ends at byte {offset + length} of {len(self.glb.binary)}")
         return View(index, offset, length, stride)
 
-    def picture(self, reference: Value) -> memoryview:
-        """The bytes of a picture."""
+    def data(self, reference: Value) -> memoryview:
+        """The bytes of the buffer view whose index `reference` holds. FormatError as `view`."""
         view = self.view(reference)
         return self.glb.binary[view.offset : view.offset + view.length]
 
@@ -116,3 +116,8 @@ class Document:
             entry.fail("accessor-range", f"{length} entries do not fit into {view.length} bytes from byte {start}")
         shape, strides = ((length, width), (stride, dtype.itemsize)) if width > 1 else ((length,), (stride,))
         return np.ndarray(shape, dtype, self.glb.binary, view.offset + start, strides).copy()
+
+
+def all_finite(array: NDArray[Any]) -> bool:
+    """Whether every number is finite and at most `limits.LARGEST`."""
+    return bool((np.abs(array) <= limits.LARGEST).all())  # False for NaN

@@ -36,4 +36,5 @@ MAX_WEIGHTS = 2**28
 MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal
 MAX_OFFSET = 1_000
 
+LARGEST = 1e30  # of lengths, calibrations, scales, weights: squares and products stay finite
 ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

@@ -43,7 +43,6 @@ HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine;
 REACH = 2**20 - 1  # of lattice coordinates, either way
 MOST_FINE = 8  # last digits of x and y
 MOST_DIGITS = 18  # of texture coordinates in 0..1
-FARTHEST = 1e30  # of positions and texture coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +131,7 @@ def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     check_end(coder, where)
     mesh = _mesh(lattice, uv_bits, built, vertices, codes)
     assert mesh.uv is not None
-    if not (np.abs(mesh.vertices) <= FARTHEST).all() or not (np.abs(mesh.uv) <= FARTHEST).all():
+    if not (np.abs(mesh.vertices) <= limits.LARGEST).all() or not (np.abs(mesh.uv) <= limits.LARGEST).all():
         raise damaged("positions or texture coordinates that are not finite", where)
     return mesh
 

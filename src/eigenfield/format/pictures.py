@@ -94,7 +94,7 @@ def encode(codes: Codes, codec: str, quality: int) -> bytes:
     return buffer.getvalue()
 
 
-def encode_preview(codes: Codes, side: int = PREVIEW_SIDE) -> bytes:
+def encode_preview(codes: Codes, side: int = PREVIEW_SIDE, quality: int = PREVIEW_QUALITY) -> bytes:
     """(H, W, 1 or 3) uint8 as a JPEG of at most `side` texels on the longer side."""
     image = Image.fromarray(stacked(codes))
     scale = min(1.0, side / max(image.size))
@@ -102,7 +102,7 @@ def encode_preview(codes: Codes, side: int = PREVIEW_SIDE) -> bytes:
     if size != image.size:
         image = image.resize(size, Image.Resampling.LANCZOS)
     buffer = io.BytesIO()
-    image.save(buffer, "JPEG", quality=PREVIEW_QUALITY)
+    image.save(buffer, "JPEG", quality=quality)
     return buffer.getvalue()
 
 

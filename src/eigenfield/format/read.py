@@ -16,17 +16,11 @@ from eigenfield.format import limits
 from eigenfield.format.container import parse_glb, read_file
 from eigenfield.format.document import Document
 from eigenfield.format.findings import Finding, Findings
-from eigenfield.format.layout import (
-    BasisLayout,
-    Layout,
-    Picture,
-    PlaneLayout,
-    read_image,
-    read_layout,
-    read_mesh,
-)
+from eigenfield.format.layout import Layout, read_layout
+from eigenfield.format.layout_geometry import read_mesh
+from eigenfield.format.layout_planes import BasisLayout, Picture, PlaneLayout, read_image
 from eigenfield.format.quantise import mean_values
-from eigenfield.format.stored import PictureFile, keep_files, keep_weights
+from eigenfield.format.stored import PictureFile, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane, Scene
 
@@ -105,7 +99,6 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
         generator=layout.generator,
         colours=layout.cameras.colours,
         to_rgb=layout.to_rgb,
-        streams=layout.streams,
     )
 
 
@@ -140,7 +133,7 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
     made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
     keep_files(made, [_file(picture) for picture in basis.textures])
     if basis.stream is not None:
-        keep_weights(made, basis.stream)
+        keep_stream(made, basis.stream)
     return made
 
 

@@ -1,4 +1,4 @@
-"""Files that hold exactly what a mean, textures or weights are: saved as they are, never coded twice.
+"""Coded forms that hold exactly what a scene's parts are: saved as they are, nothing is coded twice.
 
 They are kept beside the objects, not in them: whoever makes a changed copy has an object without files.
 """
@@ -9,7 +9,9 @@ import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from eigenfield.camera import Camera
 from eigenfield.format.quantise import Affine
+from eigenfield.mesh import Mesh
 from eigenfield.scene import Basis, Plane
 
 
@@ -28,17 +30,33 @@ class PictureFile:
 _files: weakref.WeakKeyDictionary[Basis | Plane, tuple[PictureFile, ...]] = weakref.WeakKeyDictionary()
 
 
-_weights: weakref.WeakKeyDictionary[Basis, bytes] = weakref.WeakKeyDictionary()
+_streams: weakref.WeakKeyDictionary[Basis | Mesh, bytes] = weakref.WeakKeyDictionary()
+_cameras: weakref.WeakKeyDictionary[Camera, tuple[bytes, int, int]] = weakref.WeakKeyDictionary()
 
 
-def keep_weights(basis: Basis, stream: bytes) -> None:
-    """The coded form of a basis's weights."""
-    _weights[basis] = stream
+def keep_stream(owner: Basis | Mesh, stream: bytes) -> None:
+    """The coded form of a basis's weights, or of a mesh (docs/coding.md)."""
+    _streams[owner] = stream
 
 
-def weights_of(basis: Basis) -> bytes | None:
-    """What `keep_weights` was told; None where the weights have not been coded."""
-    return _weights.get(basis)
+def stream_of(owner: Basis | Mesh) -> bytes | None:
+    """What `keep_stream` was told; None where the owner has not been coded."""
+    return _streams.get(owner)
+
+
+def keep_cameras(cameras: Sequence[Camera], stream: bytes) -> None:
+    """The coded form of these cameras together."""
+    for index, camera in enumerate(cameras):
+        _cameras[camera] = (stream, index, len(cameras))
+
+
+def cameras_stream(cameras: Sequence[Camera]) -> bytes | None:
+    """The stream that holds exactly these cameras in this order; None where there is none."""
+    first = _cameras.get(cameras[0])
+    if first is None:
+        return None
+    expected = [(first[0], index, len(cameras)) for index in range(len(cameras))]
+    return first[0] if [_cameras.get(camera) for camera in cameras] == expected else None
 
 
 def keep_files(owner: Basis | Plane, files: Sequence[PictureFile]) -> None:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,22 +15,21 @@ from numpy.typing import NDArray
 from eigenfield import __version__
 from eigenfield.errors import OutputError
 from eigenfield.files import atomic_writer, refuse_existing
-from eigenfield.format import limits, pictures, quantise, strict_json
+from eigenfield.format import limits, pictures, strict_json
 from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
+from eigenfield.format.coarse import coarse_mesh
+from eigenfield.format.coded_pictures import Coded, CodedPlane, code_pictures, shortest
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
 from eigenfield.format.document import FLOAT, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
-from eigenfield.format.stored import PictureFile, files_of, weights_of
+from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
 from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_stream
-from eigenfield.progress import Progress, track
-from eigenfield.scene import Basis, Plane, Scene
+from eigenfield.progress import Progress
+from eigenfield.scene import Plane, Scene
 
 QUALITY = 70  # of the eigen textures, for avif
-SMALL_PREVIEW = 128  # texels of the preview beside pictures of a fit: as little as still tells what is there
-MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: there a byte gains as much (Tarot)
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
 
 
@@ -103,7 +101,7 @@ def _blocks(
         codec = pictures.DEFAULT_CODEC
     pictures.check_codec(codec or pictures.DEFAULT_CODEC, quality)
     check_writable(scene, path)
-    coded = _code_pictures(scene, codec, QUALITY if quality is None else quality, progress)
+    coded = code_pictures(scene, codec, QUALITY if quality is None else quality, progress)
     buffer = _Buffer()
     gltf = _gltf(scene, buffer, coded)
     text = json_bytes(gltf)
@@ -126,132 +124,25 @@ def check_readable(text: bytes, binary: bytes) -> None:
     read_layout(Document(written), Findings(strict=True))
 
 
-@dataclass(frozen=True, eq=False)
-class _CodedPlane:
-    """The files of a plane's mean and of each basis's textures, by rank."""
-
-    mean: PictureFile
-    bases: list[Sequence[PictureFile]]
-
-
-@dataclass(frozen=True, eq=False)
-class _Coded:
-    """preview: JPEG for `images[0]`, or None where the first plane's mean itself serves."""
-
-    preview: bytes | None
-    planes: list[_CodedPlane]
-
-
-def _code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progress | None) -> _Coded:
-    """Every picture of the scene, coded, the pictures shared among the threads."""
-    fine = round(100 - MEAN_SHARE * (100 - quality))
-    jobs: list[Callable[[], PictureFile]] = []
-    for plane in scene.planes:
-        jobs.append(_mean_job(scene, plane, codec, fine))
-        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.to_rgb is not None
-        for basis in plane.bases:
-            jobs.extend(_basis_jobs(basis, codec, quality, one_unit))
-    done = track(parallel_stream(lambda job: job(), jobs), "code textures", len(jobs), progress)
-    files = iter(list(done))
-    planes = []
-    for plane in scene.planes:
-        mean = next(files)
-        planes.append(_CodedPlane(mean, [_take(files, basis.count) for basis in plane.bases]))
-    first = planes[0].mean
-    plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
-    if plain and first.mime == "image/png" and first.affine is None:
-        return _Coded(None, planes)  # the mean itself serves
-    return _Coded(_preview(scene), planes)
-
-
-def _mean_job(scene: Scene, plane: Plane, codec: str | None, quality: int) -> Callable[[], PictureFile]:
-    kept = files_of(plane) if codec is None else None
-    if kept is not None:
-        return partial(_first, kept)
-    codes, affine = quantise.mean_codes(plane.mean, _harmonised(scene, plane))
-    return partial(_code, codes, codec or pictures.DEFAULT_CODEC, quality, affine)
-
-
-def _basis_jobs(basis: Basis, codec: str | None, quality: int, one_unit: bool) -> Iterator[Callable[[], PictureFile]]:
-    kept = files_of(basis) if codec is None else None
-    if kept is not None:
-        for file in kept:
-            yield partial(_first, (file,))
-        return
-    scale, zero = quantise.basis_scale(basis, one_unit)
-    for k in range(basis.count):
-        yield partial(_code_texture, basis, k, scale, zero, codec or pictures.DEFAULT_CODEC, quality)
-
-
-def _first(files: Sequence[PictureFile]) -> PictureFile:
-    return files[0]
-
-
-def _take(files: Iterator[PictureFile], count: int) -> list[PictureFile]:
-    """The next files that hold `count` textures together."""
-    found: list[PictureFile] = []
-    while sum(file.count for file in found) < count:
-        found.append(next(files))
-    return found
-
-
-def _harmonised(scene: Scene, plane: Plane) -> bool:
-    """Whether a plane holds colours brought together by gains, which may lie beyond 0..1 and yet are photographs'."""
-    return scene.colours is not None and plane is scene.planes[0]
-
-
-def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: quantise.Affine | None) -> PictureFile:
-    return PictureFile(pictures.encode(codes, codec, quality), pictures.MIME_TYPES[codec], 8, 1, affine)
-
-
-def _code_texture(
-    basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32], codec: str, quality: int
-) -> PictureFile:
-    affine = quantise.Affine(np.array(_shortest(scale[index])), np.array(_shortest(zero[index])))
-    return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
-
-
-def _preview(scene: Scene) -> bytes:
-    """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched."""
-    mean = scene.planes[0].mean if scene.to_rgb is None else _joined(scene, scene.to_rgb)
-    if scene.colours is not None:
-        mean = mean.clip(0, 1)
-    shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
-    if not quantise.photographic(mean) and not quantise.unit_range(shown):
-        low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
-        shown = (shown - low) / np.where(high > low, high - low, 1)
-    side = pictures.PREVIEW_SIDE if scene.to_rgb is None else SMALL_PREVIEW
-    return pictures.encode_preview(np.rint(shown * 255).clip(0, 255).astype(np.uint8), side)
-
-
-def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(H, W, 3): the means of all planes as R, G, B, at the size of the first; near enough for a preview."""
-    import cv2
-
-    height, width = scene.planes[0].mean.shape[:2]
-    resized = [cv2.resize(plane.mean, (width, height), interpolation=cv2.INTER_LINEAR) for plane in scene.planes]
-    stacked = np.concatenate([np.atleast_3d(np.asarray(one)) for one in resized], axis=2)
-    return np.asarray(stacked @ to_rgb.T, np.float32).clip(0, 1)
-
-
-def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
+def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
-    streams, mesh = _coded_geometry(scene)
-    primitive = _primitive(mesh, buffer)
+    mesh, poses = stream_of(scene.mesh), cameras_stream(scene.cameras)
+    primitive = _primitive(scene.mesh if mesh is None else coarse_mesh(scene.mesh), buffer)
+    proxy = {} if mesh is None else {"mesh": {"bufferView": buffer.view(mesh)}}
     first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
     planes = [
         _plane(plane, made, buffer, inline=index > 0 or coded.preview is not None)
         for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
     ]
-    needs = _needs(scene, coded, streams)
+    needs = _needs(scene, coded, mesh is not None, poses is not None)
     extension: dict[str, Any] = {
         "version": limits.VERSION if needs else limits.FIRST if scene.colours is None else limits.SECOND,
         "needs": needs,
-        **({"mesh": {"bufferView": buffer.view(streams["mesh"])}} if "mesh" in streams else {}),
+        **proxy,
         "planes": planes,
-        **({} if scene.to_rgb is None else {"toRGB": _shortest(scene.to_rgb.ravel())}),
-        "cameras": _cameras(scene, buffer, streams.get("cameras")),
+        **({} if scene.to_rgb is None else {"toRGB": shortest(scene.to_rgb.ravel())}),
+        "cameras": _cameras(scene, buffer, poses),
         "viewPlane": _view_plane(scene, buffer, bool(needs)),
         "reference": int(scene.reference),
         "settings": dict(scene.settings),
@@ -293,16 +184,6 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: _Coded) -> dict[str, Any]:
     }
 
 
-def _coded_geometry(scene: Scene) -> tuple[Mapping[str, bytes], Mesh]:
-    """The streams to write, and the mesh for viewers that know nothing of them."""
-    if not scene.streams:
-        return {}, scene.mesh
-    from eigenfield.format.geometry import checked_streams, coarse_mesh  # numba: most files need none
-
-    streams = checked_streams(scene)
-    return streams, coarse_mesh(scene.mesh) if "mesh" in streams else scene.mesh
-
-
 def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
     assert mesh.uv is not None
     short = len(mesh.vertices) < 65_536  # 65535 itself restarts a primitive and may not be an index
@@ -317,7 +198,7 @@ def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
     }
 
 
-def _plane(plane: Plane, coded: _CodedPlane, buffer: _Buffer, *, inline: bool) -> dict[str, Any]:
+def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) -> dict[str, Any]:
     """A plane's entry without the textures' buffer views; inline: the mean is its own picture, not images[0]."""
     height, width, channels = plane.mean.shape
     made: dict[str, Any] = {"channels": channels}
@@ -329,7 +210,7 @@ def _plane(plane: Plane, coded: _CodedPlane, buffer: _Buffer, *, inline: bool) -
         entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
         if basis.grid is not None:
             entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
-        stream = weights_of(basis)
+        stream = stream_of(basis)
         if stream is not None:
             entry["codedWeights"] = buffer.view(stream)
         elif basis.count:
@@ -354,17 +235,17 @@ def _picture(file: PictureFile) -> dict[str, Any]:
 def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
     """The numbers of `count` textures; of one, where all have the same."""
     each = numbers.reshape(count, -1)
-    return _shortest(each[:1] if (each == each[0]).all() else each)
+    return shortest(each[:1] if (each == each[0]).all() else each)
 
 
-def _needs(scene: Scene, coded: _Coded, streams: Mapping[str, bytes]) -> list[str]:
+def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool) -> list[str]:
     """The features that a reader must know to draw this scene rightly."""
     files = [file for plane in coded.planes for some in [[plane.mean], *plane.bases] for file in some]
     found = {
         "bits": any(file.bits != 8 for file in files),
-        "codedCameras": "cameras" in streams,
-        "codedMesh": "mesh" in streams,
-        "codedWeights": any(weights_of(basis) is not None for plane in scene.planes for basis in plane.bases),
+        "codedCameras": cameras,
+        "codedMesh": mesh,
+        "codedWeights": any(stream_of(basis) is not None for plane in scene.planes for basis in plane.bases),
         "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
         "stacks": any(file.count != 1 for file in files),
         "toRGB": scene.to_rgb is not None,
@@ -419,11 +300,6 @@ def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
         {"name": "proxy", "mesh": 0, "rotation": quaternion(turn)},
         {"name": "reference camera", "camera": 0, "translation": place, "rotation": quaternion(turn @ axes)},
     ]
-
-
-def _shortest(numbers: NDArray[Any]) -> list[float]:
-    """The shortest decimals that give the same numbers."""
-    return [float(str(number)) for number in numbers.ravel()]
 
 
 def check_writable(scene: Scene, path: Path | None) -> None:

@@ -27,8 +27,9 @@ class Part:
     """Bases of one plane with one grid and corner.
 
     first, channels: which of the K channels. weights: for each basis (Ne, n) float64. number: (tile rows, tile columns)
-    of the grid, each tile's index in `tiled`, -1 for tiles that are not kept. rows, columns: how it is made finer; None
-    where it has the atlas's size. rectangle: [top, bottom) x [left, right) outside which it is zero; None: nowhere.
+    of the grid, each tile's index in `tiled`, -1 for tiles that are not kept. taps: how it is made finer, along rows
+    and columns; None where it has the atlas's size. rectangle: [top, bottom) x [left, right) outside which it is zero;
+    None: nowhere.
     """
 
     first: int

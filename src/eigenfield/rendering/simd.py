@@ -59,6 +59,62 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
     return result(texture, rows, columns, down, across), generate
 
 
+def _square_of_taps(context, builder, signature, arguments):
+    """What both cubic intrinsics need: four pointers to a row's four texels each, their weights across as a vector,
+    weights down as vectors of one number each, and how to make such."""
+    vector, index = ir.VectorType(ir.FloatType(), LANES), ir.IntType(32)
+    data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
+    place, line, across, down = arguments[1:5]
+
+    def repeated(scalar):
+        lane = builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, ir.Constant(index, 0))
+        return builder.shuffle_vector(lane, lane, ir.Constant(ir.VectorType(index, LANES), [0] * LANES))
+
+    horizontal = ir.Constant(vector, ir.Undefined)
+    for i in range(LANES):
+        scalar = builder.extract_value(across, i)
+        horizontal = builder.insert_element(horizontal, scalar, ir.Constant(index, i))
+    pointers = []
+    for _ in range(LANES):
+        pointers.append(builder.bitcast(builder.gep(data, [place]), vector.as_pointer()))
+        place = builder.add(place, line)
+    return pointers, horizontal, [repeated(builder.extract_value(down, i)) for i in range(LANES)], repeated
+
+
+@intrinsic
+def take_cubic(typing_context, texture, first, line, across, down):
+    """sum_v down[v] sum_u across[u] texture[first + v line + u], float32, u and v from 0 to 3.
+
+    texture: flat float32 array. across, down: tuples of four float32. Nothing is checked. Sums in this order on every
+    machine: a fit's results go into files.
+    """
+
+    def generate(context, builder, signature, arguments):
+        pointers, horizontal, vertical, _ = _square_of_taps(context, builder, signature, arguments)
+        rows = [builder.fmul(builder.load(p, align=4), w) for p, w in zip(pointers, vertical, strict=True)]
+        total = builder.fadd(builder.fadd(rows[0], rows[1]), builder.fadd(rows[2], rows[3]))
+        total = builder.fmul(total, horizontal)
+        lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(LANES)]
+        return builder.fadd(builder.fadd(lanes[0], lanes[1]), builder.fadd(lanes[2], lanes[3]))
+
+    return types.float32(texture, first, line, across, down), generate
+
+
+@intrinsic
+def give_cubic(typing_context, texture, first, line, across, down, value):
+    """The transpose of `take_cubic`: texture[first + v line + u] += down[v] across[u] value."""
+
+    def generate(context, builder, signature, arguments):
+        pointers, horizontal, vertical, repeated = _square_of_taps(context, builder, signature, arguments)
+        share = builder.fmul(horizontal, repeated(arguments[5]))
+        for pointer, weight in zip(pointers, vertical, strict=True):
+            found = builder.fadd(builder.load(pointer, align=4), builder.fmul(share, weight))
+            builder.store(found, pointer, align=4)
+        return context.get_dummy_value()
+
+    return types.none(texture, first, line, across, down, value), generate
+
+
 @intrinsic
 def fetch_early(typing_context, texture, address):
     """Ask for texture[address] to be in the cache soon; no more than a hint. texture: flat; address: int32."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.rendering.weights import hull, nearest_on_segments, view_weights
+from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, view_weights
 from eigenfield.scene import Scene
 
 NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
-SLACK = 1e-9  # by which a node may lie outside a triangle and count as within
 
 
 def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDArray[np.float32]:

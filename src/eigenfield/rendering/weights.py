@@ -13,6 +13,7 @@ from eigenfield.viewplane import find_grid
 
 MODES = ("delaunay", "nearest3", "bilinear")
 FLAT = 1e-6  # triangles whose area is below this part of their longest side squared count as a line
+SLACK = 1e-9  # by which rounding may put a point on an edge outside of both its triangles, or cells
 
 
 def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> NDArray[np.float64]:
@@ -107,8 +108,9 @@ def _delaunay(
     weights = np.zeros(len(places))
     inside = _barycentric(point, places[triangles])
     best = int(np.argmax(inside.min(axis=1)))
-    if inside[best].min() >= 0:
-        weights[triangles[best]] = inside[best]
+    if inside[best].min() >= -SLACK:
+        part = np.maximum(inside[best], 0)
+        weights[triangles[best]] = part / part.sum()
         return weights
     return _on_segments(point, places, hull(triangles))
 
@@ -186,7 +188,7 @@ def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArra
     ahead, towards = np.roll(corners, -1, axis=1) - corners, point - corners
     inside = (ahead[..., 0] * towards[..., 1] - ahead[..., 1] * towards[..., 0]).min(axis=1)
     best = int(np.argmax(inside))
-    if inside[best] < 0:
+    if inside[best] < -SLACK:
         rim = np.concatenate([index[0], index[1:, -1], index[-1, -2::-1], index[-2::-1, 0]])
         return _on_segments(point, places, np.stack([rim[:-1], rim[1:]], axis=1))
     s, t = _in_cell(point, corners[best])

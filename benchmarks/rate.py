@@ -1,0 +1,166 @@
+"""Bytes against quality: our fitted files beside video codecs on the same photographs, in one run, every byte counted.
+
+    EIGENFIELD_DATA=captures python benchmarks/rate.py [CAPTURE...] [--out rate] [--peers svt-av1-2,...] [--store]
+
+CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: one fit by
+the defaults, coded at QUALITIES, each point a real .glb that is read and drawn again. SVT-AV1 walks the views row by
+row, to and fro or in a spiral, whichever is best at its middle rate. The loss without a codec stands
+beside: of ours before coding, of the peers' colours in 4:2:0.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import measure
+import numpy as np
+from evidence import captures, codecs, colour, ours, prepared, rates
+from evidence.codecs import VideoCodec
+from evidence.prepared import Prepared
+from numpy.typing import NDArray
+
+from eigenfield.evaluation.session import evenly
+from eigenfield.format import parts
+from eigenfield.parallel import parallel_map
+from eigenfield.pipeline import Options, open_fitted
+
+CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
+PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
+QUALITIES = (60, 70, 78, 84, 88, 91, 94, 97)
+CRF = (32, 40, 48, 56, 63)
+DOUBLING = 2.0  # dB of luma for twice the bytes, by which the orders are compared: they differ in both
+KEYS = ("psnr", "psnr_luma", "ssim")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("captures", nargs="*", metavar="CAPTURE")
+    parser.add_argument("--out", type=Path, default=Path("rate"))
+    parser.add_argument("--peers", default=",".join(PEERS), help="names of codecs, commas between; none: ours alone")
+    parser.add_argument("--store", action="store_true", help="append to benchmarks/results/rate.json")
+    options = parser.parse_args()
+    data = os.environ.get("EIGENFIELD_DATA")
+    known = captures.shared(Path(data)) if data else {}
+    names = options.captures or [name for name in CAPTURES if name in known]
+    if not names or any(name not in known for name in names):
+        raise SystemExit(f"captures: {', '.join(known) or 'none, EIGENFIELD_DATA names no folder that holds them'}")
+    chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
+    figures = {name: of_capture(known[name], options.out / name, chosen) for name in names}
+    for name, found in figures.items():
+        print(f"\n{name}\n{table(found)}")
+    if options.store:
+        print(measure.store("rate", {"captures": prepared.as_json(figures)}))
+
+
+def of_capture(capture: captures.Capture, work: Path, chosen: Sequence[VideoCodec]) -> dict[str, Any]:
+    """All curves of one capture, and Bjøntegaard's rates of ours against each peer."""
+    prepared.estimate(capture, work)
+    ready = prepared.prepare(capture, work)
+    views = range(len(ready.light_field))
+    photographs = parallel_map(lambda index: prepared.codes(ready.light_field, index), views)
+    mine, covered = our_curve(ready, photographs)
+    others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
+    some = evenly(views, 16)
+    there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
+    names = [ready.light_field.names[i] for i in some]
+    ceiling = rates.point(there_and_back, [photographs[i] for i in some], [covered[i] for i in some], names)
+    return {
+        "views": len(views),
+        "ceiling_420": {key: ceiling[key] for key in KEYS},
+        "curves": [mine, *others],
+        "bd": {one["name"]: {key: rates.bd_rate(one["points"], mine["points"], key) for key in KEYS} for one in others},
+        "left_out": [f"{codec.label}: {codecs.missing(codec)}" for codec in chosen if codecs.missing(codec)],
+    }
+
+
+def our_curve(ready: Prepared, photographs: list[NDArray[np.uint8]]) -> tuple[dict[str, Any], list[NDArray[np.bool_]]]:
+    """Ours, and the pixels that the proxy covers, which are those that count for all."""
+    field, points = ready.light_field, []
+    covered: list[NDArray[np.bool_]] = []
+    started = time.perf_counter()
+    with open_fitted(field, ready.mesh, Options(), work=ready.work) as coded:
+        fit = time.perf_counter() - started
+        for quality in QUALITIES:
+            started = time.perf_counter()
+            scene = coded(quality)
+            path = ready.work / f"quality-{quality}.glb"
+            scene.save(path, overwrite=True)
+            seconds = time.perf_counter() - started
+            covered = covered or ours.covered_pixels(path, range(len(field)), field)
+            figures = ours.figures(path, range(len(field)), photographs, covered, field.names)
+            points.append({
+                "parameter": quality, "bytes": path.stat().st_size, "parts": dict(parts(path)),
+                "textures": scene.textures, "encode_seconds": round(fit + seconds, 2), **figures,
+            })  # fmt: skip
+            print(f"{ready.capture.name}: quality {quality}: {line(points[-1])}", flush=True)
+    reached = scene.settings["fitted"]["psnr"]
+    uncoded = {name: one["uncoded"] for name, one in reached.items()}
+    return {
+        "name": "eigenfield", "points": points, "fit_seconds": round(fit, 1), "uncoded": uncoded,
+    }, covered  # fmt: skip
+
+
+def peer_curve(
+    codec: VideoCodec, ready: Prepared, photographs: list[NDArray[np.uint8]], covered: list[NDArray[np.bool_]]
+) -> dict[str, Any]:
+    """A peer's curve in the order of views that suits it best."""
+    field = ready.light_field
+    with tempfile.TemporaryDirectory() as folder:
+        orders = codecs.orders(field.cameras)
+
+        def point(crf: int, order: Sequence[int]) -> dict[str, Any]:
+            film, counted = [photographs[index] for index in order], [covered[index] for index in order]
+            names = [field.names[index] for index in order]
+            return codecs.measure_video(codec, crf, film, names, counted, Path(folder))
+
+        tried = {name: point(CRF[len(CRF) // 2], order) for name, order in orders.items()}
+        best = max(tried, key=lambda name: tried[name]["psnr_luma"] - DOUBLING * np.log2(tried[name]["bytes"]))
+        points = [tried[best] if crf == CRF[len(CRF) // 2] else point(crf, orders[best]) for crf in CRF]
+    for one in points:
+        print(f"{ready.capture.name}: {codec.label}, crf {one['parameter']}: {line(one)}", flush=True)
+    return {
+        "name": codec.label, "key": codec.name, "order": best,
+        "orders": {name: [one[key] for key in ("bytes", "psnr", "psnr_luma")] for name, one in tried.items()},
+        "points": points,
+    }  # fmt: skip
+
+
+def line(point: dict[str, Any]) -> str:
+    """A point in words."""
+    return (
+        f"{point['bytes'] / 1000:.1f} kB, {point['psnr']:.2f} dB RGB, {point['psnr_luma']:.2f} luma, "
+        f"SSIM {point['ssim']:.4f}, {point['encode_seconds']:.0f} s"
+    )
+
+
+def table(found: dict[str, Any]) -> str:
+    """What each peer needs beside ours at equal quality."""
+    mine, *others = found["curves"]
+    lines = []
+    for key, step in (("psnr", 0.5), ("psnr_luma", 0.5), ("ssim", 0.01)):
+        values = [point[key] for point in mine["points"]]
+        for quality in np.arange(np.ceil(min(values) / step) * step, max(values), step):
+            at = rates.bytes_at(mine["points"], float(quality), key)
+            if at is None:
+                continue
+            words = [f"{key} {quality:.2f}: {at / 1000:7.1f} kB"]
+            for one in others:
+                theirs = rates.bytes_at(one["points"], float(quality), key)
+                if theirs is not None:
+                    words.append(f"{one['name']} {theirs / 1000:.1f} kB ({100 * (at / theirs - 1):+.0f} %)")
+            if len(words) > 1:
+                lines.append(", ".join(words))
+    for name, of in found["bd"].items():
+        said = ", ".join(f"{key} {value:+.1f} %" for key, value in of.items() if value is not None)
+        lines.append(f"BD-rate against {name}: {said}")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    main()

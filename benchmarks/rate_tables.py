@@ -1,0 +1,67 @@
+"""Fitted files beside codecs, for docs/evaluation.md, made from benchmarks/results/rate.json (benchmarks/rate.py)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from evaluation_tables import NONE, newest, percent, table
+from evidence import rates
+from measure import RESULTS, runs
+
+ANCHOR = "SVT-AV1 preset 2, 4:2:0"
+
+
+def section() -> str:
+    """The section; nothing before anything was measured."""
+    if not (RESULTS / "rate.json").exists():
+        return ""
+    captures, shown = newest(runs("rate"))
+    lines = []
+    for run in shown:
+        machine = run["machine"]
+        lines.append(
+            f"[`{run['command']}`](../benchmarks/results/rate.json), commit {run['commit']}, {machine['processor']},"
+            f" {machine['cores']} cores, {run['date'][:10]}"
+        )
+    return f"### Fitted files\n\n{_points(captures)}\n{_deltas(captures)}\n" + ";\n".join(lines) + ".\n\n"
+
+
+def _points(captures: Mapping[str, Any]) -> str:
+    """Each of our points, and what the anchor needs for the same figure."""
+    rows = []
+    for name, one in captures.items():
+        mine, *others = one["curves"]
+        anchor = next((other for other in others if other["name"] == ANCHOR), None)
+        rows += [_row(name, point, anchor) for point in mine["points"]]
+    head = ["capture", "quality", "N", "kB", "RGB / luma dB", "SSIM", f"against {ANCHOR} at equal RGB / luma / SSIM"]
+    return table(head, rows)
+
+
+def _row(name: str, point: Mapping[str, Any], anchor: Mapping[str, Any] | None) -> list[str]:
+    return [
+        f"`{name}`", str(point["parameter"]), str(point["textures"]), f"{point['bytes'] / 1e3:.1f}",
+        f"{point['psnr']:.2f} / {point['psnr_luma']:.2f}", f"{point['ssim']:.4f}",
+        " / ".join(_saved(point, anchor, key) for key in ("psnr", "psnr_luma", "ssim")),
+    ]  # fmt: skip
+
+
+def _saved(point: Mapping[str, Any], anchor: Mapping[str, Any] | None, key: str) -> str:
+    theirs = None if anchor is None else rates.bytes_at(anchor["points"], point[key], key)
+    return NONE if theirs is None else f"{100 * (point['bytes'] / theirs - 1):+.0f} %"
+
+
+def _deltas(captures: Mapping[str, Any]) -> str:
+    """Bjøntegaard's rates against all peers, and what no coding costs."""
+    rows = []
+    for name, one in captures.items():
+        mine = one["curves"][0]
+        open_loop = " / ".join(f"{mine['uncoded'][plane]:.2f}" for plane in ("luma", "chroma"))
+        for other in one["curves"][1:]:
+            of = one["bd"][other["name"]]
+            rows.append([
+                f"`{name}`", f"{other['name']}, {other['order']}", percent(of["psnr"]), percent(of["psnr_luma"]),
+                percent(of["ssim"]), open_loop, f"{mine['fit_seconds']:.0f}",
+            ])  # fmt: skip
+    head = ["capture", "against", "BD-rate RGB", "luma", "SSIM", "ours uncoded, luma / chroma dB", "fit s"]
+    return table(head, rows)

@@ -1,0 +1,283 @@
+"""What a scene is before it has textures: options, cameras, mesh, the atlas's size, which photographs are encoded."""
+
+from __future__ import annotations
+
+import logging
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield import __version__
+from eigenfield.camera import Camera
+from eigenfield.capture import LightField, PhotoSet
+from eigenfield.errors import OptionError
+from eigenfield.fitting import PRESETS, Target
+from eigenfield.format.geometry import coded_cameras, coded_mesh
+from eigenfield.holdout import held_out_cameras
+from eigenfield.mesh import Mesh
+from eigenfield.progress import Progress
+from eigenfield.proxy import prepare_proxy
+from eigenfield.rendering import delaunay_triangles
+from eigenfield.scene import Plane, Scene, check_scale
+from eigenfield.texturing import (
+    FILTERS,
+    SIDE_LIMIT,
+    atlas_side,
+    check_density,
+    check_model,
+    texels_per_pixel,
+)
+from eigenfield.viewplane import ViewPlane, find_grid, fit_view_plane
+
+log = logging.getLogger("eigenfield.encode")
+
+DEFAULT_TEXTURES = 15
+FITS = ("none", "photographs")
+DEFAULT_DENSITY = 1.5
+ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
+
+
+@dataclass(frozen=True)
+class Options:
+    """What `encode` was asked for; each is described there."""
+
+    textures: int | None = None
+    uv_ssim: float | None = None
+    density: float = DEFAULT_DENSITY
+    atlas: int | tuple[int, int] | None = None
+    align: str | None = None
+    reference: str | None = None
+    hold_out: str | None = None
+    resampling: str = "bicubic"
+    harmonise: str | None = None
+    metres_per_unit: float | None = None
+    fit: str = "none"
+    preset: str = "balanced"
+    quality: int | None = None
+    target: Target | None = None
+
+    def __post_init__(self) -> None:
+        self._check_fit()
+        if self.textures is not None and self.textures < 0:
+            raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
+        check_scale(self.metres_per_unit)
+        if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
+            raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
+        if self.resampling not in FILTERS:
+            raise OptionError(
+                "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
+            )
+        check_density(self.density)
+        if self.harmonise is not None:
+            check_model(self.harmonise)
+        if self.atlas is not None:
+            sides = (self.atlas,) if isinstance(self.atlas, int) else self.atlas
+            if not all(1 <= side <= SIDE_LIMIT for side in sides):
+                raise OptionError(
+                    "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
+                )
+
+    def _check_fit(self) -> None:
+        if self.fit not in FITS:
+            raise OptionError("fit", f"no fit is called {self.fit}", remedy=f"use one of {', '.join(FITS)}")
+        if self.preset not in PRESETS:
+            raise OptionError("preset", f"no preset is called {self.preset}", remedy=f"use one of {', '.join(PRESETS)}")
+        if self.quality is not None and not 0 <= self.quality <= 100:
+            raise OptionError("quality", f"a quality of {self.quality}", remedy="use 0 to 100")
+        if self.target is not None:
+            self.target.check()
+            if self.fit == "none" or self.quality is not None:
+                other = "--fit none has no target" if self.fit == "none" else "a target is reached by the quality"
+                raise OptionError("target", other, remedy="leave one of them out")
+        asked = {"align": self.align, "uv-ssim": self.uv_ssim, "harmonise": self.harmonise}
+        maps = [name for name, value in asked.items() if value is not None]
+        if self.fit != "none" and maps:
+            raise OptionError(
+                "fit", f"--{maps[0]} is about texture maps, and a fit makes none", remedy="leave it out, or --fit none"
+            )
+
+
+def check_options(capture: LightField | PhotoSet, options: Options) -> None:
+    """Raise OptionError for what `encode` will refuse for this capture, before its cameras and proxy are estimated."""
+    if isinstance(capture, LightField):
+        places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
+    elif capture.layout is not None:
+        places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
+    elif options.hold_out == "odd":
+        return  # cameras will tell
+    else:
+        places = np.zeros((len(capture), 2))
+    held = held_out_cameras(options.hold_out, capture.names, places)
+    _reference(options.reference, capture.names, places, np.flatnonzero(~held))
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """A scene without its textures.
+
+    cameras: all, as the file keeps them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index
+    of the reference camera. atlas: width and height.
+    """
+
+    capture: LightField
+    options: Options
+    mesh: Mesh
+    cameras: tuple[Camera, ...]
+    view_plane: ViewPlane
+    coordinates: NDArray[np.float64]
+    held_out: NDArray[np.bool_]
+    reference: int
+    atlas: tuple[int, int]
+
+    @cached_property
+    def encoded(self) -> NDArray[np.int64]:
+        """(Ne,) indices of the cameras whose photographs count."""
+        return np.flatnonzero(~self.held_out)
+
+    @property
+    def encoded_cameras(self) -> list[Camera]:
+        return [self.cameras[index] for index in self.encoded]
+
+    @property
+    def encoded_names(self) -> list[str]:
+        return [self.capture.names[index] for index in self.encoded]
+
+    @property
+    def grid(self) -> NDArray[np.int64] | None:
+        """(rows, columns) of the encoded cameras, counted among themselves, where they stand on a grid; else None."""
+        return _grid_of(self.coordinates[self.encoded])
+
+    @cached_property
+    def _shown(self) -> LightField:
+        return self.capture.subset(self.encoded.tolist())
+
+    def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+        """Pixels and mask of an encoded camera, counted among those."""
+        picture = self._shown.photograph(index)
+        return picture.pixels, picture.mask
+
+    def scene(
+        self,
+        planes: tuple[Plane, ...],
+        own: Mapping[str, Any],
+        *,
+        colours: NDArray[np.float32] | None = None,
+        to_rgb: NDArray[np.float32] | None = None,
+    ) -> Scene:
+        """The scene with these planes. own: what the settings say of how they were made."""
+        density = float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, self.cameras[self.reference])
+        settings = {
+            "textures": max(sum(basis.count for basis in one.bases) for one in planes),
+            "atlas": list(self.atlas),
+            "density": round(density, 4),
+            "holdOut": self.options.hold_out,
+            **own,
+            **_scale(self.capture, self.options.metres_per_unit),
+            **_lenses(self.capture),
+            "photographs": {
+                "count": len(self.encoded),
+                "bytes": sum(self.capture.bytes(int(i)) for i in self.encoded),
+                "pixels": sum(camera.width * camera.height for camera in self.encoded_cameras),
+            },
+        }
+        return Scene(
+            mesh=self.mesh,
+            planes=planes,
+            names=tuple(self.capture.names),
+            cameras=self.cameras,
+            held_out=self.held_out,
+            reference=self.reference,
+            view_plane=self.view_plane,
+            triangles=delaunay_triangles(self.coordinates[self.encoded]),
+            settings=settings,
+            generator=f"eigenfield {__version__}",
+            colours=colours,
+            to_rgb=to_rgb,
+        )
+
+
+def make_draft(
+    capture: LightField,
+    proxy: str | os.PathLike[str] | Mesh,
+    options: Options,
+    triangles: int | None = None,
+    progress: Progress | None = None,
+) -> Draft:
+    """Cameras as a file keeps them, the proxy with an atlas; for a fit both as they are coded. triangles, errors: as
+    `encode`."""
+    names = [view.name for view in capture.views]
+    cameras = [view.camera.rounded() for view in capture.views]
+    plane = fit_view_plane(cameras)
+    coordinates = plane.coordinates([camera.centre for camera in cameras])
+    held = held_out_cameras(options.hold_out, names, coordinates)
+    encoded = np.flatnonzero(~held)
+    centre = _reference(options.reference, names, coordinates, encoded)
+    mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
+    if options.fit != "none":
+        mesh = coded_mesh(mesh, cameras, centre)
+        cameras = list(coded_cameras(cameras, mesh, _grid_of(coordinates)))
+        plane = fit_view_plane(cameras)
+        coordinates = plane.coordinates([camera.centre for camera in cameras])
+    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
+    return Draft(capture, options, mesh, tuple(cameras), plane, coordinates, held, centre, size)
+
+
+def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
+    grid = find_grid(coordinates)
+    return None if grid is None else grid.index.astype(np.int64)
+
+
+def _reference(
+    name: str | None, names: Sequence[str], coordinates: NDArray[np.float64], encoded: NDArray[np.int64]
+) -> int:
+    if name is None:
+        return int(encoded[np.argmin(np.linalg.norm(coordinates[encoded], axis=1))])
+    if name not in names:
+        raise OptionError("reference", f"no camera is called {name}", remedy="eigenfield inspect lists the names")
+    index = names.index(name)
+    if index not in encoded:
+        raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")
+    return index
+
+
+def _atlas_size(options: Options, mesh: Mesh, camera: Camera, encoded: Sequence[Camera]) -> tuple[int, int]:
+    if options.atlas is None:
+        pixels = sum(one.width * one.height for one in encoded)
+        side = atlas_side(mesh, camera, options.density, pixels)
+        reached = side * texels_per_pixel(mesh, camera)
+        if reached < 0.98 * options.density:
+            log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)
+        return side, side
+    return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+
+
+def _scale(capture: LightField, asked: float | None) -> dict[str, float]:
+    """What the settings say of the real size: as asked, or metres where the capture's parameters were in metres."""
+    in_metres = capture.format == "hci" and capture.layout is not None and capture.layout.measured
+    scale = 1.0 if asked is None and in_metres else asked
+    return {} if scale is None else {"metresPerUnit": scale}
+
+
+def _lenses(capture: LightField) -> dict[str, Any]:
+    """The lenses that were removed, so that the photographs alone are enough to measure the scene by."""
+    lenses = [None if v.lens is None else [v.lens.model, list(v.lens.coefficients)] for v in capture.views]
+    return {"lenses": lenses} if any(lenses) else {}
+
+
+def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mesh) -> None:
+    """A world far from its origin loses pixels when its numbers become float32."""
+    points = mesh.vertices[:: max(1, len(mesh.vertices) // 100)]
+    worst = 0.0
+    for before, after in zip(exact, kept, strict=True):
+        (first, depth), (second, _) = before.project(points), after.project(points)
+        seen = (depth > 0) & (first > 0).all(axis=1) & (first < (before.width, before.height)).all(axis=1)
+        moved = np.abs(first - second)[seen]
+        worst = max(worst, float(moved.max(initial=0.0)))
+    if worst > ROUNDING_LIMIT:
+        log.warning("float32 cameras move the mesh by %.2f px: shift the world's origin to the array", worst)

@@ -1,0 +1,162 @@
+"""The quality at which a file reaches what it is to reach, found by coding it a few times."""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Generic, TypeVar
+
+import numpy as np
+
+from eigenfield.errors import OptionError
+from eigenfield.fitting.fit import Coded
+from eigenfield.fitting.shots import Shots
+from eigenfield.format import encode_scene
+from eigenfield.metrics import psnr, ssim, to_codes
+from eigenfield.parallel import parallel_stream
+from eigenfield.rendering import Renderer
+from eigenfield.scene import Scene
+
+T = TypeVar("T")
+
+log = logging.getLogger("eigenfield.fit")
+
+TRIES = 7  # codings at most
+LOWEST, HIGHEST = 20, 99  # qualities that are tried: below the first one the pictures are no pictures
+FIRST = 80
+NEAR = 0.985  # of a size that is asked for: near enough
+WHOLE = 0.999  # of a pixel's samples: it is covered
+MEASURED = 48  # cameras, evenly spread, by which a PSNR or SSIM is judged
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a file is to reach: at most `size` bytes, or at least this PSNR (dB, RGB) or SSIM, the means over captured
+    cameras (docs/measures.md); one of them."""
+
+    size: int | None = None
+    psnr: float | None = None
+    ssim: float | None = None
+
+    def check(self) -> None:
+        """Raises OptionError `target` for none, several, or one that cannot be."""
+        given = [(name, value) for name, value in vars(self).items() if value is not None]
+        if len(given) != 1:
+            names = ", ".join(f"--target-{name}" for name, _ in given) or "no target"
+            raise OptionError("target", f"{names} at a time", remedy="say one: size, psnr or ssim")
+        name, value = given[0]
+        low, high = {"size": (1000, math.inf), "psnr": (1, 99), "ssim": (0, 1)}[name]
+        if not low < value < high:
+            raise OptionError("target", f"{name} of {value:g}", remedy=f"say one between {low:g} and {high:g}")
+
+    def met(self, tried: Tried[T]) -> bool:
+        """Whether a file is within it."""
+        if self.size is not None:
+            return tried.size <= self.size
+        return tried.measured >= self.wanted
+
+    @property
+    def wanted(self) -> float:
+        """The PSNR or SSIM asked for."""
+        return float(self.ssim if self.psnr is None else self.psnr)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, eq=False)
+class Tried(Generic[T]):
+    """A file at a quality: its bytes, and what it reaches of what was asked for (0 for a size)."""
+
+    quality: int
+    size: int
+    measured: float
+    result: T
+
+
+def search(target: Target, code: Callable[[int], Tried[T]]) -> tuple[Tried[T], bool]:
+    """The largest file within a size, or the smallest that reaches a PSNR or SSIM, and whether there is one; else the
+    nearest to it. At most TRIES codings; size and measures are taken to rise with quality."""
+    tried: dict[int, Tried[T]] = {}
+    low, high = LOWEST - 1, HIGHEST + 1  # the answer lies between, both excluded: low is too little or unknown
+    quality = FIRST
+    while len(tried) < TRIES and low + 1 < high:
+        one = tried[quality] = code(quality)
+        log.info("quality %d: %d bytes, %.4f", quality, one.size, one.measured)
+        met = target.met(one)
+        if target.size is not None and met and one.size >= NEAR * target.size:
+            break
+        if met == (target.size is not None):
+            low = quality
+        else:
+            high = quality
+        quality = _next(target, list(tried.values()), low, high)
+    good = [one for one in tried.values() if target.met(one)]
+    if good:
+        return (max if target.size is not None else min)(good, key=lambda one: one.size), True
+    return (min if target.size is not None else max)(tried.values(), key=lambda one: one.quality), False
+
+
+def _next(target: Target, tried: list[Tried[T]], low: int, high: int) -> int:
+    """Where a line through the two tries nearest the target meets it, within low..high; the middle with one try."""
+    goal = math.log(target.size) if target.size is not None else target.wanted
+
+    def value(one: Tried[T]) -> float:
+        return math.log(one.size) if target.size is not None else one.measured
+
+    inside = sorted(tried, key=lambda one: abs(value(one) - goal))[:2]
+    if len(inside) == 2 and inside[0].quality != inside[1].quality and value(inside[0]) != value(inside[1]):
+        a, b = inside
+        slope = (value(b) - value(a)) / (b.quality - a.quality)
+        guess = a.quality + (goal - value(a)) / slope if slope > 0 else (low + high) / 2
+    else:
+        guess = (low + high) / 2
+    rounded = math.floor(guess) if target.size is not None else math.ceil(guess)
+    return min(max(rounded, low + 1), high - 1)
+
+
+def reach(target: Target, coded: Callable[[int], Scene], shots: Shots) -> Scene:
+    """The scene whose file reaches the target, by `coded`, which makes one at a quality; where none does, the nearest,
+    with a warning that says why."""
+
+    def code(quality: int) -> Tried[Scene]:
+        scene = coded(quality)
+        return Tried(quality, len(encode_scene(scene)), 0.0 if target.size else _measured(target, scene, shots), scene)
+
+    found, met = search(target, code)
+    if not met and target.size is not None:
+        log.warning(
+            "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
+            target.size,
+            found.size,
+        )
+    elif not met:
+        log.warning(
+            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.wanted,
+            found.measured,
+        )  # fmt: skip
+    return found.result
+
+
+def reached(planes: dict[str, Coded]) -> dict[str, dict[str, float]]:
+    """What a scene's settings say of its fit: dB of each plane's channels before and after coding."""
+    return {name: {"uncoded": round(one.uncoded, 3), "coded": round(one.coded, 3)} for name, one in planes.items()}
+
+
+def _measured(target: Target, scene: Scene, shots: Shots) -> float:
+    """The mean PSNR or SSIM over covered pixels of some captured cameras, drawn as they are."""
+    renderer, count = Renderer(scene), len(shots)
+    encoded = scene.encoded
+
+    def of_camera(index: int) -> float | None:
+        picture = renderer.draw(scene.cameras[encoded[index]], np.eye(count)[index])
+        covered, weight = picture.coverage > WHOLE, shots.weight(index)
+        if weight.size:
+            covered &= weight > 0
+        measure = ssim if target.psnr is None else psnr
+        return measure(to_codes(picture.image), shots.photograph(index), covered)
+
+    some = np.unique(np.linspace(0, count - 1, min(count, MEASURED)).round().astype(int))
+    values = [value for value in parallel_stream(of_camera, some.tolist()) if value is not None]
+    return float(np.mean(values)) if values else 0.0

@@ -1,0 +1,58 @@
+"""benchmarks/rate.py: our curve and a codec's on the same photographs, and what is said of them."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+from captures import write_capture
+from evidence import codecs
+from evidence.captures import Capture
+
+import rate
+import rate_tables
+
+
+def test_what_a_peer_needs_at_equal_quality():
+    def points(scale):
+        return [
+            {"psnr": 28.0 + i, "psnr_luma": 29.0 + i, "ssim": 0.9 + 0.01 * i, "bytes": scale * 100_000 * 2**i}
+            for i in range(5)
+        ]
+
+    ours, theirs = {"name": "eigenfield", "points": points(1)}, {"name": "film", "points": points(2)}
+    said = rate.table({"curves": [ours, theirs], "bd": {"film": {"psnr": -50.0, "psnr_luma": None}}}).splitlines()
+    assert said[0] == "psnr 28.00:   100.0 kB, film 200.0 kB (-50 %)"
+    assert said[-1] == "BD-rate against film: psnr -50.0 %"
+    anchor = {"points": points(2)}
+    assert rate_tables._saved(ours["points"][2], anchor, "psnr") == "-50 %"
+    assert rate_tables._saved({"psnr": 20.0}, anchor, "psnr") == "–"
+    assert rate_tables._saved(ours["points"][2], None, "psnr") == "–"
+
+
+def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
+    folder = write_capture(tmp_path / "nine")
+    fast = dataclasses.replace(
+        codecs.VIDEO[0], options=tuple((k, "10" if k == "preset" else v) for k, v in codecs.VIDEO[0].options)
+    )
+    monkeypatch.setattr(rate, "QUALITIES", (50, 90))
+    monkeypatch.setattr(rate, "CRF", (30, 50, 60))
+    found = rate.of_capture(Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work", [fast])
+    mine, film = found["curves"]
+    assert [point["parameter"] for point in mine["points"]] == [50, 90]
+    assert mine["points"][0]["bytes"] < mine["points"][1]["bytes"]
+    assert mine["points"][0]["psnr"] < mine["points"][1]["psnr"]
+    assert mine["points"][1]["bytes"] == (tmp_path / "work" / "quality-90.glb").stat().st_size
+    assert set(film["orders"]) == {"rows", "serpentine", "spiral"}
+    chosen = film["orders"][film["order"]]
+    for size, _, luma in film["orders"].values():  # none is better in both
+        assert not (size < chosen[0] and luma > chosen[2])
+    assert found["ceiling_420"]["psnr"] > 35 and found["views"] == 9
+    assert set(found["bd"][film["name"]]) == {"psnr", "psnr_luma", "ssim"}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(rate_tables, "newest", lambda history: ({"nine": found}, []))
+        patch.setattr(rate_tables, "runs", lambda name: [])
+        patch.setattr(rate_tables, "RESULTS", tmp_path)
+        (tmp_path / "rate.json").touch()
+        text = rate_tables.section()
+    assert "| `nine` | 90 |" in text and film["order"] in text

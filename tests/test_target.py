@@ -1,0 +1,60 @@
+"""Searching for the quality at which a file reaches a target."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from eigenfield.errors import OptionError
+from eigenfield.fitting.target import HIGHEST, LOWEST, TRIES, Target, Tried, search
+
+
+def curve(bend: float):
+    """A rate-distortion curve: bytes and dB at a quality, and the qualities that were coded."""
+    coded = []
+
+    def code(quality: int) -> Tried[int]:
+        coded.append(quality)
+        size = int(20_000 * math.exp(quality / 20 + bend * (quality / 50) ** 2))
+        return Tried(quality, size, 10 + 0.25 * quality - bend * (quality / 50) ** 2, quality)
+
+    return code, coded
+
+
+@given(st.floats(0, 0.8), st.integers(LOWEST + 1, HIGHEST - 1))
+def test_the_largest_file_within_a_size(bend, at):
+    code, coded = curve(bend)
+    limit = code(at).size
+    coded.clear()
+    found, met = search(Target(size=limit), code)
+    assert met and found.size <= limit and len(coded) <= TRIES
+    assert found.size >= 0.9 * limit
+
+
+@given(st.floats(0, 0.8), st.integers(LOWEST + 1, HIGHEST - 1))
+def test_the_smallest_file_that_reaches_a_psnr(bend, at):
+    code, coded = curve(bend)
+    wanted = code(at).measured
+    coded.clear()
+    found, met = search(Target(psnr=wanted), code)
+    assert met and found.measured >= wanted and len(coded) <= TRIES
+    assert found.quality <= at + 1
+
+
+@pytest.mark.parametrize(("target", "quality"), [(Target(size=1001), LOWEST), (Target(psnr=90), HIGHEST)])
+def test_what_cannot_be_reached_gives_the_nearest(target, quality):
+    code, coded = curve(0.3)
+    found, met = search(target, code)
+    assert not met and found.quality == quality and len(coded) <= TRIES
+
+
+@pytest.mark.parametrize(
+    "target", [Target(), Target(size=5, psnr=3), Target(size=10), Target(ssim=1.5), Target(psnr=-1)]
+)
+def test_targets_that_cannot_be(target):
+    with pytest.raises(OptionError) as caught:
+        target.check()
+    assert caught.value.code == "target"
