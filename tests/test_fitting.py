@@ -186,6 +186,27 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
     assert np.mean([-10 * np.log10(np.square(e).mean()) for e in errors]) == pytest.approx(reached[1].coded, abs=0.02)
 
 
+def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(world):
+    shots, _, _ = world
+    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
+    lit = np.random.default_rng(4).uniform(0, 1, (len(shots), 2, 2, 3)).astype(np.float32)
+    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as plain:
+        for index, picture in enumerate(pictures):
+            rows, columns = np.clip((plain.places(index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
+            inside = (rows >= 0) & (rows < 2) & (columns >= 0) & (columns < 2)
+            picture[inside] = lit[index][rows[inside], columns[inside]]
+    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as glitter:
+        pixels = Pixels(glitter, glitter, glitter)
+        alone = fit_plane(pixels, settings_of(), "test", 1)
+        fit = fit_plane(pixels, replace(settings_of(), local=5), "test", 1)
+    assert len(alone.model.blocks) == 1
+    _, region = fit.model.blocks
+    top, bottom, left, right = region.rectangle
+    assert top <= 24 and left <= 24 and bottom >= 40 and right >= 40, region.rectangle  # all of it, little else
+    assert region.textures.shape == (5, 3, bottom - top, right - left) and (bottom - top) * (right - left) < 0.3 * 64**2
+    assert fit.uncoded > alone.uncoded + 3
+
+
 def test_components_that_are_not_worth_their_bytes_are_left_out(world):
     shots, _, _ = world
     settings = replace(settings_of(), textures=8)  # of which the photographs have three

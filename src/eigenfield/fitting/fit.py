@@ -19,9 +19,10 @@ from numpy.typing import NDArray
 from eigenfield.errors import CaptureError
 from eigenfield.fitting.model import Block, Composer, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
+from eigenfield.fitting.regions import find_regions
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
-from eigenfield.fitting.start import principal_block
+from eigenfield.fitting.start import principal_block, residual_energy
 from eigenfield.format.deep_code import code_basis, coded_plane, first_pictures, with_weights
 from eigenfield.format.stored import files_of
 from eigenfield.format.weight_coder import code_weights
@@ -45,13 +46,15 @@ WEIGHT_BYTES = 0.4  # of a coded weight: what weak components' take
 class PlaneSettings:
     """What one plane is to be.
 
-    matrix: (C, 3) its channels from R, G, B. mean, grid: (rows, columns) of mean and components. textures: N.
+    matrix: (C, 3) its channels from R, G, B. mean, grid: (rows, columns) of mean and components. textures: N. local:
+    so many more for each region that needs them.
     """
 
     matrix: NDArray[np.float32]
     mean: tuple[int, int]
     grid: tuple[int, int]
     textures: int
+    local: int = 0
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,7 @@ def fit_plane(
         rows, columns = settings.grid
         model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), work)]
         whiten(model, scales)
+        _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
     tick()
     left = residual(fitted, model)
     best = psnr_of(left.squares, left.pixels, channels)
@@ -141,6 +145,16 @@ def fit_plane(
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
     return OpenFit(name, pixels, model, scales, composer, uncoded)
+
+
+def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work: Path | None) -> None:
+    """So many components for each rectangle of which the model's leave most."""
+    if not count:
+        return
+    for rectangle in find_regions(*residual_energy(pixels.weighed, model)):
+        model.blocks.append(principal_block(pixels.fitted, model, scales, count, rectangle, work))
+        log.info("%d components of their own for rows %d to %d, columns %d to %d", count, *rectangle)
+    whiten(model, scales)
 
 
 def code_plane(

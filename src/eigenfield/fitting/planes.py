@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,17 +17,49 @@ from eigenfield.format.deep import SMALLEST, encoder_step
 from eigenfield.format.deep_code import STEP
 from eigenfield.progress import Progress
 
-# Densities, of the atlas's along an axis; chosen on Tarot
-TEXTURE_SHARE = 0.55  # of the components of luma
-CHROMA_MEAN_SHARE = 0.5
-CHROMA_SHARE = 0.3
-CHROMA_TEXTURES = 0.25  # of luma's number
+TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
 SIDE_STEP = 16  # atlas sides are multiples of this
-# Quantiser steps beside that of luma's components. A texel answers for as many pixels as its plane is less dense, so
-# that equal steps in the pictures are steps in proportion to density.
-MEAN_STEP = 0.7
-CHROMA_MEAN_STEP = 2.0
-CHROMA_STEP = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class Kind:
+    """How a plane is fitted and coded beside the others; chosen on Tarot.
+
+    matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis.
+    textures: of the number asked for. mean_step, texture_step: of the quantiser, beside that of luma's components at
+    the atlas's density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the
+    pictures are steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras.
+    """
+
+    name: str
+    matrix: NDArray[np.float32]
+    mean_share: float
+    texture_share: float
+    textures: float
+    mean_step: float
+    texture_step: float
+    thinned: bool
+
+    def settings(self, size: tuple[int, int], textures: int) -> PlaneSettings:
+        """Of a fit. size: (rows, columns) of the atlas. textures: luma's number, also of each region's own."""
+        count = round(self.textures * textures)
+        return PlaneSettings(
+            self.matrix, scaled(size, self.mean_share), scaled(size, self.texture_share), count, count
+        )  # fmt: skip
+
+    def rate(self, step: float, encoder: int) -> Rate:
+        """step: of luma's components, see `step_of`."""
+        return Rate(self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step, encoder)
+
+
+_LUMA, _CHROMA = split_matrix()
+KINDS = {
+    "luma-chroma": (
+        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.7, 1.0, False),
+        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 1.1, True),
+    ),
+    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.7, 1.0, False),),
+}
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
@@ -52,44 +84,40 @@ def fitted_textures(cameras: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """Luma and chroma fitted, not coded yet."""
+    """Planes fitted, not coded yet."""
 
-    luma: OpenFit
-    chroma: OpenFit
+    planes: tuple[tuple[Kind, OpenFit], ...]
     preset: Preset
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
     ) -> dict[str, Coded]:
-        """Both as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
+        """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
-        luma = Rate(MEAN_STEP * step, TEXTURE_SHARE * step, self.preset.encoder)
-        chroma = Rate(
-            CHROMA_MEAN_STEP * CHROMA_MEAN_SHARE * step, CHROMA_STEP * CHROMA_SHARE * step, self.preset.encoder
-        )
         return {
-            "luma": code_plane(self.luma, luma, grid, progress),
-            "chroma": code_plane(self.chroma, chroma, grid, progress),
+            kind.name: code_plane(fit, kind.rate(step, self.preset.encoder), grid, progress)
+            for kind, fit in self.planes
         }
 
 
 @contextlib.contextmanager
 def open_fits(
-    shots: Shots, textures: int, preset: Preset, work: Path | None = None, progress: Progress | None = None
+    shots: Shots,
+    textures: int,
+    preset: Preset,
+    kinds: Sequence[Kind] = KINDS["luma-chroma"],
+    work: Path | None = None,
+    progress: Progress | None = None,
 ) -> Iterator[Fits]:
-    """Luma and chroma planes fitted to `shots`, which stay open. textures: luma's number."""
-    luma_matrix, chroma_matrix = split_matrix()
+    """Planes fitted to `shots`, which stay open. textures: luma's number."""
     size = shots.surface.size
-    luma = PlaneSettings(luma_matrix, size, scaled(size, TEXTURE_SHARE), textures)
-    chroma = PlaneSettings(
-        chroma_matrix, scaled(size, CHROMA_MEAN_SHARE), scaled(size, CHROMA_SHARE), round(CHROMA_TEXTURES * textures)
-    )
     with thinned(shots, 2 if len(shots) >= THINNED_FROM else 1, work) as some:
-        yield Fits(
-            fit_plane(Pixels(shots, shots, some), luma, "luma", preset.rounds, work, progress),
-            fit_plane(Pixels(shots, some, some), chroma, "chroma", preset.rounds, work, progress),
-            preset,
-        )
+
+        def fit(kind: Kind) -> OpenFit:
+            pixels = Pixels(shots, some if kind.thinned else shots, some)
+            return fit_plane(pixels, kind.settings(size, textures), kind.name, preset.rounds, work, progress)
+
+        yield Fits(tuple((kind, fit(kind)) for kind in kinds), preset)
 
 
 def step_of(quality: int) -> float:
@@ -99,6 +127,8 @@ def step_of(quality: int) -> float:
 
 
 def scaled(size: tuple[int, int], share: float) -> tuple[int, int]:
-    """An atlas's size at another density, as the encoder takes it."""
+    """An atlas's size at another density, as the encoder takes it; at its own as it is."""
+    if share == 1:
+        return size
     rows, columns = (max(SMALLEST, SIDE_STEP * round(share * side / SIDE_STEP)) for side in size)
     return rows, columns

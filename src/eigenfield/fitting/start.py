@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.files import scratch_array
 from eigenfield.fitting.kernels import aim, draw, put_back
 from eigenfield.fitting.model import Block, Model, Rectangle
-from eigenfield.fitting.passes import MINUS
+from eigenfield.fitting.passes import MINUS, PIECE
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales
 from eigenfield.parallel import parallel_map, pieces
@@ -60,14 +60,39 @@ def principal_block(
     return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
 
 
-def _residual_map(shots: Shots, model: Model, index: int, floor: np.float32) -> NDArray[np.float32]:
-    """(C, h, w): what is left of a photograph, on the grid."""
-    places, weight, size = shots.places(index), shots.weight(index), shots.surface.size
+def residual_energy(shots: Shots, model: Model) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(h, w) of the grid: the squared error that a texel answers for, and the pixels, over all cameras."""
+
+    def piece(part: tuple[int, int]) -> NDArray[np.float32]:
+        added = np.zeros((2, *model.grid), np.float32)
+        for index in range(*part):
+            image = _residual_image(shots, model, index)
+            both = np.stack([np.square(image).sum(axis=0), np.ones(image.shape[1:], np.float32)])
+            put_back(shots.places(index), shots.surface.size, both, shots.weight(index), added)
+        return added
+
+    total = np.zeros((2, *model.grid), np.float32)
+    for added in parallel_map(piece, pieces(len(shots), PIECE)):
+        total += added
+    energy, seen = np.maximum(total, 0)
+    return energy, seen
+
+
+def _residual_image(shots: Shots, model: Model, index: int) -> NDArray[np.float32]:
+    """(C, h, w): what is left of a photograph."""
+    places, size = shots.places(index), shots.surface.size
     image = np.zeros((model.channels, *places.shape[:2]), np.float32)
     aim(places, shots.photograph(index), (model.matrix / np.float32(255)).astype(np.float32), image)
     draw(places, size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
         draw(places, size, model.sums(slice(index, index + 1))[0], MINUS, image)
+    return image
+
+
+def _residual_map(shots: Shots, model: Model, index: int, floor: np.float32) -> NDArray[np.float32]:
+    """(C, h, w): what is left of a photograph, on the grid."""
+    places, weight, size = shots.places(index), shots.weight(index), shots.surface.size
+    image = _residual_image(shots, model, index)
     back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
     put_back(places, size, image, weight, back)
     put_back(places, size, np.ones((1, *places.shape[:2]), np.float32), weight, part)
