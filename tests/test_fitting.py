@@ -301,6 +301,18 @@ def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     assert np.mean(values["fit"]) > 41  # 43.5 the other way, with more bytes: so smooth a scene is easy for both
 
 
+def test_one_plane_of_red_green_and_blue(fitted, tmp_path):
+    folder, output = fitted
+    capture = ef.open_capture(folder)
+    scene = ef.encode(capture, folder / "proxy.ply", fit="photographs", textures=4, quality=90, planes="rgb")
+    scene.save(tmp_path / "rgb.glb")
+    assert validate(tmp_path / "rgb.glb") == []
+    again = ef.load(tmp_path / "rgb.glb")
+    assert [plane.mean.shape[2] for plane in again.planes] == [3] and again.to_rgb is None
+    reached = [evaluate(one, capture)["image"]["encoded"]["psnr"] for one in (again, ef.load(output))]
+    assert reached[0] > 40 and parts(tmp_path / "rgb.glb")["total"] > parts(output)["total"], reached
+
+
 def test_saving_again_codes_nothing_twice(fitted, tmp_path):
     _, output = fitted
     ef.load(output).save(tmp_path / "again.glb")
@@ -321,7 +333,8 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
 @pytest.mark.parametrize(
     ("options", "code"),
     [({"align": "dis"}, "fit"), ({"uv_ssim": 0.9}, "fit"), ({"harmonise": "gain"}, "fit"), ({"fit": "magic"}, "fit"),
-     ({"quality": 101}, "quality"), ({"preset": "huge"}, "preset"), ({"keep_maps": "maps"}, "fit")],
+     ({"quality": 101}, "quality"), ({"preset": "huge"}, "preset"), ({"keep_maps": "maps"}, "fit"),
+     ({"planes": "hsv"}, "planes")],
 )  # fmt: skip
 def test_options_that_do_not_go_with_a_fit(fitted, options, code):
     folder, _ = fitted

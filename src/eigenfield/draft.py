@@ -16,7 +16,7 @@ from eigenfield import __version__
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import OptionError
-from eigenfield.fitting import PRESETS, Target
+from eigenfield.fitting import KINDS, PRESETS, Target
 from eigenfield.format.geometry import coded_cameras, coded_mesh
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
@@ -60,6 +60,7 @@ class Options:
     preset: str = "balanced"
     quality: int | None = None
     target: Target | None = None
+    planes: str = "luma-chroma"
 
     def __post_init__(self) -> None:
         self._check_fit()
@@ -87,6 +88,8 @@ class Options:
             raise OptionError("fit", f"no fit is called {self.fit}", remedy=f"use one of {', '.join(FITS)}")
         if self.preset not in PRESETS:
             raise OptionError("preset", f"no preset is called {self.preset}", remedy=f"use one of {', '.join(PRESETS)}")
+        if self.planes not in KINDS:
+            raise OptionError("planes", f"no planes are called {self.planes}", remedy=f"use one of {', '.join(KINDS)}")
         if self.quality is not None and not 0 <= self.quality <= 100:
             raise OptionError("quality", f"a quality of {self.quality}", remedy="use 0 to 100")
         if self.target is not None:

@@ -27,6 +27,7 @@ from eigenfield.capture import LightField
 from eigenfield.draft import DEFAULT_DENSITY, DEFAULT_TEXTURES, Draft, Options, check_options, make_draft
 from eigenfield.errors import CaptureError, OptionError
 from eigenfield.fitting import (
+    KINDS,
     PRESETS,
     Shots,
     Target,
@@ -72,6 +73,7 @@ def encode(
     preset: str = "balanced",
     quality: int | None = None,
     target: Target | None = None,
+    planes: str = "luma-chroma",
     keep_maps: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
@@ -92,14 +94,15 @@ def encode(
     pictures match the photographs, to textures as they are coded; `align`, `uv_ssim`, `harmonise`, `resampling` and
     `keep_maps` are about texture maps, which it does not make. preset: "small", "balanced" or "best", how finely and
     with how much patience a fit is made and coded. quality: 0 to 100 instead of the preset's. target: the quality is
-    searched for, until the file reaches it; where none does, the nearest, with a warning. keep_maps: folder for the
+    searched for, until the file reaches it; where none does, the nearest, with a warning. planes: "luma-chroma", or
+    "rgb", one plane for all of a fit as the paper has it. keep_maps: folder for the
     filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
     options = Options(
         textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
-        preset, quality, target,
+        preset, quality, target, planes,
     )  # fmt: skip
     if fit != "none" and keep_maps is not None:
         raise OptionError("fit", "a fit makes no texture maps to keep", remedy="leave --keep-maps out, or --fit none")
@@ -153,13 +156,16 @@ def _fitted(
     atlas = draft.atlas[1], draft.atlas[0]
     with (
         open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
-        open_fits(shots, component_count(asked, len(used)), PRESETS[options.preset], work, progress) as fits,
+        open_fits(
+            shots, component_count(asked, len(used)), PRESETS[options.preset], KINDS[options.planes], work, progress
+        ) as fits,
     ):
 
         def coded(quality: int) -> Scene:
             found = fits.coded(quality, draft.grid, progress)
             own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": reached(found)}}
-            return draft.scene(tuple(one.plane for one in found.values()), own, to_rgb=to_rgb())
+            matrix = None if options.planes == "rgb" else to_rgb()
+            return draft.scene(tuple(one.plane for one in found.values()), own, to_rgb=matrix)
 
         yield coded, shots
 

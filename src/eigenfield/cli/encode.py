@@ -152,6 +152,13 @@ Examples:
     help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first.",
 )
 @click.option(
+    "--planes",
+    type=click.Choice(["luma-chroma", "rgb"]),
+    default="luma-chroma",
+    show_default=True,
+    help="Of a fit: luma and chroma apart, each with its own mean, textures and densities, or R, G and B together.",
+)
+@click.option(
     "--target-size",
     callback=_size,
     metavar="SIZE",
@@ -205,6 +212,7 @@ def command(
     codec: str | None,
     fit: str | None,
     preset: str,
+    planes: str,
     quality: int | None,
     target_size: int | None,
     target_psnr: float | None,
@@ -241,7 +249,7 @@ def command(
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
         textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
-        preset, quality, target,
+        preset, quality, target, planes,
     )  # fmt: skip
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
@@ -276,7 +284,7 @@ def command(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
             metres_per_unit=metres_per_unit, fit=fit, preset=preset, quality=quality, target=target,
-            keep_maps=keep_maps, work=scratch, progress=progress,
+            planes=planes, keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         kept = fit != "none"  # coded already
         save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)
