@@ -29,7 +29,6 @@ TRIES = 7  # codings at most
 LOWEST, HIGHEST = 20, 99  # qualities that are tried: below the first one the pictures are no pictures
 FIRST = 80
 NEAR = 0.985  # of a size that is asked for: near enough
-WHOLE = 0.999  # of a pixel's samples: it is covered
 MEASURED = 48  # cameras, evenly spread, by which a PSNR or SSIM is judged
 
 
@@ -151,7 +150,7 @@ def _measured(target: Target, scene: Scene, shots: Shots) -> float:
 
     def of_camera(index: int) -> float | None:
         picture = renderer.draw(scene.cameras[encoded[index]], np.eye(count)[index])
-        covered, weight = picture.coverage > WHOLE, shots.weight(index)
+        covered, weight = picture.covered, shots.weight(index)
         if weight.size:
             covered &= weight > 0
         measure = ssim if target.psnr is None else psnr
