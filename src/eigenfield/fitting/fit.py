@@ -8,6 +8,7 @@ and mean are fitted again to what the coded ones draw, and the mean is coded las
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import accumulate
@@ -123,20 +124,18 @@ def fit_plane(
         model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), work)]
         whiten(model, scales)
     tick()
-    left = residual(fitted, model)
-    best = psnr_of(left.squares, left.pixels, channels)
+    reached = -math.inf
     for number in range(rounds if count else 0):
+        left = residual(fitted, model)
+        before, reached = reached, psnr_of(left.squares, left.pixels, channels)
+        log.info("%s, after round %d: %.2f dB", name, number, reached)
+        if reached - before < STOP:
+            break
         fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         whiten(model, scales)
-        left = residual(fitted, model)
-        reached = psnr_of(left.squares, left.pixels, channels)
         tick()
-        log.info("%s, round %d: %.2f dB (%.2f before)", name, number + 1, reached, best)
-        gained, best = reached - best, max(best, reached)
-        if gained < STOP:
-            break
     composer = make_composer(pixels.every.surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
@@ -203,7 +202,7 @@ def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
     for file in files_of(coded) or ():
         part = slice(len(gains), len(gains) + file.count)
         before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
-        less = np.einsum("nchw,hw->n", np.square(before) - np.square(before - after), share, dtype=np.float64)
+        less = np.einsum("nchw,nchw,hw->n", after, 2 * before - after, share, dtype=np.float64)  # b^2 - (b - a)^2
         gains += (less - price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
     return int(np.argmax([0.0, *np.cumsum(gains)]))
 
@@ -228,7 +227,8 @@ def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
     """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
     the root mean square over a picture's pixels."""
     share = scales.coarse[block.window]
-    drawn = np.sqrt((np.square(block.textures) * share).sum(axis=(1, 2, 3)) / max(float(scales.coarse.sum()), 1e-12))
+    squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
+    drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
     return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
 
 
