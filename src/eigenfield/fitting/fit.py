@@ -86,15 +86,6 @@ class OpenFit:
     uncoded: float
 
 
-@dataclass(frozen=True, eq=False)
-class Coded:
-    """A plane as its files give it back, and dB as `OpenFit.uncoded` before coding and after."""
-
-    plane: Plane
-    uncoded: float
-    coded: float
-
-
 def fit_plane(
     pixels: Pixels,
     settings: PlaneSettings,
@@ -144,14 +135,15 @@ def fit_plane(
 
 def code_plane(
     fit: OpenFit, rate: Rate, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-) -> Coded:
+) -> Plane:
     """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
+    As its files give it back.
 
     The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
     -1 where none stands, None where they do not.
     """
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
-    tick = _ticker(progress, f"code {fit.name}", 4)
+    tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[Basis] = []
     for block in open_loop.blocks:
@@ -169,13 +161,21 @@ def code_plane(
             bases[number] = with_weights(bases[number], block.weights, stream)
     tick()
     _fit_mean(pixels.fitted, model, scales, CLOSING_STEPS, fit.composer)
-    tick()
-    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.preset)
-    model.mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
-    reached = _drawn(pixels.every, model, fit.composer)
+    plane = coded_plane(np.ascontiguousarray(model.mean.transpose(1, 2, 0)), tuple(bases), rate.mean_step, rate.preset)
     tick(last=True)
-    return Coded(plane, fit.uncoded, reached)
+    return plane
+
+
+def coded_psnr(fit: OpenFit, plane: Plane) -> float:
+    """As `OpenFit.uncoded`, of the plane that the fit was coded to."""
+    blocks = []
+    for basis in plane.bases:
+        top, left = basis.corner
+        height, width = basis.textures.shape[1:3]
+        textures = np.ascontiguousarray(basis.values().transpose(0, 3, 1, 2))
+        blocks.append(Block((top, top + height, left, left + width), textures, basis.weights))
+    mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
+    return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
 def _code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.colour import split_matrix
-from eigenfield.fitting.fit import Coded, OpenFit, Pixels, PlaneSettings, Rate, code_plane, fit_plane
+from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
 from eigenfield.fitting.shots import Shots, thinned
 from eigenfield.format.deep import SMALLEST, encoder_step
 from eigenfield.format.deep_code import STEP
 from eigenfield.progress import Progress
+from eigenfield.scene import Plane
 
 # Densities, of the atlas's along an axis; chosen on Tarot
 TEXTURE_SHARE = 0.55  # of the components of luma
@@ -30,6 +31,7 @@ CHROMA_MEAN_STEP = 2.0
 CHROMA_STEP = 1.1
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
+UNMEASURED = 99.999  # dB
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
 
 
@@ -60,7 +62,7 @@ class Fits:
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-    ) -> dict[str, Coded]:
+    ) -> dict[str, Plane]:
         """Both as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         luma = Rate(MEAN_STEP * step, TEXTURE_SHARE * step, self.preset.encoder)
@@ -70,6 +72,16 @@ class Fits:
         return {
             "luma": code_plane(self.luma, luma, grid, progress),
             "chroma": code_plane(self.chroma, chroma, grid, progress),
+        }
+
+    def reached(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
+        """dB of each plane's channels before and after coding to `planes`, for a scene's settings. None: not measured
+        yet, a number that takes no fewer letters."""
+        fits = (self.luma, self.chroma)
+        coded = [UNMEASURED] * len(fits) if planes is None else map(coded_psnr, fits, planes)
+        return {
+            fit.name: {"uncoded": round(fit.uncoded, 3), "coded": round(value, 3)}
+            for fit, value in zip(fits, coded, strict=True)
         }
 
 

@@ -13,7 +13,6 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from eigenfield.errors import OptionError
-from eigenfield.fitting.fit import Coded
 from eigenfield.fitting.shots import Shots
 from eigenfield.format import encode_scene
 from eigenfield.metrics import psnr, ssim, to_codes
@@ -136,11 +135,6 @@ def reach(target: Target, coded: Callable[[int], Scene], shots: Shots) -> Scene:
             found.measured,
         )  # fmt: skip
     return found.result
-
-
-def reached(planes: dict[str, Coded]) -> dict[str, dict[str, float]]:
-    """What a scene's settings say of its fit: dB of each plane's channels before and after coding."""
-    return {name: {"uncoded": round(one.uncoded, 3), "coded": round(one.coded, 3)} for name, one in planes.items()}
 
 
 def _measured(target: Target, scene: Scene, shots: Shots) -> float:
