@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from evaluation_tables import NONE, newest, percent, table
+from evaluation_tables import NONE, newest, origin, percent, table
 from evidence import rates
 from measure import RESULTS, runs
 
@@ -17,14 +17,8 @@ def section() -> str:
     if not (RESULTS / "rate.json").exists():
         return ""
     captures, shown = newest(runs("rate"))
-    lines = []
-    for run in shown:
-        machine = run["machine"]
-        lines.append(
-            f"[`{run['command']}`](../benchmarks/results/rate.json), commit {run['commit']}, {machine['processor']},"
-            f" {machine['cores']} cores, {run['date'][:10]}"
-        )
-    return f"### Fitted files\n\n{_points(captures)}\n{_deltas(captures)}\n" + ";\n".join(lines) + ".\n\n"
+    source = origin(shown, "../benchmarks/results/rate.json")
+    return f"### Fitted files\n\n{_points(captures)}\n{_deltas(captures)}\n{source}\n"
 
 
 def _points(captures: Mapping[str, Any]) -> str:

@@ -25,23 +25,14 @@ def curve(bend: float):
 
 
 @given(st.floats(0, 0.8), st.integers(LOWEST + 1, HIGHEST - 1))
-def test_the_largest_file_within_a_size(bend, at):
+def test_the_largest_file_within_a_size_and_the_smallest_that_reaches_a_psnr(bend, at):
     code, coded = curve(bend)
-    limit = code(at).size
-    coded.clear()
-    found, met = search(Target(size=limit), code)
-    assert met and found.size <= limit and len(coded) <= TRIES
-    assert found.size >= 0.9 * limit
-
-
-@given(st.floats(0, 0.8), st.integers(LOWEST + 1, HIGHEST - 1))
-def test_the_smallest_file_that_reaches_a_psnr(bend, at):
-    code, coded = curve(bend)
-    wanted = code(at).measured
-    coded.clear()
-    found, met = search(Target(psnr=wanted), code)
-    assert met and found.measured >= wanted and len(coded) <= TRIES
-    assert found.quality <= at + 1
+    there = code(at)
+    for target in (Target(size=there.size), Target(psnr=there.measured)):
+        coded.clear()
+        found, met = search(target, code)
+        assert met and target.met(found) and len(coded) <= TRIES
+        assert found.size >= 0.9 * there.size if target.size else found.quality <= at + 1
 
 
 @pytest.mark.parametrize(("target", "quality"), [(Target(size=1001), LOWEST), (Target(psnr=90), HIGHEST)])

@@ -18,8 +18,9 @@ writes into FOLDER
     around.glb          twelve cameras around a column: no plane, no grid; two held out
     capture/            photographs of scene.glb's cameras (drawn by the software renderer) and transforms.json
     references.json     a list of pictures: {"scene", "file", "filter", "at": [X, Y] | null, "camera": name | null,
-                        "free": {"K", "R", "t"} | null, "count": number | null, "width", "height"}; `free` is drawn
-                        with weights by the ray, `count` with the first eigen textures alone
+                        "free": {"K", "R", "t"} | null, "count": number | null, "snapped": bool, "width", "height"};
+                        `free` is drawn with weights by the ray, `count` with the first eigen textures alone,
+                        `snapped` of vertices where the browser's rasteriser has them
     weights.json        view weights and novel cameras at places in the array and beyond: a list of {"scene", "places":
                         [{"at": [X, Y], "weights": {mode: one for each encoded camera}, "camera": K, R, t in a row}]}
     *.png               the pictures, drawn with one sample a pixel
@@ -43,13 +44,14 @@ import eigenfield as ef
 from eigenfield.camera import Camera
 from eigenfield.format import save
 from eigenfield.mesh import Mesh
-from eigenfield.rendering import novel_camera, renderer_of, view_weights
+from eigenfield.rendering import novel_camera, renderer_of, view_weights, viewpoint
 from eigenfield.scene import Plane, Scene
 from eigenfield.viewplane import find_grid, fit_view_plane
 
 WIDTH, HEIGHT = 320, 240
 SIDE = 128
 PLACES = ((0.0, 0.0), (0.37, -0.21), (-0.93, 0.71))
+SUBPIXELS = 16  # in which Chromium's software GPU places vertices: 4 bits, the fewest that OpenGL ES allows
 FREE = ((0.35, -0.2, -1.9), (-0.6, 0.3, -4.5))  # eyes before and behind the view plane z = -3
 
 
@@ -196,17 +198,28 @@ def _colours(count: int) -> np.ndarray:
     return np.concatenate([gains, offsets], axis=1).astype(np.float32)
 
 
-def references(folder: Path, name: str, places: tuple[tuple[float, float], ...] = PLACES) -> list[dict]:
-    loaded = ef.load(folder / name)
-    listed = []
+def references(
+    folder: Path, name: str, places: tuple[tuple[float, float], ...] = PLACES, snapped: bool = False
+) -> list[dict]:
+    """snapped: see `snapped_scene`."""
+    loaded, listed = ef.load(folder / name), []
+    views = [(str(number), {"at": at}) for number, at in enumerate(places)] + [("camera", {"camera": loaded.names[0]})]
     for filter in ("bilinear", "bicubic"):
-        for number, at in enumerate(places):
-            picture = ef.render(loaded, at=at, filter=filter, samples=1).to_uint8()
-            listed.append(_keep(folder, f"{Path(name).stem}-{filter}-{number}.png", picture, name, filter, at=at))
-        camera = loaded.names[0]
-        picture = ef.render(loaded, camera=camera, filter=filter, samples=1).to_uint8()
-        listed.append(_keep(folder, f"{Path(name).stem}-{filter}-camera.png", picture, name, filter, camera=camera))
+        for label, view in views:
+            drawn = snapped_scene(loaded, viewpoint(loaded, **view)[0]) if snapped else loaded
+            picture = ef.render(drawn, **view, filter=filter, samples=1).to_uint8()
+            file = f"{Path(name).stem}-{filter}-{label}.png"
+            listed.append(_keep(folder, file, picture, name, filter, snapped=snapped, **view))
     return listed
+
+
+def snapped_scene(made: Scene, camera: Camera) -> Scene:
+    """The scene with its vertices where a rasteriser that keeps SUBPIXELS of a pixel draws them from a camera."""
+    flat, depth = camera.project(made.mesh.vertices)
+    flat = np.rint(flat * SUBPIXELS) / SUBPIXELS
+    rays = np.concatenate([flat, np.ones((len(flat), 1))], axis=1) @ np.linalg.inv(camera.K).T
+    vertices = (rays * depth[:, None] - camera.t) @ camera.R
+    return replace(made, mesh=replace(made.mesh, vertices=vertices.astype(np.float32)))
 
 
 def _counted_references(folder: Path, name: str) -> list[dict]:
@@ -243,8 +256,8 @@ def free_camera(eye: np.ndarray) -> Camera:
 def _keep(folder: Path, file: str, picture: np.ndarray, name: str, filter: str, **what: object) -> dict:
     Image.fromarray(np.broadcast_to(picture, (*picture.shape[:2], 3))).save(folder / file)
     size = {"width": picture.shape[1], "height": picture.shape[0]}
-    missing = dict.fromkeys(("at", "camera", "free", "count"))
-    return {"scene": name, "file": file, "filter": filter, **missing, **what, **size}
+    others = {**dict.fromkeys(("at", "camera", "free", "count")), "snapped": False}
+    return {"scene": name, "file": file, "filter": filter, **others, **what, **size}
 
 
 def _capture(folder: Path, loaded: Scene) -> None:

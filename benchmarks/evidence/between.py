@@ -21,7 +21,6 @@ from eigenfield.capture import LightField
 from eigenfield.errors import OptionError
 from eigenfield.evaluation import Circle, match_photographs
 from eigenfield.evaluation.image import Figures, measure_picture, summary
-from eigenfield.evaluation.session import WHOLE
 from eigenfield.format import parts
 from eigenfield.metrics import psnr, to_codes
 from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
@@ -127,7 +126,7 @@ def ways_of(stage: Stage, peers: Peers) -> dict[str, Way]:
 def covered_by_proxy(stage: Stage, index: int, mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:
     """(H, W) the pixels that count for a camera: the proxy on all of a pixel's samples, and within the mask."""
     weights = np.zeros(len(stage.scene.encoded))
-    covered = stage.renderer.draw(stage.scene.cameras[index], weights, textures=0).coverage > WHOLE
+    covered = stage.renderer.draw(stage.scene.cameras[index], weights, textures=0).covered
     return covered if mask is None else covered & (mask > 0.5)
 
 

@@ -113,10 +113,17 @@ def spiral(rows: int, columns: int) -> list[int]:
 
 
 def orders(cameras: Sequence[Camera]) -> dict[str, list[int]]:
-    """The ways in which a codec may be led through an array's views, as positions in `cameras`."""
-    grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
+    """The ways in which a codec may be led through an array's views, as positions in `cameras`.
+
+    A grid is walked row by row, to and fro, or from its middle. Elsewhere the way is from each camera to the nearest
+    not yet visited, from the first camera for which that way is shortest.
+    """
+    centres = np.array([camera.centre for camera in cameras])
+    grid = find_grid(fit_view_plane(cameras).coordinates(centres))
     if grid is None:
-        return {"nearest": order(cameras)}
+        distances = np.linalg.norm(centres[:, None] - centres, axis=2)
+        greedy = [_greedy(distances, first) for first in range(len(centres))]
+        return {"nearest": min(greedy, key=lambda way: float(distances[way[:-1], way[1:]].sum()))}
     ways = {
         "rows": range(grid.rows * grid.columns), "serpentine": serpentine(grid.rows, grid.columns),
         "spiral": spiral(grid.rows, grid.columns),
@@ -125,19 +132,9 @@ def orders(cameras: Sequence[Camera]) -> dict[str, list[int]]:
 
 
 def order(cameras: Sequence[Camera]) -> list[int]:
-    """The order in which an array's views are coded, as positions in `cameras`.
-
-    A grid is walked row by row, to and fro. Elsewhere it is from each camera to the nearest not yet visited, from the
-    first camera for which that way is shortest.
-    """
-    centres = np.array([camera.centre for camera in cameras])
-    grid = find_grid(fit_view_plane(cameras).coordinates(centres))
-    if grid is not None:
-        return [int(grid.index.flat[place]) for place in serpentine(grid.rows, grid.columns)]
-    distances = np.linalg.norm(centres[:, None] - centres, axis=2)
-    ways = [_greedy(distances, first) for first in range(len(centres))]
-    lengths = [float(distances[way[:-1], way[1:]].sum()) for way in ways]
-    return ways[int(np.argmin(lengths))]
+    """The one of `orders` in which views are coded: to and fro where there is a grid."""
+    ways = orders(cameras)
+    return ways["serpentine" if "serpentine" in ways else "nearest"]
 
 
 def _greedy(distances: NDArray[np.float64], first: int) -> list[int]:

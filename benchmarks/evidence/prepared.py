@@ -17,7 +17,6 @@ import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.demo import draw_demo_capture
 from eigenfield.evaluation import Circle, read_circles
-from eigenfield.evaluation.session import WHOLE
 from eigenfield.mesh import Mesh
 from eigenfield.metrics import to_codes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
@@ -114,7 +113,7 @@ def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:
 def drawn(renderer: Renderer, scene: Scene, index: int) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """What the scene draws from its camera `index`, 8-bit, and the covered pixels."""
     picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter="bicubic")
-    return to_codes(picture.image), picture.coverage > WHOLE
+    return to_codes(picture.image), picture.covered
 
 
 def first_textures(scene: Scene, count: int) -> Scene:

@@ -35,7 +35,6 @@ from eigenfield.fitting import (
     open_fits,
     open_shots,
     reach,
-    reached,
     to_rgb,
 )
 from eigenfield.mesh import Mesh
@@ -109,10 +108,10 @@ def encode(
     place = None if work is None else Path(work)
     draft = make_draft(capture, proxy, options, triangles, progress)
     if options.fit != "none":
-        with _fitted(draft, place, progress) as (coded, shots):
-            if target is None:
-                return coded(PRESETS[draft.options.preset].quality if quality is None else quality)
-            return reach(target, coded, shots)
+        with _fitted(draft, place, progress) as (coded, measured, shots):
+            if target is not None:
+                return measured(reach(target, coded, shots))
+            return measured(coded(PRESETS[draft.options.preset].quality if quality is None else quality))
     layout = make_atlas(draft.mesh, *draft.atlas)
     with texture_maps(
         layout, draft.encoded_cameras, draft.photograph, resampling=resampling, work=place, progress=progress
@@ -142,15 +141,16 @@ def open_fitted(
     each. Errors as there."""
     options = replace(options, fit="photographs")
     draft = make_draft(capture, proxy, options, None, progress)
-    with _fitted(draft, None if work is None else Path(work), progress) as (coded, _):
-        yield coded
+    with _fitted(draft, None if work is None else Path(work), progress) as (coded, measured, _):
+        yield lambda quality: measured(coded(quality))
 
 
 @contextlib.contextmanager
 def _fitted(
     draft: Draft, work: Path | None, progress: Progress | None
-) -> Iterator[tuple[Callable[[int], Scene], Shots]]:
-    """Planes fitted to the draft's photographs, as scenes coded at a quality, and those photographs."""
+) -> Iterator[tuple[Callable[[int], Scene], Callable[[Scene], Scene], Shots]]:
+    """Planes fitted to the draft's photographs, as scenes coded at a quality; such a scene with the figures that it has
+    room for; and those photographs."""
     options, used = draft.options, draft.encoded_cameras
     asked = fitted_textures(len(used)) if options.textures is None else options.textures
     atlas = draft.atlas[1], draft.atlas[0]
@@ -162,12 +162,15 @@ def _fitted(
     ):
 
         def coded(quality: int) -> Scene:
-            found = fits.coded(quality, draft.grid, progress)
-            own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": reached(found)}}
-            matrix = None if options.planes == "rgb" else to_rgb()
-            return draft.scene(tuple(one.plane for one in found.values()), own, to_rgb=matrix)
+            own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": fits.reached()}}
+            planes, matrix = fits.coded(quality, draft.grid, progress), None if options.planes == "rgb" else to_rgb()
+            return draft.scene(tuple(planes.values()), own, to_rgb=matrix)
 
-        yield coded, shots
+        def measured(scene: Scene) -> Scene:
+            fitted = {**scene.settings["fitted"], "psnr": fits.reached(scene.planes)}
+            return replace(scene, settings={**scene.settings, "fitted": fitted})
+
+        yield coded, measured, shots
 
 
 def _decompose(

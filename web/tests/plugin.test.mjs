@@ -105,9 +105,8 @@ for (const name of [...new Set(references.map(({ scene }) => scene))]) {
         const share = within(picture, expected);
         assert.ok(share > 0.99, `${reference.file}: only ${share} of the pixels within two grey levels`);
       } else {
-        // three planes' sums in halves, each off by up to 0.7 grey levels: a pixel in thousands is off by three
-        const share = within(picture, expected);
-        assert.ok(largest <= 3 && share > 0.999, `${reference.file}: largest ${largest}, ${share} within two`);
+        const most = reference.snapped ? 1 : 2; // without the browser's rounding of vertices, and with it
+        assert.ok(largest <= most, `${reference.file}: largest ${largest}`);
       }
     }
     await close();
@@ -397,8 +396,10 @@ test("a browser that does not give codes of 10 bits draws nearly the same with 8
       const { largest, mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
       // half a code of 8 bits is up to 0.5 grey levels of the mean and 1 of a texture or of chroma, six times at weights
       // of about 1: as if random 0.3 and 1.4; where a texture is flat its errors are one level's, and are seen most
-      assert.ok(mean <= 1.2 && largest <= 8, `${reference.file}: mean ${mean}, largest ${largest}`);
-      assert.ok(mean > 0.35, `${reference.file}: mean ${mean}, as if all ten bits were there`);
+      // (all of them random would be 1.2 in the mean). The pictures here have means of 0.57 to 0.98, an eighth more
+      // either way is left to other codecs; with ten bits they have 0.11 at most.
+      assert.ok(mean <= 1.1 && largest <= 8, `${reference.file}: mean ${mean}, largest ${largest}`);
+      assert.ok(mean >= 0.5, `${reference.file}: mean ${mean}, as if all ten bits were there`);
     }
   }
   await close();

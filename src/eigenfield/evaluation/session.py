@@ -24,7 +24,6 @@ log = logging.getLogger("eigenfield.evaluation")
 
 LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 PNG_MAPS = CURVES = ("all", "sample", "none")
-WHOLE = 0.999  # of a pixel's samples
 SAMPLE = 16  # cameras that `sample` takes
 SAME_CAMERA = 0.5  # pixels by which two calibrations may differ without a warning
 
@@ -81,15 +80,14 @@ class Session:
         return picture
 
     def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """The picture drawn from camera `index`, (H, W, 3), and (H, W) where the proxy puts surface: on all samples of
-        a pixel, since one that it covers in part has the background mixed in. A harmonised scene gives an encoded
-        camera its own exposure; a held-out one has none that may be known."""
+        """The picture drawn from camera `index`, (H, W, 3), and (H, W) the pixels that the proxy covers. A harmonised
+        scene gives an encoded camera its own exposure; a held-out one has none that may be known."""
         row = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         picture = self.renderer.draw(
             self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], colour=colour
         )
-        return picture.image, picture.coverage > WHOLE
+        return picture.image, picture.covered
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """Camera `index`'s texture map as `encode` made it: (n, 3) values and (n,) visibility."""

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from eigenfield.fitting.colour import to_rgb
-from eigenfield.fitting.fit import Coded, Pixels, PlaneSettings, Rate, code_plane, fit_plane
+from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
 from eigenfield.fitting.planes import KINDS, PRESETS, Fits, fitted_textures, open_fits
 from eigenfield.fitting.shots import Shots, open_shots, thinned
-from eigenfield.fitting.target import Target, reach, reached
+from eigenfield.fitting.target import Target, reach
 
 __all__ = [
     "KINDS",
     "PRESETS",
-    "Coded",
     "Fits",
     "Pixels",
     "PlaneSettings",
@@ -19,12 +18,12 @@ __all__ = [
     "Shots",
     "Target",
     "code_plane",
+    "coded_psnr",
     "fit_plane",
     "fitted_textures",
     "open_fits",
     "open_shots",
     "reach",
-    "reached",
     "thinned",
     "to_rgb",
 ]

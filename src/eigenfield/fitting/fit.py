@@ -8,6 +8,7 @@ and mean are fitted again to what the coded ones draw, and the mean is coded las
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import accumulate
@@ -88,15 +89,6 @@ class OpenFit:
     uncoded: float
 
 
-@dataclass(frozen=True, eq=False)
-class Coded:
-    """A plane as its files give it back, and dB as `OpenFit.uncoded` before coding and after."""
-
-    plane: Plane
-    uncoded: float
-    coded: float
-
-
 def fit_plane(
     pixels: Pixels,
     settings: PlaneSettings,
@@ -127,20 +119,18 @@ def fit_plane(
         whiten(model, scales)
         _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
     tick()
-    left = residual(fitted, model)
-    best = psnr_of(left.squares, left.pixels, channels)
+    reached = -math.inf
     for number in range(rounds if count else 0):
+        left = residual(fitted, model)
+        before, reached = reached, psnr_of(left.squares, left.pixels, channels)
+        log.info("%s, after round %d: %.2f dB", name, number, reached)
+        if reached - before < STOP:
+            break
         fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         whiten(model, scales)
-        left = residual(fitted, model)
-        reached = psnr_of(left.squares, left.pixels, channels)
         tick()
-        log.info("%s, round %d: %.2f dB (%.2f before)", name, number + 1, reached, best)
-        gained, best = reached - best, max(best, reached)
-        if gained < STOP:
-            break
     composer = make_composer(pixels.every.surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
@@ -159,14 +149,15 @@ def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work:
 
 def code_plane(
     fit: OpenFit, rate: Rate, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-) -> Coded:
+) -> Plane:
     """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
+    As its files give it back.
 
     The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
     -1 where none stands, None where they do not.
     """
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
-    tick = _ticker(progress, f"code {fit.name}", 4)
+    tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[Basis] = []
     for block in open_loop.blocks:
@@ -184,13 +175,21 @@ def code_plane(
             bases[number] = with_weights(bases[number], block.weights, stream)
     tick()
     _fit_mean(pixels.fitted, model, scales, CLOSING_STEPS, fit.composer)
-    tick()
-    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.preset)
-    model.mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
-    reached = _drawn(pixels.every, model, fit.composer)
+    plane = coded_plane(np.ascontiguousarray(model.mean.transpose(1, 2, 0)), tuple(bases), rate.mean_step, rate.preset)
     tick(last=True)
-    return Coded(plane, fit.uncoded, reached)
+    return plane
+
+
+def coded_psnr(fit: OpenFit, plane: Plane) -> float:
+    """As `OpenFit.uncoded`, of the plane that the fit was coded to."""
+    blocks = []
+    for basis in plane.bases:
+        top, left = basis.corner
+        height, width = basis.textures.shape[1:3]
+        textures = np.ascontiguousarray(basis.values().transpose(0, 3, 1, 2))
+        blocks.append(Block((top, top + height, left, left + width), textures, basis.weights))
+    mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
+    return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
 def _code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:
@@ -217,7 +216,7 @@ def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
     for file in files_of(coded) or ():
         part = slice(len(gains), len(gains) + file.count)
         before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
-        less = np.einsum("nchw,hw->n", np.square(before) - np.square(before - after), share, dtype=np.float64)
+        less = np.einsum("nchw,nchw,hw->n", after, 2 * before - after, share, dtype=np.float64)  # b^2 - (b - a)^2
         gains += (less - price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
     return int(np.argmax([0.0, *np.cumsum(gains)]))
 
@@ -242,7 +241,8 @@ def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
     """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
     the root mean square over a picture's pixels."""
     share = scales.coarse[block.window]
-    drawn = np.sqrt((np.square(block.textures) * share).sum(axis=(1, 2, 3)) / max(float(scales.coarse.sum()), 1e-12))
+    squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
+    drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
     return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
 
 

@@ -52,6 +52,23 @@ def position(place, ratio, last):
     return min(max((place + half) * ratio - half, np.float32(0)), last)
 
 
+@kernel(inline=True)
+def footprint(place, across, down, width, height):
+    """Column and row of the texel left above where a pixel lands in a texture of width x height, and Catmull-Rom's
+    weights of the columns and rows from the one before on. place (2,): of `place_pixels`; across, down: see `position`.
+    """
+    x = position(place[0], across, np.float32(width - 1))
+    y = position(place[1], down, np.float32(height - 1))
+    left, top = np.int64(x), np.int64(y)
+    return left, top, filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+
+
+@kernel(inline=True)
+def tap(left, top, u, v, width, height):
+    """Where tap (u, v) of a footprint lies in its texture, those beyond the border on it."""
+    return min(max(top + v - 1, 0), height - 1) * width + min(max(left + u - 1, 0), width - 1)
+
+
 @kernel()
 def draw(places, size, texture, sign, image):
     """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom, where covered.
@@ -60,16 +77,14 @@ def draw(places, size, texture, sign, image):
     """
     channels, height, width = texture.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
-    right, bottom = np.float32(width - 1), np.float32(height - 1)
     flat, plane = texture.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
     for row in range(places.shape[0]):
         for pixel in range(places.shape[1]):
             if places[row, pixel, 0] < 0:
                 continue
-            x, y = position(places[row, pixel, 0], across, right), position(places[row, pixel, 1], down, bottom)
-            left, top, into = np.int64(x), np.int64(y), row * wide + pixel
-            a, d = filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+            left, top, a, d = footprint(places[row, pixel], across, down, width, height)
+            into = row * wide + pixel
             if 1 <= left < width - 2 and 1 <= top < height - 2:
                 first = (top - 1) * width + left - 1
                 for k in range(channels):
@@ -77,10 +92,9 @@ def draw(places, size, texture, sign, image):
             else:
                 for k in range(channels):
                     for v in range(4):
-                        line = k * plane + min(max(top + v - 1, 0), height - 1) * width
                         for u in range(4):
-                            at = line + min(max(left + u - 1, 0), width - 1)
-                            drawn[k * area + into] += sign * d[v] * a[u] * flat[at]
+                            value = flat[k * plane + tap(left, top, u, v, width, height)]
+                            drawn[k * area + into] += sign * d[v] * a[u] * value
 
 
 @kernel()
@@ -88,7 +102,6 @@ def put_back(places, size, image, weight, out):
     """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight (h, w) float32; (0, 0): ones."""
     channels, height, width = out.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
-    right, bottom = np.float32(width - 1), np.float32(height - 1)
     flat, plane, weighed = out.reshape(-1), height * width, weight.shape[0] > 0
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
     for row in range(places.shape[0]):
@@ -96,9 +109,8 @@ def put_back(places, size, image, weight, out):
             w = weight[row, pixel] if weighed else np.float32(1)
             if places[row, pixel, 0] < 0 or w <= 0:
                 continue
-            x, y = position(places[row, pixel, 0], across, right), position(places[row, pixel, 1], down, bottom)
-            left, top, source = np.int64(x), np.int64(y), row * wide + pixel
-            a, d = filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+            left, top, a, d = footprint(places[row, pixel], across, down, width, height)
+            source = row * wide + pixel
             if 1 <= left < width - 2 and 1 <= top < height - 2:
                 first = (top - 1) * width + left - 1
                 for k in range(channels):
@@ -106,9 +118,8 @@ def put_back(places, size, image, weight, out):
             else:
                 for k in range(channels):
                     for v in range(4):
-                        line = k * plane + min(max(top + v - 1, 0), height - 1) * width
                         for u in range(4):
-                            at = line + min(max(left + u - 1, 0), width - 1)
+                            at = k * plane + tap(left, top, u, v, width, height)
                             flat[at] += d[v] * a[u] * w * drawn[k * area + source]
 
 

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.colour import split_matrix
-from eigenfield.fitting.fit import Coded, OpenFit, Pixels, PlaneSettings, Rate, code_plane, fit_plane
+from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
 from eigenfield.fitting.shots import Shots, thinned
 from eigenfield.format.deep import SMALLEST, encoder_step
 from eigenfield.format.deep_code import STEP
 from eigenfield.progress import Progress
+from eigenfield.scene import Plane
 
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
 SIDE_STEP = 16  # atlas sides are multiples of this
@@ -62,6 +63,7 @@ KINDS = {
 }
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
+UNMEASURED = 99.999  # dB
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
 
 
@@ -91,12 +93,22 @@ class Fits:
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-    ) -> dict[str, Coded]:
+    ) -> dict[str, Plane]:
         """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         return {
             kind.name: code_plane(fit, kind.rate(step, self.preset.encoder), grid, progress)
             for kind, fit in self.planes
+        }
+
+    def reached(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
+        """dB of each plane's channels before and after coding to `planes`, for a scene's settings. None: not measured
+        yet, a number that takes no fewer letters."""
+        fits = [fit for _, fit in self.planes]
+        coded = [UNMEASURED] * len(fits) if planes is None else map(coded_psnr, fits, planes)
+        return {
+            fit.name: {"uncoded": round(fit.uncoded, 3), "coded": round(value, 3)}
+            for fit, value in zip(fits, coded, strict=True)
         }
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.kernels import advance, bend, put_back, turn
-from eigenfield.fitting.model import Composer, Model
+from eigenfield.fitting.model import COLUMNS, Composer, Model
 from eigenfield.fitting.passes import PIECE, Look, Textures, look
 from eigenfield.fitting.shots import Shots
 from eigenfield.parallel import parallel_map, pieces
@@ -189,7 +189,7 @@ def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
     state = np.concatenate([block.weights for block in blocks], axis=1)
     rest = asked(state, True)
     # Whitened components draw pictures of about one size, so that the diagonal is about one number a camera
-    energy = np.concatenate([np.square(texture).sum(axis=(1, 2, 3)) for texture in textures])
+    energy = np.concatenate([np.einsum("nchw,nchw->n", texture, texture) for texture in textures])
     ridge = np.float32(RIDGE * max(float(energy.mean()), 1e-12))
     direction = rest.copy()
     product = np.square(rest, dtype=np.float64).sum(axis=1)
@@ -217,17 +217,16 @@ def whiten(model: Model, scales: Scales) -> None:
         rows = len(weights)
         q, r = np.linalg.qr(weights)
         flat = block.textures.reshape(block.count, -1)
-        mixed = r.astype(np.float32) @ flat
-        share = np.sqrt(scales.coarse[block.window]).reshape(-1)
-        counted = mixed.reshape(len(mixed), model.channels, -1) * share
-        counted = counted.reshape(len(mixed), -1)
-        gram = (counted @ counted.T).astype(np.float64)
-        _, turn = np.linalg.eigh(gram)
+        share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), model.channels)
+        gram = np.zeros((block.count, block.count))
+        for first, last in pieces(flat.shape[1], COLUMNS):
+            part = flat[:, first:last] * share[first:last]
+            gram += part @ part.T
+        _, turn = np.linalg.eigh(r @ gram @ r.T)
         turn = turn[:, ::-1]
-        textures = (turn.T.astype(np.float32) @ mixed) / np.float32(np.sqrt(rows))
-        largest = np.abs(textures).argmax(axis=1)
-        signs = np.where(textures[np.arange(len(textures)), largest] < 0, -1.0, 1.0)
-        block.textures = np.ascontiguousarray(
-            (textures * signs[:, None].astype(np.float32)).reshape(-1, *block.textures.shape[1:])
-        )
+        textures = (turn.T @ r / np.sqrt(rows)).astype(np.float32) @ flat
+        low, high = textures.min(axis=1), textures.max(axis=1)
+        signs = np.where(-low > high, -1.0, 1.0)  # of the largest
+        textures *= signs[:, None].astype(np.float32)
+        block.textures = textures.reshape(-1, *block.textures.shape[1:])
         block.weights = np.ascontiguousarray((q @ turn * signs * np.sqrt(rows)).astype(np.float32))

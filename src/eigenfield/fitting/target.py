@@ -13,7 +13,6 @@ from typing import Generic, TypeVar
 import numpy as np
 
 from eigenfield.errors import OptionError
-from eigenfield.fitting.fit import Coded
 from eigenfield.fitting.shots import Shots
 from eigenfield.format import encode_scene
 from eigenfield.metrics import psnr, ssim, to_codes
@@ -29,7 +28,6 @@ TRIES = 7  # codings at most
 LOWEST, HIGHEST = 20, 99  # qualities that are tried: below the first one the pictures are no pictures
 FIRST = 80
 NEAR = 0.985  # of a size that is asked for: near enough
-WHOLE = 0.999  # of a pixel's samples: it is covered
 MEASURED = 48  # cameras, evenly spread, by which a PSNR or SSIM is judged
 
 
@@ -139,11 +137,6 @@ def reach(target: Target, coded: Callable[[int], Scene], shots: Shots) -> Scene:
     return found.result
 
 
-def reached(planes: dict[str, Coded]) -> dict[str, dict[str, float]]:
-    """What a scene's settings say of its fit: dB of each plane's channels before and after coding."""
-    return {name: {"uncoded": round(one.uncoded, 3), "coded": round(one.coded, 3)} for name, one in planes.items()}
-
-
 def _measured(target: Target, scene: Scene, shots: Shots) -> float:
     """The mean PSNR or SSIM over covered pixels of some captured cameras, drawn as they are."""
     renderer, count = Renderer(scene), len(shots)
@@ -151,7 +144,7 @@ def _measured(target: Target, scene: Scene, shots: Shots) -> float:
 
     def of_camera(index: int) -> float | None:
         picture = renderer.draw(scene.cameras[encoded[index]], np.eye(count)[index])
-        covered, weight = picture.coverage > WHOLE, shots.weight(index)
+        covered, weight = picture.covered, shots.weight(index)
         if weight.size:
             covered &= weight > 0
         measure = ssim if target.psnr is None else psnr

@@ -123,15 +123,13 @@ def _constrained(lines: list[NDArray[np.float64]], shape: tuple[int, int]) -> tu
 
 def _opened(flat: _Triangulation, valid: NDArray[np.bool_]) -> _Triangulation:
     """The triangles on valid ground, cut apart at the contours: vertices are doubled, edges there become borders."""
-    m = len(flat.tri)
-    t, k = np.nonzero((flat.across >= 0) & (flat.fixed == 0))
-    ground = _components(m, t, flat.across[t, k])
     owner = np.empty(valid.shape, np.int32)
-    label_pixels(flat.points, flat.tri, m, owner)
+    label_pixels(flat.points, flat.tri, len(flat.tri), owner)
+    fixed, ground = _without_gaps(flat, owner[owner >= 0])
     votes = np.bincount(ground[owner[owner >= 0]], np.where(valid, 1, -1)[owner >= 0], ground.max() + 1)
     kept = votes[ground] > 0
     renumber = np.cumsum(kept) - 1
-    across = np.where((flat.fixed == 0) & (flat.across >= 0), flat.across, -1)
+    across = np.where((fixed == 0) & (flat.across >= 0), flat.across, -1)
     across = np.where((across >= 0) & kept[across], renumber[across], -1)[kept]
     tri = flat.tri[kept]
     t, k = np.nonzero(across >= 0)
@@ -143,6 +141,33 @@ def _opened(flat: _Triangulation, valid: NDArray[np.bool_]) -> _Triangulation:
     points = np.zeros((vertex.max(initial=-1) + 1, 2), np.int64)
     points[vertex] = flat.points[tri.reshape(-1)]
     return _Triangulation(points, vertex.reshape(-1, 3), across, np.zeros_like(across))
+
+
+def _without_gaps(flat: _Triangulation, owners: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """`fixed` and each triangle's ground: what is connected, contours uncrossed. Ground without a pixel (up to half a
+    one, between contours that were straightened) would be a hole: it goes to the neighbour along its longest side.
+
+    owners: triangles with a pixel.
+    """
+    fixed = flat.fixed.copy()
+    while True:
+        t, k = np.nonzero((flat.across >= 0) & (fixed == 0))
+        ground = _components(len(flat.tri), t, flat.across[t, k])
+        owned = np.zeros(ground.max() + 1, np.bool_)
+        owned[ground[owners]] = True
+        t, k = np.nonzero((flat.across >= 0) & (fixed != 0) & ~owned[ground][:, None])
+        mine, other = ground[t], ground[flat.across[t, k]]
+        t, k, mine, other = (each[mine != other] for each in (t, k, mine, other))
+        if not len(t):
+            return fixed, ground
+        sides = flat.points[flat.tri[t, (k + 1) % 3]] - flat.points[flat.tri[t, (k + 2) % 3]]
+        pairs, pair = np.unique(np.stack([mine, other], axis=1), axis=0, return_inverse=True)
+        pair = pair.reshape(-1)
+        order = np.lexsort((-np.bincount(pair, np.hypot(*sides.T)), pairs[:, 0]))
+        longest = order[np.unique(pairs[order, 0], return_index=True)[1]]
+        t, k = (each[np.isin(pair, longest)] for each in (t, k))
+        u = flat.across[t, k]
+        fixed[t, k] = fixed[u, np.argmax(flat.across[u] == t[:, None], axis=1)] = 0
 
 
 def _components(n: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:

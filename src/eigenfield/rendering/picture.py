@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+WHOLE = 0.999  # of a pixel's samples
+
 
 @dataclass(frozen=True, eq=False)
 class Picture:
@@ -19,6 +21,12 @@ class Picture:
 
     image: NDArray[np.float32]
     coverage: NDArray[np.float32]
+
+    @property
+    def covered(self) -> NDArray[np.bool_]:
+        """(H, W): where the proxy puts surface on all samples of a pixel; one that it covers in part has the background
+        mixed in."""
+        return self.coverage > WHOLE
 
     def to_uint8(self) -> NDArray[np.uint8]:
         """(H, W, C) uint8: times 255, rounded half to even, clipped."""
