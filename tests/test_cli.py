@@ -66,10 +66,10 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
     output = tmp_path / "my scene.glb"
     code, out, err = run(
         "encode", folder, "--proxy", folder / "proxy.ply", "-o", output, "--atlas", 64, "-n", 3, "--hold-out", "odd",
-        "--keep-maps", tmp_path / "maps",
+        "--keep-maps", tmp_path / "maps", "--fit", "none",
     )  # fmt: skip
     assert code == 0, err
-    assert "3 eigen textures of 64x64 for 4 photographs" in out
+    assert "3 eigen textures, atlas 64x64, for 4 photographs" in out
     assert len(list((tmp_path / "maps").iterdir())) == 2 * 4 + 1
     assert run("validate", output)[0] == 0
     code, out, _ = run("info", output, "--json")

@@ -10,6 +10,7 @@ import numpy as np
 import pycolmap
 import pytest
 import trimesh
+from coded_scenes import fitted_scene
 from PIL import Image
 from scenes import tiny_scene
 
@@ -21,7 +22,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.proxy import read_mesh
 from eigenfield.rendering import Shots, draw_texture, renderer_of, view_weights
 from eigenfield.viewer import exports
-from eigenfield.viewer.exports.maps import camera_maps
+from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
 
 
@@ -47,6 +48,13 @@ def scene(tmp_path_factory):
     """Cameras of `tiny_scene` look along +z with y down; here they look somewhere else."""
     path = tmp_path_factory.mktemp("scene") / "scene.glb"
     turned_away(tiny_scene(cameras=9, held_out=(4,))).save(path, codec="png")
+    return ef.load(path)
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory):
+    path = tmp_path_factory.mktemp("fitted") / "fitted.glb"
+    fitted_scene().save(path)
     return ef.load(path)
 
 
@@ -105,6 +113,36 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
         np.testing.assert_allclose(texture, camera_maps(scene)(row, None), atol=1e-5)
     exports.write_obj_folder(scene, tmp_path / "two", textures=2)
     assert len(list((tmp_path / "two").glob("eigen_*.png"))) == 2
+
+
+def test_a_fitted_scene_s_obj_is_one_of_red_green_and_blue(fitted, tmp_path):
+    """Luma and chroma, of sizes of their own, as pictures of the whole atlas."""
+    exports.write_obj(fitted, tmp_path / "alone.obj")
+    exports.write_obj_folder(fitted, tmp_path / "it")
+    listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
+    mean = pixels(tmp_path / "it" / listing["mean"])
+    assert mean.shape == (*fitted.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
+    count = sum(basis.count for plane in fitted.planes for basis in plane.bases)
+    assert len(listing["textures"]) == count >= 4
+    maps = camera_maps(fitted)
+    for row, weights in enumerate(listing["weights"].values()):
+        texture = mean.astype(float)
+        for weight, entry in zip(weights, listing["textures"], strict=True):
+            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
+            texture += weight * (codes - entry["zero"]) * entry["scale"]
+        assert np.abs(texture - maps(row, None).clip(-0.1, 1.1)).mean() < 0.5 / 255
+    exports.write_obj_folder(fitted, tmp_path / "one", textures=1)
+    kept = sum(basis.count > 0 for plane in fitted.planes for basis in plane.bases)
+    assert len(list((tmp_path / "one").glob("eigen_*.png"))) == kept
+
+
+def test_a_fitted_scene_makes_a_colmap_model_of_its_colours(fitted, tmp_path):
+    exports.write_colmap(Shots(fitted), tmp_path / "model")
+    model = pycolmap.Reconstruction(tmp_path / "model" / "sparse" / "0")
+    colours = np.array([point.color for point in model.points3D.values()])
+    assert len(colours) > 100
+    wanted = 255 * mean_map(fitted).reshape(-1, 3)
+    assert np.abs(colours.mean(axis=0) - wanted.mean(axis=0)).max() < 12
 
 
 def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):
