@@ -205,8 +205,8 @@ def shaded() -> str:
         " The atlas has 1024² texels.\n\n"
         + table(["N", "OpenGL bilinear", "bicubic", "stereo", "browser", "by the ray"], rows)
         + "\n![Frames per second against the number of eigen textures](docs/frames.png)\n\n"
-        f"The viewer's script is {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js in it; the demo scene's first"
-        f" picture needs {first['first_picture_bytes'] / 1e3:.0f} of its {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
+        f"The viewer's script is {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js in it; the first picture of"
+        f" the demo, encoded with `--fit none`, needs {first['first_picture_bytes'] / 1e3:.0f} of its {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
     )
 
 

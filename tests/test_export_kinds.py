@@ -11,6 +11,7 @@ import pycolmap
 import pytest
 import trimesh
 from coded_scenes import fitted_scene
+from composed import layered_scene
 from PIL import Image
 from scenes import tiny_scene
 
@@ -115,24 +116,28 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
     assert len(list((tmp_path / "two").glob("eigen_*.png"))) == 2
 
 
-def test_a_fitted_scene_s_obj_is_one_of_red_green_and_blue(fitted, tmp_path):
-    """Luma and chroma, of sizes of their own, as pictures of the whole atlas."""
-    exports.write_obj(fitted, tmp_path / "alone.obj")
-    exports.write_obj_folder(fitted, tmp_path / "it")
+@pytest.mark.parametrize("kind", ["fitted", "layered"])
+def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitted, tmp_path, kind):
+    """Luma and chroma, of sizes and regions of their own, as pictures of the whole atlas that sum to the same maps."""
+    made = fitted if kind == "fitted" else layered_scene()
+    exports.write_obj(made, tmp_path / "alone.obj")
+    exports.write_obj_folder(made, tmp_path / "it")
     listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
     mean = pixels(tmp_path / "it" / listing["mean"])
-    assert mean.shape == (*fitted.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
-    count = sum(basis.count for plane in fitted.planes for basis in plane.bases)
-    assert len(listing["textures"]) == count >= 4
-    maps = camera_maps(fitted)
+    assert mean.shape == (*made.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
+    np.testing.assert_allclose(mean, mean_map(made).clip(0, 1), atol=0.51 / 255)
+    bases = [basis for plane in made.planes for basis in plane.bases]
+    assert len(listing["textures"]) == sum(basis.count for basis in bases)
+    maps = camera_maps(made)
     for row, weights in enumerate(listing["weights"].values()):
-        texture = mean.astype(float)
+        texture, off = mean_map(made).astype(float), 1e-5
         for weight, entry in zip(weights, listing["textures"], strict=True):
             codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
             texture += weight * (codes - entry["zero"]) * entry["scale"]
-        assert np.abs(texture - maps(row, None).clip(-0.1, 1.1)).mean() < 0.5 / 255
-    exports.write_obj_folder(fitted, tmp_path / "one", textures=1)
-    kept = sum(basis.count > 0 for plane in fitted.planes for basis in plane.bases)
+            off += 0.501 * abs(weight) * max(entry["scale"])  # half a code
+        np.testing.assert_allclose(texture, maps(row, None), atol=off)
+    exports.write_obj_folder(made, tmp_path / "one", textures=1)
+    kept = sum(basis.count > 0 for basis in bases)
     assert len(list((tmp_path / "one").glob("eigen_*.png"))) == kept
 
 
