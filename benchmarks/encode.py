@@ -32,7 +32,7 @@ def encode_arguments(output: Path, *more: str) -> list[str]:
     return [
         "-m", "eigenfield", "encode", str(capture), "--calibration", str(capture / "calibration" / "refined.json"),
         "--proxy", str(capture / "calibration" / "proxy.ply"), "--atlas", str(SIDE), "-n", str(TEXTURES),
-        "-o", str(output), "--overwrite", "--quiet", *more,
+        "--fit", "none",        "-o", str(output), "--overwrite", "--quiet", *more,
     ]  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""Whole captures: one `eigenfield encode` from a folder of photographs to a scene, and what it is worth."""
+"""Whole captures: one `eigenfield encode --fit none` from a folder of photographs to a scene, and what it is worth."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ class Case:
     uncoded: bool = False
 
 
+WAY = ("--fit", "none")  # what a mesh is worth: pictures are drawn through it as they were projected onto it
 CASES = {
     "tarot": Case("tarot_17x17_512", ("--hold-out", "odd", "--density", "1"), "ball.json", uncoded=True),
     "tarot-blind": Case("tarot_17x17_512", ("--hold-out", "odd", "--density", "1", "--blind"), "ball.json"),
@@ -41,15 +42,15 @@ CASES = {
 
 
 def scene(data: Path, case: Case) -> dict[str, Any]:
-    """`eigenfield encode FOLDER` and `eigenfield evaluate`: seconds, memory, coverage, quality."""
+    """`eigenfield encode FOLDER --fit none` and `eigenfield evaluate`: seconds, memory, coverage, quality."""
     folder = data / case.folder
     with tempfile.TemporaryDirectory() as place:
         output = Path(place) / "scene.glb"
-        encode = ["-m", "eigenfield", "encode", str(folder), "-o", str(output), *case.options]
+        encode = ["-m", "eigenfield", "encode", str(folder), "-o", str(output), *WAY, *case.options]
         made = measure.run(encode)
         figures = {
             "capture": case.folder,
-            "encode": f"eigenfield encode {' '.join((case.folder, *case.options))}",
+            "encode": f"eigenfield encode {' '.join((case.folder, *WAY, *case.options))}",
             "seconds": made["seconds"],
             "peak_anonymous_mb": made["peak_anonymous_mb"],
             "bytes": output.stat().st_size,

@@ -1,4 +1,4 @@
-"""How good scenes are: real captures and the demo, before and after coding, encoded and held-out views.
+"""How good scenes are, the paper's way: real captures and the demo, before and after coding, encoded and held out.
 
     EIGENFIELD_DATA=captures python benchmarks/quality.py [tarot] [tarot-5x4] [cube] [demo]
 
@@ -68,7 +68,8 @@ def coded(name: str, demo: Path, options: list[str]) -> dict[str, Any]:
     where, how, circles = capture_arguments(name, demo)
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "scene.glb"
-        arguments = ["-m", "eigenfield", "encode", *where, *how, "-o", str(output), "--overwrite", "--quiet", *options]
+        words = [*where, *how, "--fit", "none", "-o", str(output), "--overwrite", "--quiet", *options]
+        arguments = ["-m", "eigenfield", "encode", *words]
         encoded = measure.run(arguments)
         exclude = [] if circles is None else ["--exclude-circles", str(circles)]
         figures = json.loads(
@@ -91,7 +92,7 @@ def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
     where, how, circles = capture_arguments(name, demo)
     capture = open_capture(where)
     atlas = int(how[3]) if "--atlas" in how else None
-    scene = ef.encode(capture, how[1], **{"atlas": atlas, **options})
+    scene = ef.encode(capture, how[1], **{"atlas": atlas, "fit": "none", **options})
     figures = ef.evaluate(
         scene, capture, png_maps="none", circles=None if circles is None else read_circles(circles, scene.names)
     )
@@ -129,7 +130,7 @@ def exact(demo: Path) -> dict[str, Any]:
     grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
     assert grid is not None
     some = capture.subset(np.sort(grid.index[::4, ::4].reshape(-1)).tolist())
-    scene = ef.encode(some, demo / "capture" / "proxy.ply", textures=len(some.views) - 1, density=2.0)
+    scene = ef.encode(some, demo / "capture" / "proxy.ply", textures=len(some.views) - 1, density=2.0, fit="none")
     return ef.evaluate(scene, some, png_maps="none")["image"]
 
 

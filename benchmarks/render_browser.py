@@ -7,7 +7,8 @@ moving every frame; a frame lasts until a pixel of it can be read. Beside it, in
 plain texture. Without a GPU WebGL is SwiftShader, on the processor: the ratios are what counts. Needs Node.js,
 Chromium and `npm ci` in web/.
 
-DEMO.glb (what `eigenfield demo` writes) gives the bytes that must have come before the first picture.
+DEMO.glb (the capture that `eigenfield demo` draws, encoded with `--fit none`) gives the bytes that must have come
+before the first picture.
 """
 
 from __future__ import annotations

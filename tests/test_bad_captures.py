@@ -118,12 +118,17 @@ def warnings_of(folder, caplog, **options):
     return [record.getMessage() for record in caplog.records]
 
 
-def test_a_good_capture_is_not_warned_of(calibrated, caplog):
-    assert warnings_of(calibrated, caplog) == []
+BOTH = pytest.mark.parametrize("fit", ["none", "photographs"])
 
 
+@BOTH
+def test_a_good_capture_is_not_warned_of(calibrated, caplog, fit):
+    assert warnings_of(calibrated, caplog, fit=fit) == []
+
+
+@BOTH
 @pytest.mark.parametrize("kind", ["foreign", "moved"])
-def test_a_view_that_does_not_belong_is_named(calibrated, tmp_path, caplog, kind):
+def test_a_view_that_does_not_belong_is_named(calibrated, tmp_path, caplog, kind, fit):
     folder = copied(calibrated, tmp_path)
     if kind == "foreign":
         blocks = np.random.default_rng(1).integers(0, 255, (14, 16, 3), np.uint8)
@@ -132,27 +137,29 @@ def test_a_view_that_does_not_belong_is_named(calibrated, tmp_path, caplog, kind
         document = json.loads((folder / "transforms.json").read_text())
         document["frames"][2]["transform_matrix"][0][3] += 1.0
         (folder / "transforms.json").write_text(json.dumps(document))
-    (message,) = warnings_of(folder, caplog)
+    (message,) = warnings_of(folder, caplog, fit=fit)
     assert "view_02.png" in message and "--hold-out" in message
     caplog.clear()
-    assert warnings_of(folder, caplog, hold_out="view_02.png") == []
+    assert warnings_of(folder, caplog, hold_out="view_02.png", fit=fit) == []
 
 
-def test_photographs_that_agree_nowhere_are_said(calibrated, tmp_path, caplog):
+@BOTH
+def test_photographs_that_agree_nowhere_are_said(calibrated, tmp_path, caplog, fit):
     folder, random = copied(calibrated, tmp_path), np.random.default_rng(2)
     for path in (folder / "images").iterdir():
         Image.fromarray(random.integers(0, 255, (56, 64, 3), np.uint8)).save(path)
-    assert any("hardly agree" in message for message in warnings_of(folder, caplog))
+    assert any("hardly agree" in message for message in warnings_of(folder, caplog, fit=fit))
 
 
-def test_a_camera_that_looks_away_is_said(calibrated, tmp_path, caplog):
+@BOTH
+def test_a_camera_that_looks_away_is_said(calibrated, tmp_path, caplog, fit):
     folder = copied(calibrated, tmp_path)
     document = json.loads((folder / "transforms.json").read_text())
     pose = np.array(document["frames"][3]["transform_matrix"])
     pose[:3, :3] = pose[:3, :3] @ np.diag([-1, 1, -1])
     document["frames"][3]["transform_matrix"] = pose.tolist()
     (folder / "transforms.json").write_text(json.dumps(document))
-    assert any("view_03.png sees next to nothing" in message for message in warnings_of(folder, caplog))
+    assert any("view_03.png sees next to nothing" in message for message in warnings_of(folder, caplog, fit=fit))
 
 
 # files

@@ -66,10 +66,10 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
     output = tmp_path / "my scene.glb"
     code, out, err = run(
         "encode", folder, "--proxy", folder / "proxy.ply", "-o", output, "--atlas", 64, "-n", 3, "--hold-out", "odd",
-        "--keep-maps", tmp_path / "maps",
+        "--keep-maps", tmp_path / "maps", "--fit", "none",
     )  # fmt: skip
     assert code == 0, err
-    assert "3 eigen textures of 64x64 for 4 photographs" in out
+    assert "3 eigen textures, atlas 64x64, for 4 photographs" in out
     assert len(list((tmp_path / "maps").iterdir())) == 2 * 4 + 1
     assert run("validate", output)[0] == 0
     code, out, _ = run("info", output, "--json")
@@ -95,6 +95,28 @@ def test_encode_render_evaluate_info_validate(run, folder, tmp_path):
         assert code == 0, err
         assert (tmp_path / name).stat().st_size > 100
     assert not [path for path in tmp_path.rglob("*") if path.name.endswith(".part")]
+
+
+def test_without_a_word_the_photographs_are_fitted(run, folder, tmp_path, caplog):
+    """What a new user does: nothing is chosen, and everything can be done with the file."""
+    output, whole = tmp_path / "scene.glb", tmp_path / "whole.glb"
+    code, out, err = run("encode", folder, "--proxy", folder / "proxy.ply", "-o", output, "--hold-out", "odd")
+    assert code == 0 and err == "" and "atlas" in out
+    code, _, err = run("encode", folder, "--proxy", folder / "proxy.ply", "-o", whole, "--codec", "webp", "-n", 3)
+    assert code == 0, err
+    assert "--codec is about texture maps" in caplog.text and "--fit none" in caplog.text
+    assert run("validate", output)[0] == 0
+    facts = json.loads(run("info", output, "--json")[1])
+    assert facts["settings"]["fit"] == "photographs" and len(facts["planes"]) == 2
+    assert len(json.loads(run("info", whole, "--json")[1])["planes"]) == 1
+    code, out, err = run("evaluate", output, folder, "--plots", tmp_path / "plots")
+    assert code == 0 and "the scene was fitted" in out and "uv-curve.png" not in err
+    code, _, err = run("evaluate", output, folder, "--curve")
+    assert code == 2 and "--curve" in err and "--fit none" in err
+    assert run("render", output, "--at", "0.3,-0.2", "-o", tmp_path / "a.png")[0] == 0
+    for name, kind in (("page.html", "html"), ("obj", "obj"), ("maps", "maps"), ("model", "colmap")):
+        code, _, err = run("export", output, "-o", tmp_path / name, "--as", kind)
+        assert code == 0 and (tmp_path / name).exists(), err
 
 
 def copy_of(folder, tmp_path):

@@ -28,7 +28,7 @@ def capture(tmp_path_factory):
         patch.setattr(captures, "shaded_texture", lambda index, total: shaded_texture(0, total))
         write_capture(folder, cameras=row_grid(25, 64, 56))
     light_field = ef.open_capture(folder)
-    scene = ef.encode(light_field, folder / "proxy.ply", textures=4, hold_out="odd", density=1.5)
+    scene = ef.encode(light_field, folder / "proxy.ply", textures=4, hold_out="odd", density=1.5, fit="none")
     file = folder / "scene.glb"
     scene.save(file)
     return folder, light_field, ef.load(file), file
@@ -89,7 +89,7 @@ def test_pixels_outside_circles_are_counted_apart(capture):
 
 def test_off_a_grid_bilinear_weights_are_left_out_with_a_word(capture):
     folder, light_field, _, _ = capture
-    scene = ef.encode(light_field, folder / "proxy.ply", textures=2, hold_out="every:4", density=0.8)
+    scene = ef.encode(light_field, folder / "proxy.ply", textures=2, hold_out="every:4", density=0.8, fit="none")
     result = between(*start(scene, light_field), 2)
     assert "bilinear" not in [row["key"] for row in result["methods"]]
     assert "No bilinear view weights" in result["words"] and "Delaunay" in result["words"]

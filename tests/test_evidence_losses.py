@@ -26,7 +26,7 @@ def coded(tmp_path_factory):
     folder = write_capture(tmp_path_factory.mktemp("losses") / "capture", cameras=row_grid(9, 64, 56))
     light_field = ef.open_capture(folder)
     file = folder / "scene.glb"
-    ef.encode(light_field, folder / "proxy.ply", textures=3, density=1.0).save(file, quality=40)
+    ef.encode(light_field, folder / "proxy.ply", textures=3, density=1.0, fit="none").save(file, quality=40)
     return folder, light_field, file
 
 
@@ -55,7 +55,7 @@ def test_the_file_is_measured_as_evaluate_measures_it(coded):
 def test_with_all_components_truncation_loses_nothing(coded, tmp_path):
     folder, light_field, _ = coded
     file = tmp_path / "all.glb"
-    ef.encode(light_field, folder / "proxy.ply", textures=8, density=1.0).save(file, codec="webp")
+    ef.encode(light_field, folder / "proxy.ply", textures=8, density=1.0, fit="none").save(file, codec="webp")
     rows = {row["key"]: row for row in losses(file, light_field, alone=False)["rows"]}
     assert rows["truncation"]["psnr_of_mse"] == pytest.approx(rows["quantisation"]["psnr_of_mse"], abs=0.1)
     assert rows["codec"]["mse"] == pytest.approx(rows["file"]["mse"], rel=1e-6)  # webp keeps every code
@@ -65,7 +65,7 @@ def test_with_all_components_truncation_loses_nothing(coded, tmp_path):
 def test_harmonised_and_aligned_scenes_are_encoded_and_drawn_again_as_they_were(coded, tmp_path, options):
     folder, light_field, _ = coded
     file = tmp_path / "scene.glb"
-    scene = ef.encode(light_field, folder / "proxy.ply", textures=8, density=1.0, **options)
+    scene = ef.encode(light_field, folder / "proxy.ply", textures=8, density=1.0, fit="none", **options)
     scene.save(file, codec="webp")
     rows = {row["key"]: row for row in losses(file, light_field, alone=False)["rows"]}
     assert rows["codec"]["mse"] == pytest.approx(rows["file"]["mse"], rel=1e-6)
@@ -76,7 +76,7 @@ def test_encoding_again_gives_the_same_bytes(coded):
     _, light_field, file = coded
     scene = ef.load(file)
     again = encode_again(scene, as_encoded(scene, light_field))
-    first = ef.encode(light_field, file.parent / "proxy.ply", textures=3, density=1.0)
+    first = ef.encode(light_field, file.parent / "proxy.ply", textures=3, density=1.0, fit="none")
     for a, b in zip(again.planes, first.planes, strict=True):
         assert (a.mean == b.mean).all() and (a.bases[0].textures == b.bases[0].textures).all()
     codes = rounded_to_codes(again).planes[0].bases[0].textures
@@ -162,7 +162,7 @@ def test_wrong_cameras_cost_what_a_shift_brings_back(coded):
     wrong = dataclasses.replace(light_field, views=tuple(views))
     mesh = read_mesh(folder / "proxy.ply")
     scenes = {
-        kind: (ef.encode(capture, mesh, textures=2, density=1.0), capture)
+        kind: (ef.encode(capture, mesh, textures=2, density=1.0, fit="none"), capture)
         for kind, capture in {"true": light_field, "estimated": wrong}.items()
     }
     result = compare(scenes, list(light_field.names))

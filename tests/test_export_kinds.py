@@ -10,6 +10,8 @@ import numpy as np
 import pycolmap
 import pytest
 import trimesh
+from coded_scenes import fitted_scene
+from composed import layered_scene
 from PIL import Image
 from scenes import tiny_scene
 
@@ -21,7 +23,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.proxy import read_mesh
 from eigenfield.rendering import Shots, draw_texture, renderer_of, view_weights
 from eigenfield.viewer import exports
-from eigenfield.viewer.exports.maps import camera_maps
+from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
 
 
@@ -47,6 +49,13 @@ def scene(tmp_path_factory):
     """Cameras of `tiny_scene` look along +z with y down; here they look somewhere else."""
     path = tmp_path_factory.mktemp("scene") / "scene.glb"
     turned_away(tiny_scene(cameras=9, held_out=(4,))).save(path, codec="png")
+    return ef.load(path)
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory):
+    path = tmp_path_factory.mktemp("fitted") / "fitted.glb"
+    fitted_scene().save(path)
     return ef.load(path)
 
 
@@ -105,6 +114,40 @@ def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
         np.testing.assert_allclose(texture, camera_maps(scene)(row, None), atol=1e-5)
     exports.write_obj_folder(scene, tmp_path / "two", textures=2)
     assert len(list((tmp_path / "two").glob("eigen_*.png"))) == 2
+
+
+@pytest.mark.parametrize("kind", ["fitted", "layered"])
+def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitted, tmp_path, kind):
+    """Luma and chroma, of sizes and regions of their own, as pictures of the whole atlas that sum to the same maps."""
+    made = fitted if kind == "fitted" else layered_scene()
+    exports.write_obj(made, tmp_path / "alone.obj")
+    exports.write_obj_folder(made, tmp_path / "it")
+    listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
+    mean = pixels(tmp_path / "it" / listing["mean"])
+    assert mean.shape == (*made.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
+    np.testing.assert_allclose(mean, mean_map(made).clip(0, 1), atol=0.51 / 255)
+    bases = [basis for plane in made.planes for basis in plane.bases]
+    assert len(listing["textures"]) == sum(basis.count for basis in bases)
+    maps = camera_maps(made)
+    for row, weights in enumerate(listing["weights"].values()):
+        texture, off = mean_map(made).astype(float), 1e-5
+        for weight, entry in zip(weights, listing["textures"], strict=True):
+            codes = np.round(pixels(tmp_path / "it" / entry["file"]) * 255)
+            texture += weight * (codes - entry["zero"]) * entry["scale"]
+            off += 0.501 * abs(weight) * max(entry["scale"])  # half a code
+        np.testing.assert_allclose(texture, maps(row, None), atol=off)
+    exports.write_obj_folder(made, tmp_path / "one", textures=1)
+    kept = sum(basis.count > 0 for basis in bases)
+    assert len(list((tmp_path / "one").glob("eigen_*.png"))) == kept
+
+
+def test_a_fitted_scene_makes_a_colmap_model_of_its_colours(fitted, tmp_path):
+    exports.write_colmap(Shots(fitted), tmp_path / "model")
+    model = pycolmap.Reconstruction(tmp_path / "model" / "sparse" / "0")
+    colours = np.array([point.color for point in model.points3D.values()])
+    assert len(colours) > 100
+    wanted = 255 * mean_map(fitted).reshape(-1, 3)
+    assert np.abs(colours.mean(axis=0) - wanted.mean(axis=0)).max() < 12
 
 
 def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):

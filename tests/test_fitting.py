@@ -8,12 +8,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from captures import write_capture
+from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scenes import bumpy_square, row_grid, smooth_pictures, tiny_scene, unit_weights
 
 import eigenfield as ef
-from eigenfield.cli import main
+from eigenfield.cli import group, main
 from eigenfield.errors import OptionError
 from eigenfield.evaluation import evaluate
 from eigenfield.fitting import (
@@ -38,6 +39,7 @@ from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, 
 from eigenfield.format import encode_scene, parts, validate
 from eigenfield.metrics import psnr, to_codes
 from eigenfield.parallel import set_threads
+from eigenfield.pipeline import Options
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.rendering.drawing import make_surface
 from eigenfield.scene import Plane
@@ -276,7 +278,7 @@ def test_more_cameras_more_textures(cameras, expected):
 def fitted(tmp_path_factory):
     folder = write_capture(tmp_path_factory.mktemp("fit") / "nine")
     output = folder.parent / "fitted.glb"
-    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "--fit", "photographs", "-n", "4", "-q"]
+    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q"]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "90"])
         main()
@@ -289,7 +291,7 @@ def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     assert validate(output) == []
     assert [plane.mean.shape[2] for plane in scene.planes] == [1, 2] and scene.to_rgb is not None
     assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 90
-    ef.encode(capture, proxy=folder / "proxy.ply", textures=4).save(output.parent / "plain.glb", quality=80)
+    ef.encode(capture, proxy=folder / "proxy.ply", textures=4, fit="none").save(output.parent / "plain.glb", quality=80)
     plain = ef.load(output.parent / "plain.glb")
     values = {"fit": [], "none": []}
     for index in range(len(capture)):
@@ -330,7 +332,36 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
     folder, output = fitted
     figures = evaluate(ef.load(output), ef.open_capture(folder))
     assert figures["image"]["encoded"]["psnr"] > 40
-    assert not figures.get("uv")
+    assert figures["uv"] is None and figures["png_maps"] is None
+    with pytest.raises(OptionError, match="no texture maps") as caught:
+        evaluate(ef.load(output), ef.open_capture(folder), curve="all")
+    assert caught.value.code == "curve" and "--fit none" in caught.value.remedy
+    result = CliRunner().invoke(group, ["evaluate", str(output), str(folder)])
+    assert result.exit_code == 0 and "none: the scene was fitted" in result.stdout
+
+
+FOR_MAPS = [{"align": "dis"}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
+            {"codec": "png"}]  # fmt: skip
+
+
+@pytest.mark.parametrize("asked", FOR_MAPS, ids=lambda asked: next(iter(asked)))
+def test_what_is_about_texture_maps_alone_is_the_paper_s_way_and_said(asked, caplog):
+    assert Options(**asked).fit == "none"
+    (record,) = caplog.records
+    assert f"--{next(iter(asked)).replace('_', '-')} " in record.getMessage()
+    caplog.clear()
+    assert Options(**asked, fit="none").fit == "none" and not caplog.records
+    for fitted in ({"target": Target(psnr=30)}, {"preset": "best"}, {"fit": "photographs"}):
+        with pytest.raises(OptionError, match="about texture maps"):
+            Options(**asked, **fitted)
+
+
+def test_the_rest_is_fitted_without_a_word(caplog):
+    for asked in ({}, {"quality": 50}, {"textures": 3, "hold_out": "odd"}, {"target": Target(psnr=30)}):
+        assert Options(**asked).fit == "photographs"
+    assert not caplog.records
+    with pytest.raises(OptionError, match="no preset"):
+        Options(fit="none", preset="best")
 
 
 @pytest.mark.parametrize(

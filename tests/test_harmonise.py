@@ -66,7 +66,7 @@ def folders(tmp_path_factory, plain):
 
 
 def encoded(folder, **options):
-    return ef.encode(ef.open_capture(folder), folder / "proxy.ply", textures=8, atlas=128, **options)
+    return ef.encode(ef.open_capture(folder), folder / "proxy.ply", textures=8, atlas=128, fit="none", **options)
 
 
 @pytest.mark.parametrize("model", ["gain", "affine"])
@@ -119,7 +119,7 @@ def test_fewer_textures_do_where_exposures_differ(folders):
 
     def figures(**options):
         capture = ef.open_capture(folders["gain"])
-        scene = ef.encode(capture, folders["gain"] / "proxy.ply", textures=2, atlas=128, **options)
+        scene = ef.encode(capture, folders["gain"] / "proxy.ply", textures=2, atlas=128, fit="none", **options)
         return evaluate(scene, capture)["image"]["encoded"]["psnr"]
 
     assert figures(harmonise="gain") > figures() + 1

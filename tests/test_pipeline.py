@@ -35,7 +35,7 @@ def capture(folder):
 
 @pytest.fixture(scope="module")
 def scene(folder, capture):
-    return ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=2.0)
+    return ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=2.0, fit="none")
 
 
 def psnr(a, b, covered):
@@ -52,7 +52,7 @@ def test_all_textures_redraw_the_photographs(capture, scene):
 
 def test_a_dense_atlas_does_not_blur_what_is_drawn(folder, capture):
     """However many texels a pixel covers, a captured view at its own size needs one sample; half the size four."""
-    dense = ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=3.0)
+    dense = ef.encode(capture, proxy=folder / "proxy.ply", textures=8, density=3.0, fit="none")
     name = capture.views[4].name
     np.testing.assert_array_equal(ef.render(dense, camera=name).image, ef.render(dense, camera=name, samples=1).image)
     half = {"camera": name, "resolution": (32, 28)}
@@ -103,7 +103,7 @@ def test_same_bytes_at_any_number_of_threads(folder, capture, tmp_path):
     for count in (1, 2):
         set_threads(count)
         try:
-            made = ef.encode(capture, proxy=folder / "proxy.ply", textures=5, atlas=64, align="dis")
+            made = ef.encode(capture, proxy=folder / "proxy.ply", textures=5, atlas=64, align="dis", fit="none")
             made.save(tmp_path / f"{count}.glb")
         finally:
             set_threads(None)
@@ -152,12 +152,13 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
 
 def test_held_out_cameras_take_no_part(folder, capture, tmp_path):
     """The file is the same whatever the held-out photographs show."""
-    kept = ef.encode(capture, proxy=folder / "proxy.ply", textures=2, atlas=64, hold_out="odd")
+    kept = ef.encode(capture, proxy=folder / "proxy.ply", textures=2, atlas=64, hold_out="odd", fit="none")
     assert kept.held_out.sum() == 5 and kept.planes[0].bases[0].weights.shape == (4, 2)
     assert not kept.held_out[kept.reference]
     alone = ef.encode(
-        capture.subset(np.flatnonzero(~kept.held_out).tolist()), proxy=folder / "proxy.ply", textures=2, atlas=64
-    )
+        capture.subset(np.flatnonzero(~kept.held_out).tolist()), proxy=folder / "proxy.ply", textures=2, atlas=64,
+        fit="none",
+    )  # fmt: skip
     np.testing.assert_array_equal(alone.planes[0].mean, kept.planes[0].mean)
     np.testing.assert_array_equal(alone.planes[0].bases[0].textures, kept.planes[0].bases[0].textures)
     held = int(np.flatnonzero(kept.held_out)[0])
@@ -230,20 +231,25 @@ def test_the_real_size_is_kept_where_it_is_known(capture, folder, tmp_path):
 
 def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
     for target in (0.9, 0.97, 0.999):
-        made = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, uv_ssim=target)
+        made = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, uv_ssim=target, fit="none")
         count = made.textures
         assert ef.evaluate(made, capture)["uv"]["ssim"] >= target or count == 8
         if count > 1:
-            fewer = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, textures=count - 1)
+            fewer = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, textures=count - 1, fit="none")
             assert ef.evaluate(fewer, capture)["uv"]["ssim"] < target
 
 
-def test_progress_is_told_from_start_to_end(folder, capture):
+@pytest.mark.parametrize(
+    ("fit", "stages"),
+    [("none", {"texture maps", "mean", "inner products", "eigen textures"}),
+     ("photographs", {"photographs", "fit luma", "fit chroma", "code luma", "code chroma"})],
+)  # fmt: skip
+def test_progress_is_told_from_start_to_end(folder, capture, fit, stages):
     told = {}
     ef.encode(
-        capture, proxy=folder / "proxy.ply", atlas=64, textures=2,
+        capture, proxy=folder / "proxy.ply", atlas=64, textures=2, fit=fit,
         progress=lambda stage, done, total: told.setdefault(stage, []).append((done, total)),
     )  # fmt: skip
-    assert {"texture maps", "mean", "inner products", "eigen textures"} <= set(told)
+    assert stages <= set(told)
     for steps in told.values():
         assert steps[0][0] == 0 and steps[-1][0] == steps[-1][1]

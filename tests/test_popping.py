@@ -21,7 +21,8 @@ PIECE = np.array([[-0.2, -0.12], [0.3, 0.27]])  # of it, for the pictures
 def demo_scene(folder, side, pixels, textures, atlas):
     draw_demo_capture(folder / "capture", rows=side, columns=side, size=pixels)
     capture = ef.open_capture(folder / "capture")
-    ef.encode(capture, folder / "capture" / "proxy.ply", textures=textures, atlas=atlas).save(folder / "demo.glb")
+    proxy = folder / "capture" / "proxy.ply"
+    ef.encode(capture, proxy, textures=textures, atlas=atlas, fit="none").save(folder / "demo.glb")
     return ef.load(folder / "demo.glb")
 
 

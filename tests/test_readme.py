@@ -33,8 +33,8 @@ def place(tmp_path_factory):
 def test_the_commands_run_in_order(place):
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
     assert [shlex.split(line)[1] for line in lines] == [
-        "inspect", "encode", "proxy", "inspect", "encode", "encode", "view", "render", "render", "export", "export",
-        "evaluate", "info", "validate",
+        "inspect", "encode", "proxy", "inspect", "encode", "encode", "encode", "view", "render", "render", "export",
+        "export", "evaluate", "info", "validate",
     ]  # fmt: skip
     for line in lines:
         words = shlex.split(line, comments=True)
@@ -52,6 +52,7 @@ def test_the_commands_run_in_order(place):
         "overlay.png",
         "scene.glb",
         "small.glb",
+        "paper.glb",
         "view.png",
         "flight.mp4",
         "scene.html",

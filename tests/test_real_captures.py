@@ -26,7 +26,7 @@ def tarot(data):
 def test_tarot_before_coding(data, hold_out, part, whole, outside):
     """Atlas 1024, 15 textures, bicubic both ways: what a prototype reached at density 1, or more."""
     folder, capture = tarot(data)
-    scene = ef.encode(capture, folder / "calibration" / "proxy.ply", atlas=1024, hold_out=hold_out)
+    scene = ef.encode(capture, folder / "calibration" / "proxy.ply", atlas=1024, hold_out=hold_out, fit="none")
     assert len(scene.mesh.faces) == 66_208  # its own atlas is valid: kept as it is
     circles = read_circles(folder / "ball.json", scene.names)
     figures = ef.evaluate(scene, capture, png_maps="none", circles=circles)["image"][part]
@@ -37,9 +37,9 @@ def test_tarot_before_coding(data, hold_out, part, whole, outside):
 CAPTURES = {
     "tarot_5x4_1024": (
         ["--calibration", "calibration/refined.json"], "../tarot_17x17_512/calibration/proxy.ply",
-        ["--hold-out", "every:5", "-n", "7"], 31.0, 0.999,
+        ["--hold-out", "every:5", "-n", "7", "--fit", "none"], 31.0, 0.999,
     ),
-    "cube_colmap_mesh": ([], "proxy.obj", ["-n", "7"], 34.0, 0.90),
+    "cube_colmap_mesh": ([], "proxy.obj", ["-n", "7", "--fit", "none"], 34.0, 0.90),
 }  # fmt: skip
 
 

@@ -178,6 +178,7 @@ def encode_again(
         hold_out=",".join(held) or None,
         resampling=scene.settings.get("resampling", "bicubic"),
         harmonise=scene.settings.get("harmonise"),
+        fit="none",
     )
 
 

@@ -1,4 +1,4 @@
-"""Our own rate-distortion curve: the same few settings for every capture."""
+"""Our own rate-distortion curve, the paper's way: the same few settings for every capture."""
 
 from __future__ import annotations
 
@@ -47,7 +47,9 @@ def ours(
     for density, triangles, textures, quality in QUICK_POINTS if prepared.quick else POINTS:
         path = prepared.work / f"rate-{density:g}-{triangles}-{textures}-{quality}.glb"
         started = time.perf_counter()
-        scene = ef.encode(light_field, prepared.mesh, textures=textures, density=density, triangles=triangles)
+        scene = ef.encode(
+            light_field, prepared.mesh, textures=textures, density=density, triangles=triangles, fit="none"
+        )
         scene.save(path, quality=quality, overwrite=True)
         seconds = time.perf_counter() - started
         points.append(

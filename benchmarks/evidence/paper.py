@@ -73,7 +73,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
 
 def _encode(prepared: Prepared, align: str | None) -> Scene:
     most = min((QUICK_COUNTS if prepared.quick else COUNTS)[-1], len(prepared.light_field) - 1)
-    return ef.encode(prepared.light_field, prepared.mesh, textures=most, align=align)
+    return ef.encode(prepared.light_field, prepared.mesh, textures=most, align=align, fit="none")
 
 
 def _map_bytes(session: Session) -> int:

@@ -1,4 +1,4 @@
-"""What each parameter is worth: one at a time from the defaults, on encoded and on held-out cameras."""
+"""What each parameter is worth, the paper's way: one at a time from the defaults, on encoded and held-out cameras."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def _measured(scene: Scene, prepared: Prepared, codec: str = "avif", quality: in
 
 
 def _encode(prepared: Prepared, **options: Any) -> Scene:
-    options = {"textures": TEXTURES, "hold_out": prepared.hold_out, **options}
+    options = {"textures": TEXTURES, "hold_out": prepared.hold_out, "fit": "none", **options}
     return ef.encode(prepared.light_field, prepared.mesh, **options)
 
 
@@ -162,7 +162,7 @@ def _cameras(prepared: Prepared) -> dict[str, Any] | None:
     for name, encoded in subsets:
         some = light_field.subset(sorted({*encoded.reshape(-1).tolist(), *test.tolist()}))
         held = ",".join(light_field.names[index] for index in test)
-        scene = ef.encode(some, prepared.mesh, textures=TEXTURES, hold_out=held)
+        scene = ef.encode(some, prepared.mesh, textures=TEXTURES, hold_out=held, fit="none")
         kept, size = _decoded(scene, prepared)  # its photographs are in another order than the capture's
         rows.append([name, encoded.size, scene.textures, *_row(kept, some, size)])
     return {

@@ -40,7 +40,7 @@ def true_geometry(
     bare = ef.open_photographs(folder)
     bare = bare.subset([bare.names.index(name) for name in exact.names])
     made = ef.reconstruct(bare, work=work)
-    options: dict[str, Any] = {"textures": textures, "density": density, "hold_out": "odd"}
+    options: dict[str, Any] = {"textures": textures, "density": density, "hold_out": "odd", "fit": "none"}
     scenes = {
         "true": (ef.encode(exact, folder / "proxy.ply", **options), exact),
         "estimated": (ef.encode(made.light_field, made.mesh, **options), made.light_field),

@@ -1,4 +1,5 @@
-"""The whole way from photographs to figures: all cameras encoded, then some held out (docs/measures.md)."""
+"""The whole way from photographs to figures, as the paper goes it: all cameras encoded, then some held out
+(docs/measures.md)."""
 
 from __future__ import annotations
 
@@ -13,8 +14,8 @@ from eigenfield.format import parts
 
 
 def whole(prepared: Prepared) -> dict[str, Any]:
-    """`eigenfield encode` with its defaults, as a process of its own, and what it made; then the same with cameras held
-    out. Cameras, mesh and its atlas are there before: what they took is in the step before this one."""
+    """`eigenfield encode --fit none`, as a process of its own, and what it made; then the same with cameras
+    held out. Cameras, mesh and its atlas are there before: what they took is in the step before this one."""
     scene, everything = encoded(prepared, "all.glb", [])
     held, some = encoded(prepared, "held.glb", ["--hold-out", prepared.hold_out])
     settings = scene.settings
@@ -33,7 +34,8 @@ def whole(prepared: Prepared) -> dict[str, Any]:
 def encoded(prepared: Prepared, name: str, options: list[str]) -> tuple[ef.Scene, dict[str, Any]]:
     """Encode into the work folder and evaluate; the figures, with seconds, memory and the command of `encode`."""
     output = prepared.work / name
-    words = ["encode", *prepared.where, "--proxy", str(prepared.mesh_file), "-o", str(output), *options]
+    how = ["--proxy", str(prepared.mesh_file), "--fit", "none", *options]
+    words = ["encode", *prepared.where, *how, "-o", str(output)]
     made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"])
     scene = ef.load(output)
     figures = ef.evaluate(

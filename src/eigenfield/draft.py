@@ -37,14 +37,23 @@ from eigenfield.viewplane import ViewPlane, find_grid, fit_view_plane
 log = logging.getLogger("eigenfield.encode")
 
 DEFAULT_TEXTURES = 15
+DEFAULT_PRESET = "balanced"
+DEFAULT_PLANES = "luma-chroma"
+DEFAULT_RESAMPLING = "bicubic"
 FITS = ("none", "photographs")
 DEFAULT_DENSITY = 1.5
+ABOUT_MAPS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
+ABOUT_FITS = ("target", "preset", "planes")  # options that nothing else has
 ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
 
 
 @dataclass(frozen=True)
 class Options:
-    """What `encode` was asked for; each is described there."""
+    """What `encode` was asked for; each is described there.
+
+    fit: where it was not said, which of the two it is: `photographs`, unless something about texture maps was asked
+    for. codec: of the pictures in the file, for those who save with one.
+    """
 
     textures: int | None = None
     uv_ssim: float | None = None
@@ -53,23 +62,25 @@ class Options:
     align: str | None = None
     reference: str | None = None
     hold_out: str | None = None
-    resampling: str = "bicubic"
+    resampling: str | None = None
     harmonise: str | None = None
     metres_per_unit: float | None = None
-    fit: str = "none"
-    preset: str = "balanced"
+    fit: str | None = None
+    preset: str | None = None
     quality: int | None = None
     target: Target | None = None
-    planes: str = "luma-chroma"
+    keep_maps: str | os.PathLike[str] | None = None
+    codec: str | None = None
+    planes: str | None = None
 
     def __post_init__(self) -> None:
-        self._check_fit()
+        self._choose_fit()
         if self.textures is not None and self.textures < 0:
             raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
         check_scale(self.metres_per_unit)
         if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
             raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
-        if self.resampling not in FILTERS:
+        if self.resampling is not None and self.resampling not in FILTERS:
             raise OptionError(
                 "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
             )
@@ -83,26 +94,35 @@ class Options:
                     "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
                 )
 
-    def _check_fit(self) -> None:
-        if self.fit not in FITS:
+    def _choose_fit(self) -> None:
+        """Decide what `fit` is where it was not said, and raise OptionError for options that do not go with it."""
+        if self.fit is not None and self.fit not in FITS:
             raise OptionError("fit", f"no fit is called {self.fit}", remedy=f"use one of {', '.join(FITS)}")
-        if self.preset not in PRESETS:
+        if self.preset is not None and self.preset not in PRESETS:
             raise OptionError("preset", f"no preset is called {self.preset}", remedy=f"use one of {', '.join(PRESETS)}")
-        if self.planes not in KINDS:
+        if self.planes is not None and self.planes not in KINDS:
             raise OptionError("planes", f"no planes are called {self.planes}", remedy=f"use one of {', '.join(KINDS)}")
         if self.quality is not None and not 0 <= self.quality <= 100:
             raise OptionError("quality", f"a quality of {self.quality}", remedy="use 0 to 100")
         if self.target is not None:
             self.target.check()
-            if self.fit == "none" or self.quality is not None:
-                other = "--fit none has no target" if self.fit == "none" else "a target is reached by the quality"
-                raise OptionError("target", other, remedy="leave one of them out")
-        asked = {"align": self.align, "uv-ssim": self.uv_ssim, "harmonise": self.harmonise}
-        maps = [name for name, value in asked.items() if value is not None]
+            if self.quality is not None:
+                raise OptionError("target", "a target is reached by the quality", remedy="leave one of them out")
+        maps = [f"--{name.replace('_', '-')}" for name in ABOUT_MAPS if getattr(self, name) is not None]
+        fits = [name for name in ABOUT_FITS if getattr(self, name) is not None]
+        if self.fit is None:
+            chosen = "none" if maps and not fits else "photographs"
+            object.__setattr__(self, "fit", chosen)
+            if chosen == "none":
+                log.warning(
+                    "%s is about texture maps, which a fit does not make: encoding the paper's way (--fit none)",
+                    maps[0],
+                )
+        if self.fit == "none" and fits:
+            raise OptionError(fits[0], f"--fit none has no {fits[0]}", remedy="leave one of them out")
         if self.fit != "none" and maps:
-            raise OptionError(
-                "fit", f"--{maps[0]} is about texture maps, and a fit makes none", remedy="leave it out, or --fit none"
-            )
+            other = f"leave it or the {fits[0]} out" if fits else "leave it out, or --fit none"
+            raise OptionError("fit", f"{maps[0]} is about texture maps, and a fit makes none", remedy=other)
 
 
 def check_options(capture: LightField | PhotoSet, options: Options) -> None:

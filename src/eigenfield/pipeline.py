@@ -15,6 +15,7 @@ from eigenfield.basis import (
     Mean,
     align_maps,
     component_count,
+    disagreement_of,
     eigen_textures,
     gram_matrix,
     mean_map,
@@ -24,11 +25,22 @@ from eigenfield.basis import (
     weights_of,
 )
 from eigenfield.capture import LightField
-from eigenfield.draft import DEFAULT_DENSITY, DEFAULT_TEXTURES, Draft, Options, check_options, make_draft
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.draft import (
+    DEFAULT_DENSITY,
+    DEFAULT_PLANES,
+    DEFAULT_PRESET,
+    DEFAULT_RESAMPLING,
+    DEFAULT_TEXTURES,
+    Draft,
+    Options,
+    check_options,
+    make_draft,
+)
+from eigenfield.errors import CaptureError
 from eigenfield.fitting import (
     KINDS,
     PRESETS,
+    Preset,
     Shots,
     Target,
     fitted_textures,
@@ -65,54 +77,55 @@ def encode(
     align: str | None = None,
     reference: str | None = None,
     hold_out: str | None = None,
-    resampling: str = "bicubic",
+    resampling: str | None = None,
     harmonise: str | None = None,
     metres_per_unit: float | None = None,
-    fit: str = "none",
-    preset: str = "balanced",
+    fit: str | None = None,
+    preset: str | None = None,
     quality: int | None = None,
     target: Target | None = None,
-    planes: str = "luma-chroma",
+    planes: str | None = None,
     keep_maps: str | os.PathLike[str] | None = None,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
 ) -> Scene:
-    """Encode a light field on a proxy mesh (the paper's sections 3.2 and 3.3).
+    """Encode a light field on a proxy mesh, fitted to its photographs, or as the paper does (its sections 3.2 and 3.3).
 
-    textures: N, at most one less than there are encoded cameras; None: 15, of a fit by the number of cameras.
+    textures: N, at most one less than there are encoded cameras; None: by the number of cameras, without a fit 15.
+    Of a fit a region with much of the error gets up to as many of its own.
     uv_ssim: instead, the smallest N whose UV measure reaches this. density: atlas texels per photograph pixel along
     one axis, in the camera nearest the centre; the side is at most 4096, and the texels at most twice the
     photographs' pixels. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many;
     without it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to
     the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
-    "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
+    "every:K" or names separated by commas. resampling: "bicubic" (None), "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
     scene keeps them for drawing its captured cameras. metres_per_unit: metres in one unit of the cameras' world, by
     which a headset shows the scene in its real size; without it what the capture's format says, if it does. fit:
-    "none" is the paper's way; "photographs" fits means, textures and weights, luma apart from chroma, until the drawn
-    pictures match the photographs, to textures as they are coded; `align`, `uv_ssim`, `harmonise`, `resampling` and
-    `keep_maps` are about texture maps, which it does not make. preset: "small", "balanced" or "best", how finely and
-    with how much patience a fit is made and coded. quality: 0 to 100 instead of the preset's. target: the quality is
-    searched for, until the file reaches it; where none does, the nearest, with a warning. planes: "luma-chroma", or
-    "rgb", one plane for all of a fit as the paper has it. keep_maps: folder for the
-    filled maps and visibility as pictures. work: folder for the scratch file (4 bytes x channels x cameras x texels).
+    "photographs" fits means, textures and weights, luma apart from chroma, until the drawn pictures match the
+    photographs, to textures as they are coded; "none" is the paper's way. `align`, `uv_ssim`, `harmonise`, `resampling`
+    and `keep_maps` are about texture maps, which a fit does not make; None: "none" if one of them is asked for, with a
+    warning, else "photographs". preset: "small", "balanced" (None) or "best", how finely and with how much patience a
+    fit is made and coded. quality: of a fit, 0 to 100 instead of the preset's. target: the quality is searched for,
+    until the file reaches it; where none does, the nearest, with a warning. planes: "luma-chroma" (None), or "rgb", one
+    plane for all of a fit, as the paper has it. keep_maps: folder for the filled maps and visibility as pictures. work:
+    folder for scratch files (11 bytes a pixel; 4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
     options = Options(
         textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
-        preset, quality, target, planes,
+        preset, quality, target, keep_maps, planes=planes,
     )  # fmt: skip
-    if fit != "none" and keep_maps is not None:
-        raise OptionError("fit", "a fit makes no texture maps to keep", remedy="leave --keep-maps out, or --fit none")
     place = None if work is None else Path(work)
     draft = make_draft(capture, proxy, options, triangles, progress)
     if options.fit != "none":
         with _fitted(draft, place, progress) as (coded, measured, shots):
             if target is not None:
                 return measured(reach(target, coded, shots))
-            return measured(coded(PRESETS[draft.options.preset].quality if quality is None else quality))
+            return measured(coded(_preset(options).quality if quality is None else quality))
     layout = make_atlas(draft.mesh, *draft.atlas)
+    resampling = DEFAULT_RESAMPLING if resampling is None else resampling
     with texture_maps(
         layout, draft.encoded_cameras, draft.photograph, resampling=resampling, work=place, progress=progress
     ) as maps:
@@ -157,13 +170,15 @@ def _fitted(
     with (
         open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
         open_fits(
-            shots, component_count(asked, len(used)), PRESETS[options.preset], KINDS[options.planes], work, progress
+            shots, component_count(asked, len(used)), _preset(options), KINDS[_planes(options)], work, progress
         ) as fits,
     ):
+        apart = fits.planes[0][1].mean_alone
+        warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names)
 
         def coded(quality: int) -> Scene:
             own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": fits.reached()}}
-            planes, matrix = fits.coded(quality, draft.grid, progress), None if options.planes == "rgb" else to_rgb()
+            planes, matrix = fits.coded(quality, draft.grid, progress), None if _planes(options) == "rgb" else to_rgb()
             return draft.scene(tuple(planes.values()), own, to_rgb=matrix)
 
         def measured(scene: Scene) -> Scene:
@@ -171,6 +186,14 @@ def _fitted(
             return replace(scene, settings={**scene.settings, "fitted": fitted})
 
         yield coded, measured, shots
+
+
+def _planes(options: Options) -> str:
+    return DEFAULT_PLANES if options.planes is None else options.planes
+
+
+def _preset(options: Options) -> Preset:
+    return PRESETS[DEFAULT_PRESET if options.preset is None else options.preset]
 
 
 def _decompose(
@@ -188,7 +211,7 @@ def _decompose(
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
     gram = gram_matrix(maps, mean, progress)
-    warn_of_disagreement(maps, mean, gram, names, aligned=options.align is not None)
+    disagreement_of(maps, mean, gram, names, aligned=options.align is not None)
     decomposition = spectrum(gram)
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:

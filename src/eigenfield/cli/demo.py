@@ -90,7 +90,7 @@ def _measure(path: Path, capture: LightField, output: Path, progress: Progress |
 
     note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
     scene = load(path)
-    figures = evaluate(scene, capture, path=path, curve="sample", png_maps="sample", progress=progress)
+    figures = evaluate(scene, capture, path=path, progress=progress)
     write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
     write_plots(figures, scene, capture, output / "plots", overwrite=True)
     store_scores(path, stored_scores(figures))

@@ -51,9 +51,9 @@ Examples:
   eigenfield encode photos/ --grid 5x4 --hold-out every:5 -o scene.glb
   eigenfield encode capture/ --proxy capture/proxy.ply -o scene.glb
   eigenfield encode photos/ --calibration refined.json --proxy proxy.ply --atlas 1024 -o scene.glb
-  eigenfield encode photos/ --proxy mesh.obj --uv-ssim 0.98 --hold-out odd -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --codec png --align -o scene.glb
-  eigenfield encode photos/ --proxy mesh.glb --fit photographs --quality 80 -o small.glb
+  eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o scene.glb
+  eigenfield encode photos/ --proxy mesh.glb --fit none --codec png -o scene.glb
+  eigenfield encode photos/ --proxy mesh.glb --preset small -o small.glb
   eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb"""
 )
 @click.argument("capture", type=click.Path(path_type=Path))
@@ -72,9 +72,11 @@ Examples:
     "-n",
     type=int,
     metavar="N",
-    help="Eigen textures to keep; at most one less than there are cameras.  [default: 15; with --fit by the cameras]",
+    help="Eigen textures to keep; at most one less than there are cameras.  [default: by the cameras; unfitted 15]",
 )
-@click.option("--uv-ssim", type=float, metavar="S", help="Instead: as few as reach this SSIM in UV space (0.98, say).")
+@click.option(
+    "--uv-ssim", type=float, metavar="S", help="Instead, without a fit: as few as reach this SSIM in UV space (0.98)."
+)
 @click.option(
     "--density",
     type=float,
@@ -123,40 +125,38 @@ Examples:
 @click.option(
     "--resampling",
     type=click.Choice(["bicubic", "lanczos", "bilinear"]),
-    default="bicubic",
-    show_default=True,
-    help="Filter from photograph to atlas.",
+    help="Filter from photograph to atlas.  [default: bicubic]",
 )
 @click.option(
     "--codec",
     type=click.Choice(["avif", "webp", "png"]),
-    help="Pictures in the file: avif is lossy and small, webp and png keep 8 bits exactly.  [default: avif]",
+    help="Pictures of a file that is not fitted: avif is lossy, webp and png keep 8 bits exactly.  [default: avif]",
 )
 @click.option(
     "--quality",
     type=click.IntRange(0, 100),
     metavar="Q",
-    help="Quality of avif, 0 to 100.  [default: 70; of a fit the preset's]",
+    help="Quality of the pictures, 0 to 100.  [default: the preset's; 70 without a fit]",
 )
 @click.option(
     "--fit",
     type=click.Choice(["none", "photographs"]),
-    help="none: project the photographs into the textures, as the paper does. photographs: fit the textures until the "
-    "drawn pictures match the photographs; smaller, better, takes minutes.  [default: none; photographs with a target]",
+    help="photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
+    "into the textures, as the paper does; faster, larger, less sharp. --align, --uv-ssim, --harmonise, --resampling, "
+    "--codec and --keep-maps are about texture maps, which a fit does not make.  [default: photographs, unless one of "
+    "these is given]",
 )
 @click.option(
     "--preset",
     type=click.Choice(["small", "balanced", "best"]),
-    default="balanced",
-    show_default=True,
-    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first.",
+    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first.  "
+    "[default: balanced]",
 )
 @click.option(
     "--planes",
     type=click.Choice(["luma-chroma", "rgb"]),
-    default="luma-chroma",
-    show_default=True,
-    help="Of a fit: luma and chroma apart, each with its own mean, textures and densities, or R, G and B together.",
+    help="Of a fit: luma and chroma apart, each with its own mean, textures and densities, or R, G and B together.  "
+    "[default: luma-chroma]",
 )
 @click.option(
     "--target-size",
@@ -208,11 +208,11 @@ def command(
     metres_per_unit: float | None,
     reference: str | None,
     hold_out: str | None,
-    resampling: str,
+    resampling: str | None,
     codec: str | None,
     fit: str | None,
-    preset: str,
-    planes: str,
+    preset: str | None,
+    planes: str | None,
     quality: int | None,
     target_size: int | None,
     target_psnr: float | None,
@@ -242,14 +242,11 @@ def command(
     target = None
     if any(value is not None for value in (target_size, target_psnr, target_ssim)):
         target = Target(target_size, target_psnr, target_ssim)
-    fit = fit or ("none" if target is None else "photographs")
-    if fit != "none" and codec is not None:
-        raise OptionError("codec", "a fit codes its pictures itself (10-bit AVIF)", remedy="leave --codec out")
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
         textures, uv_ssim, density, atlas, align, reference, hold_out, resampling, harmonise, metres_per_unit, fit,
-        preset, quality, target, planes,
+        preset, quality, target, keep_maps, codec, planes,
     )  # fmt: skip
     place: dict[str, Any] = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
@@ -283,16 +280,16 @@ def command(
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
-            metres_per_unit=metres_per_unit, fit=fit, preset=preset, quality=quality, target=target,
-            planes=planes, keep_maps=keep_maps, work=scratch, progress=progress,
+            metres_per_unit=metres_per_unit, fit=options.fit, preset=preset, planes=planes, quality=quality,
+            target=target, keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
-        kept = fit != "none"  # coded already
+        kept = options.fit != "none"  # coded already
         save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]
     click.echo(
-        f"{output}: {sizes['total'] / 1e6:.2f} MB, {scene.textures} eigen textures of {width}x{height} for "
+        f"{output}: {sizes['total'] / 1e6:.2f} MB, {scene.textures} eigen textures, atlas {width}x{height}, for "
         f"{photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
         f"{len(scene.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )

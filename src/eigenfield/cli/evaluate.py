@@ -42,7 +42,8 @@ Examples:
     is_flag=False,
     flag_value="all",
     default="none",
-    help="The UV measure for every number of eigen textures up to the file's: of all cameras, or of 16.",
+    help="The UV measure for every number of eigen textures up to the file's: of all cameras, or of 16. A fitted file "
+    "has no texture maps to measure.",
 )
 @click.option(
     "--plots",
@@ -136,19 +137,20 @@ def command(
     if as_json:
         echo_json(figures)
     else:
-        click.echo("\n".join(table(scene.name, figures)))
+        click.echo("\n".join(table(scene.name, figures, fitted=loaded.to_rgb is not None)))
     if store:
         store_scores(scene, stored_scores(figures))
 
 
-def table(name: str, figures: Mapping[str, Any]) -> list[str]:
-    """The figures as lines for a person."""
+def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[str]:
+    """The figures as lines for a person. fitted: the scene was, so that it has no texture maps."""
     lines = [f"{name}: {figures['textures']} eigen textures, drawn {figures['filter']}, {figures['seconds']:.0f} s", ""]
     parts = [part for part in figures["image"].values() if part is not None]
     columns = [column for column in COLUMNS if any(column[0] in part for part in parts)]
     lines.append(" " * LABEL + "".join(f"{heading:>11}" for _, heading, _ in columns))
     uv = figures["uv"]
-    lines += _rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL}}not measured"]
+    why = "none: the scene was fitted to the photographs (encode --fit none makes them)" if fitted else "not measured"
+    lines += _rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL}}{why}"]
     for key, label in (("encoded", "encoded"), ("held_out", "held out")):
         part = figures["image"][key]
         if part is None:

@@ -146,6 +146,12 @@ def start_session(
     photographs = match_photographs(scene, capture)
     resampling, align = _recorded(scene)
     maps = len(scene.planes) == 1 and scene.to_rgb is None  # a fit makes none
+    if curve != "none" and not maps:
+        raise OptionError(
+            "curve",
+            "the scene was fitted to pictures and has no texture maps to measure",
+            remedy="leave --curve out, or encode with --fit none",
+        )
     encoded = [int(index) for index in scene.encoded if int(index) in photographs] if maps else []
     if align is not None and scene.reference not in photographs:
         log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])

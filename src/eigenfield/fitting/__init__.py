@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eigenfield.fitting.colour import to_rgb
 from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
-from eigenfield.fitting.planes import KINDS, PRESETS, Fits, fitted_textures, open_fits
+from eigenfield.fitting.planes import KINDS, PRESETS, Fits, Preset, fitted_textures, open_fits
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.target import Target, reach
 
@@ -14,6 +14,7 @@ __all__ = [
     "Fits",
     "Pixels",
     "PlaneSettings",
+    "Preset",
     "Rate",
     "Shots",
     "Target",

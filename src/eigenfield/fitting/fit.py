@@ -78,6 +78,17 @@ class Pixels:
 
 
 @dataclass(frozen=True, eq=False)
+class MeanAlone:
+    """How far the photographs are from what the mean draws: (Ne,) squared deviations over (Ne,) pixels of so many
+    channels; total: those of all of them from one colour."""
+
+    squares: NDArray[np.float64]
+    pixels: NDArray[np.float64]
+    channels: int
+    total: float
+
+
+@dataclass(frozen=True, eq=False)
 class OpenFit:
     """A plane fitted, not coded. uncoded: dB of its channels, mean over cameras, what is drawn not rounded."""
 
@@ -86,6 +97,7 @@ class OpenFit:
     model: Model
     scales: Scales
     composer: Composer
+    mean_alone: MeanAlone
     uncoded: float
 
 
@@ -110,7 +122,7 @@ def fit_plane(
             "no camera sees any texel of the proxy",
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
-    _fit_mean(fitted, model, scales, MEAN_STEPS)
+    mean_alone = _first_mean(fitted, model, scales)
     tick()
     count = min(settings.textures, len(fitted) - 1)
     if count:
@@ -134,7 +146,7 @@ def fit_plane(
     composer = make_composer(pixels.every.surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
-    return OpenFit(name, pixels, model, scales, composer, uncoded)
+    return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
 
 
 def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work: Path | None) -> None:
@@ -174,7 +186,8 @@ def code_plane(
             stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, stream)
     tick()
-    _fit_mean(pixels.fitted, model, scales, CLOSING_STEPS, fit.composer)
+    left = residual(pixels.fitted, model, True, fit.composer)
+    fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
     plane = coded_plane(np.ascontiguousarray(model.mean.transpose(1, 2, 0)), tuple(bases), rate.mean_step, rate.preset)
     tick(last=True)
     return plane
@@ -231,10 +244,17 @@ def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
     return psnr_of(found.squares, found.pixels, model.channels)
 
 
-def _fit_mean(shots: Shots, model: Model, scales: Scales, steps: int, composer: Composer | None = None) -> None:
-    """The mean alone, for textures and weights as they are. composer: and as the renderers draw them."""
-    left = residual(shots, model, True, composer)
-    fit_textures(shots, model, scales, left, steps, mean_only=True)
+def _first_mean(shots: Shots, model: Model, scales: Scales) -> MeanAlone:
+    """The mean alone, from one colour."""
+    left = residual(shots, model, mean_only=True)
+    # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
+    sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
+    total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
+    fit_textures(shots, model, scales, left, MEAN_STEPS, mean_only=True)
+    found = look(
+        shots, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
+    )
+    return MeanAlone(found.squares, found.pixels, model.channels, total)
 
 
 def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:

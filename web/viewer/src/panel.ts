@@ -160,7 +160,8 @@ export function createPanel(viewer: Viewer): Panel {
       const drawn = viewer.summed();
       count.show(wanted);
       count.say(drawn < wanted ? `${drawn} of ${wanted}` : `${wanted} of ${field.total}`);
-      worth.textContent = `${bytes(bytesWith(field.info, drawn))} · UV SSIM ${shown(uvSsim(field.info, drawn), 4)}`;
+      const ssim = uvSsim(field.info, drawn); // a fitted scene has none
+      worth.textContent = bytes(bytesWith(field.info, drawn)) + (ssim === null ? "" : ` · UV SSIM ${shown(ssim, 4)}`);
       limitation.hidden = field.limitation === null;
       limitation.textContent = field.limitation;
       const captured = viewer.captured();

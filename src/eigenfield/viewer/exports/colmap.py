@@ -23,6 +23,7 @@ from eigenfield.rendering import Shots, at_resolution, camera_colour, camera_wei
 from eigenfield.rendering.shots import refuse_attributes
 from eigenfield.scene import Scene
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
+from eigenfield.viewer.exports.maps import mean_map
 from eigenfield.viewer.exports.names import file_names
 
 MOST, FEWEST = 50_000, 10_000  # points
@@ -58,7 +59,7 @@ def write_colmap(
     """
     todo = _captured(shots) if points is None else _along(shots, points)
     files = file_names([shot.name for shot in todo])
-    refuse_attributes(sum(plane.mean.shape[2] for plane in shots.scene.planes))
+    refuse_attributes(shots.scene.channels)
     sparse = _sparse_points(shots.scene, todo)
     plain = replace(shots, resolution=None)
     drawn = plain.each(lambda shot: plain.png(shot.camera, shot.mix, shot.colour), todo)
@@ -162,7 +163,7 @@ def _tracks(seen: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int64], NDA
 
 def _mean_colours(scene: Scene, uv: NDArray[np.float64]) -> NDArray[np.uint8]:
     """(n, 3) of the mean's texels at (n, 2) texture coordinates, greys repeated."""
-    mean = np.concatenate([plane.mean for plane in scene.planes], axis=2)
+    mean = mean_map(scene)
     size = np.array(mean.shape[1::-1])
     column, row = np.clip(uv * size, 0, size - 1).astype(np.int64).T
     texels = np.clip(np.rint(mean[row, column] * np.float32(255)), 0, 255).astype(np.uint8)

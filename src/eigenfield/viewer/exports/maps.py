@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from eigenfield.progress import Progress, track
 from eigenfield.rendering.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.shots import refuse_attributes
 from eigenfield.rendering.tiles import empty_layers, read_layers, tile_shape
-from eigenfield.scene import Scene
+from eigenfield.scene import Plane, Scene
 from eigenfield.texturing import png_bytes
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
 from eigenfield.viewer.exports.names import file_names
@@ -49,15 +50,45 @@ def write_maps(
 
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
     """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
+    compose = _composer(scene)
+    unit = np.eye(len(scene.encoded))
+    return lambda row, textures: compose(unit[row], textures)
+
+
+def mean_map(scene: Scene) -> NDArray[np.float32]:
+    """(H, W, C): the means of all planes, drawn at the atlas's size; not cut."""
+    return _composer(scene)(np.zeros(len(scene.encoded)), 0)
+
+
+def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+    """Every eigen texture of every plane, as (H, W, C) of what it adds to a drawn picture, and its (Ne,) weights.
+
+    textures: the first so many of each basis.
+    """
+    count = scene.textures if textures is None else textures
+    kept = [[basis.truncated(min(count, basis.count)) for basis in plane.bases] for plane in scene.planes]
+    total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
+    for plane, bases in zip(scene.planes, kept, strict=True):
+        alone = []
+        for basis in bases:
+            alone.append(replace(basis, weights=np.eye(total, basis.count, -first, np.float32)))
+            first += basis.count
+        planes.append(Plane(np.zeros_like(plane.mean), tuple(alone)))
+    compose = _composer(replace(scene, planes=tuple(planes)))
+    weights = [row for bases in kept for basis in bases for row in basis.weights.T]
+    for number, row in enumerate(weights):
+        yield compose(np.eye(total)[number], None), row
+
+
+def _composer(scene: Scene) -> Callable[[NDArray[np.float64], int | None], NDArray[np.float32]]:
+    """A function of what rows of weights are multiplied by, and a number of eigen textures: the (H, W, C) sum."""
     refuse_attributes(scene.channels)
     every = np.ones(tile_shape(scene.atlas), np.bool_)
     composite = make_composite(scene, every)
 
-    def make(row: int, textures: int | None) -> NDArray[np.float32]:
+    def compose(mix: NDArray[np.float64], textures: int | None) -> NDArray[np.float32]:
         layers = empty_layers(*scene.atlas, scene.channels)
-        mix = np.zeros(len(scene.encoded))
-        mix[row] = 1
         compose_scene(composite, mix, textures, every, make_buffers(composite), layers)
         return read_layers(layers, *scene.atlas, scene.channels)
 
-    return make
+    return compose

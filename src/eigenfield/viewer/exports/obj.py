@@ -7,34 +7,36 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield import __version__
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.errors import OptionError
 from eigenfield.files import atomic_files, refuse_existing
 from eigenfield.format.axes import capture_to_gltf
 from eigenfield.format.quantise import basis_scale, texture_codes
 from eigenfield.progress import Progress, track
-from eigenfield.rendering.shots import refuse_attributes
-from eigenfield.scene import Plane, Scene
+from eigenfield.scene import Basis, Scene
 from eigenfield.texturing import png_bytes
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
+from eigenfield.viewer.exports.maps import eigen_maps, mean_map
 from eigenfield.viewer.exports.names import file_name
 
+Coded = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
 SUM = "texture = mean / 255 + sum over j of weight[camera][j] * (code[j] - zero[j]) * scale[j]"
 
 
 def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
     """Write NAME.obj with NAME.mtl and NAME.png, the mean cut to 0..1, beside it; all three or none.
 
-    Raises OutputError, OptionError `not-a-picture`, FormatError `unsupported-layout`.
+    Raises OutputError, OptionError `not-a-picture`.
     """
-    plane = only_plane(scene)
+    mean = png_bytes(mean_map(scene))
     targets = obj_files(output)
     with atomic_files(targets, overwrite=overwrite) as (picture, material, mesh):
-        picture.write_bytes(png_bytes(plane.mean))
+        picture.write_bytes(mean)
         material.write_bytes(_material(picture.name))
         mesh.write_bytes(_mesh(scene, material.name))
 
@@ -62,29 +64,27 @@ def write_obj_folder(
     """Write mesh.obj, mesh.mtl, mean.png and eigen_00.png, eigen_01.png, ..., whose codes become numbers with the
     scale and zero in `eigenfield.json`; weights of every encoded camera are there too.
 
-    textures: how many eigen textures. Raises OutputError, OptionError (`not-a-picture`, `textures`) and FormatError
-    `unsupported-layout`.
+    textures: how many eigen textures, of each basis. Where planes have sizes and channels of their own, each eigen
+    texture is what it adds to R, G and B at the atlas's size. Raises OutputError and OptionError (`not-a-picture`,
+    `textures`).
     """
     if textures is not None and textures < 0:
         raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
-    plane = only_plane(scene)
-    count = scene.textures if textures is None else min(textures, scene.textures)
-    digits = max(2, len(str(count - 1)))
+    mean = png_bytes(mean_map(scene))
+    count = scene.textures if textures is None else textures
+    total = sum(min(count, basis.count) for plane in scene.planes for basis in plane.bases)
+    digits = max(2, len(str(total - 1)))
     with atomic_folder(folder, overwrite) as part:
-        (part / "mean.png").write_bytes(png_bytes(plane.mean))
+        (part / "mean.png").write_bytes(mean)
         (part / "mesh.mtl").write_bytes(_material("mean.png"))
         (part / "mesh.obj").write_bytes(_mesh(scene, "mesh.mtl"))
-        entries = []
-        codes = _codes(plane)
-        for number, (picture, scale, zero) in zip(
-            track(range(count), "eigen textures", count, progress), codes, strict=False
-        ):
-            name = f"eigen_{number:0{digits}d}.png"
+        entries: list[dict[str, Any]] = []
+        weights: list[NDArray[np.float32]] = []
+        for picture, scale, zero, row in track(_codes(scene, count), "eigen textures", total, progress):
+            name = f"eigen_{len(entries):0{digits}d}.png"
             (part / name).write_bytes(png_bytes(picture))
             entries.append({"file": name, "scale": _numbers(scale), "zero": _numbers(zero)})
-        weights = np.concatenate(
-            [basis.weights for basis in plane.bases] or [np.zeros((len(scene.encoded), 0), np.float32)], axis=1
-        )
+            weights.append(row)
         write_listing(
             part,
             "obj",
@@ -95,28 +95,36 @@ def write_obj_folder(
                 "mean": "mean.png",
                 "textures": entries,
                 "weights": {
-                    scene.names[index]: _numbers(row[:count]) for index, row in zip(scene.encoded, weights, strict=True)
+                    scene.names[camera]: _numbers(np.array([of[row] for of in weights]))
+                    for row, camera in enumerate(scene.encoded)
                 },
             },
         )
 
 
-def only_plane(scene: Scene) -> Plane:
-    """The plane of a scene whose mean is a picture. Raises OptionError `not-a-picture`, FormatError."""
-    refuse_attributes(sum(plane.mean.shape[2] for plane in scene.planes))
-    if len(scene.planes) != 1:
-        raise FormatError(
-            "unsupported-layout", "several planes make no one texture", where="planes", remedy="encode with one"
-        )
-    return scene.planes[0]
-
-
-def _codes(plane: Plane) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32]]]:
-    """Codes (H, W, C), scale and zero (C,) of every eigen texture."""
+def _codes(scene: Scene, count: int) -> Iterator[Coded]:
+    """Codes (H, W, C), scale and zero (C,), and weights (Ne,) of the first `count` eigen textures of each basis, as
+    pictures of the whole atlas: codes as the scene has them where these are such pictures."""
+    if not _plain(scene):
+        for picture, weights in eigen_maps(scene, count):
+            ones = np.ones((1, picture.shape[2]), np.float32)
+            yield from _codes_of(Basis(picture[None], ones, 0 * ones, weights[:, None]), picture.shape[2], 1)
+        return
+    (plane,) = scene.planes
     for basis in plane.bases:
-        scale, zero = basis_scale(basis, one_unit=plane.mean.shape[2] == 3)
-        for index in range(basis.count):
-            yield texture_codes(basis, index, scale, zero), scale[index], zero[index]
+        yield from _codes_of(basis, plane.mean.shape[2], min(count, basis.count))
+
+
+def _codes_of(basis: Basis, channels: int, count: int) -> Iterator[Coded]:
+    scale, zero = basis_scale(basis, one_unit=channels == 3)
+    for index in range(count):
+        yield texture_codes(basis, index, scale, zero), scale[index], zero[index], basis.weights[:, index]
+
+
+def _plain(scene: Scene) -> bool:
+    """Whether the scene's eigen textures are pictures of the whole atlas."""
+    sizes = {basis.textures.shape[1:3] for plane in scene.planes for basis in plane.bases}
+    return scene.to_rgb is None and len(scene.planes) == 1 and sizes <= {scene.atlas}
 
 
 def _mesh(scene: Scene, material: str) -> bytes:
