@@ -4,8 +4,8 @@
 
 CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: one fit by
 the defaults, coded at QUALITIES, each point a real .glb that is read and drawn again. SVT-AV1 walks the views row by
-row, to and fro or in a spiral, whichever is best at its middle rate. The loss without a codec stands
-beside: of ours before coding, of the peers' colours in 4:2:0.
+row, to and fro or in a spiral, whichever is best at its middle rate. Crops at about equal bytes go to
+OUT/NAME/crops.png. The loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
 """
 
 from __future__ import annotations
@@ -13,22 +13,22 @@ from __future__ import annotations
 import argparse
 import os
 import tempfile
-import time
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import cv2
 import measure
 import numpy as np
-from evidence import captures, codecs, colour, ours, prepared, rates
+from evidence import captures, codecs, colour, ours, pictures, prepared, rates
 from evidence.codecs import VideoCodec
 from evidence.prepared import Prepared
 from numpy.typing import NDArray
 
+import eigenfield as ef
 from eigenfield.evaluation.session import evenly
-from eigenfield.format import parts
 from eigenfield.parallel import parallel_map
-from eigenfield.pipeline import Options, open_fitted
+from eigenfield.rendering import Renderer
 
 CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
 PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
@@ -64,8 +64,12 @@ def of_capture(capture: captures.Capture, work: Path, chosen: Sequence[VideoCode
     ready = prepared.prepare(capture, work)
     views = range(len(ready.light_field))
     photographs = parallel_map(lambda index: prepared.codes(ready.light_field, index), views)
-    mine, covered = our_curve(ready, photographs)
+    mine, covered = ours.fitted(ready, ready.light_field, views, photographs, qualities=QUALITIES)
+    for one in mine["points"]:
+        print(f"{capture.name}: quality {one['parameter']}: {line(one)}", flush=True)
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
+    if others:
+        contact_sheet(ready, mine["points"], others[0], photographs)
     some = evenly(views, 16)
     there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
     names = [ready.light_field.names[i] for i in some]
@@ -77,33 +81,6 @@ def of_capture(capture: captures.Capture, work: Path, chosen: Sequence[VideoCode
         "bd": {one["name"]: {key: rates.bd_rate(one["points"], mine["points"], key) for key in KEYS} for one in others},
         "left_out": [f"{codec.label}: {codecs.missing(codec)}" for codec in chosen if codecs.missing(codec)],
     }
-
-
-def our_curve(ready: Prepared, photographs: list[NDArray[np.uint8]]) -> tuple[dict[str, Any], list[NDArray[np.bool_]]]:
-    """Ours, and the pixels that the proxy covers, which are those that count for all."""
-    field, points = ready.light_field, []
-    covered: list[NDArray[np.bool_]] = []
-    started = time.perf_counter()
-    with open_fitted(field, ready.mesh, Options(), work=ready.work) as coded:
-        fit = time.perf_counter() - started
-        for quality in QUALITIES:
-            started = time.perf_counter()
-            scene = coded(quality)
-            path = ready.work / f"quality-{quality}.glb"
-            scene.save(path, overwrite=True)
-            seconds = time.perf_counter() - started
-            covered = covered or ours.covered_pixels(path, range(len(field)), field)
-            figures = ours.figures(path, range(len(field)), photographs, covered, field.names)
-            points.append({
-                "parameter": quality, "bytes": path.stat().st_size, "parts": dict(parts(path)),
-                "textures": scene.textures, "encode_seconds": round(fit + seconds, 2), **figures,
-            })  # fmt: skip
-            print(f"{ready.capture.name}: quality {quality}: {line(points[-1])}", flush=True)
-    reached = scene.settings["fitted"]["psnr"]
-    uncoded = {name: one["uncoded"] for name, one in reached.items()}
-    return {
-        "name": "eigenfield", "points": points, "fit_seconds": round(fit, 1), "uncoded": uncoded,
-    }, covered  # fmt: skip
 
 
 def peer_curve(
@@ -122,6 +99,11 @@ def peer_curve(
         tried = {name: point(CRF[len(CRF) // 2], order) for name, order in orders.items()}
         best = max(tried, key=lambda name: tried[name]["psnr_luma"] - DOUBLING * np.log2(tried[name]["bytes"]))
         points = [tried[best] if crf == CRF[len(CRF) // 2] else point(crf, orders[best]) for crf in CRF]
+        for one in points:
+            film = Path(folder) / f"{codec.name}-{one['parameter']}.{codec.container}"
+            at = orders[best].index(shown_view(ready))
+            picture = codecs.access(film, codec, at, photographs[shown_view(ready)].shape[:2])[1]
+            one["shown"] = pictures.write_exact(picture, ready.work / f"{codec.name}-{one['parameter']}.webp").name
     for one in points:
         print(f"{ready.capture.name}: {codec.label}, crf {one['parameter']}: {line(one)}", flush=True)
     return {
@@ -129,6 +111,43 @@ def peer_curve(
         "orders": {name: [one[key] for key in ("bytes", "psnr", "psnr_luma")] for name, one in tried.items()},
         "points": points,
     }  # fmt: skip
+
+
+def shown_view(ready: Prepared) -> int:
+    """The view on the contact sheet: half way between the middle and a corner of a dense array."""
+    return len(ready.light_field) // 4
+
+
+def contact_sheet(
+    ready: Prepared, mine: list[dict[str, Any]], film: dict[str, Any], photographs: list[NDArray[np.uint8]]
+) -> Path:
+    """WORK/crops.png: where a view is hardest, the photograph, ours and the film nearest to ours in bytes."""
+    index = shown_view(ready)
+    pairs = [(abs(np.log(own["bytes"] / other["bytes"])), own, other) for own in mine for other in film["points"]]
+    _, own, other = min(pairs, key=lambda pair: pair[0])
+    scene = ef.load(ready.work / own["file"])
+    shown = [
+        photographs[index],
+        prepared.drawn(Renderer(scene), scene, index)[0],
+        pictures.read(ready.work / other["shown"]),
+    ]
+    words = [f"photograph {scene.names[index]}"] + [
+        f"{name}: {one['bytes'] / 1000:.1f} kB, {one['psnr']:.2f} / {one['psnr_luma']:.2f} dB"
+        for name, one in (("eigenfield", own), (film["name"], other))
+    ]
+    corners = pictures.busiest([shown[0]] * 2, shown[1:], 3)
+    columns = []
+    for picture, caption in zip(shown, words, strict=True):
+        crops = [np.repeat(np.repeat(pictures.crop(picture, corner), 2, axis=0), 2, axis=1) for corner in corners]
+        head = np.full((20, crops[0].shape[1], 3), 255, np.uint8)
+        cv2.putText(head, caption, (2, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.38, (0, 0, 0), 1, cv2.LINE_AA)
+        columns.append(np.concatenate([head, *crops]))
+    place = ready.work / "crops.png"
+    done, data = cv2.imencode(".png", np.ascontiguousarray(np.concatenate(columns, axis=1)[..., ::-1]))
+    assert done
+    place.write_bytes(data.tobytes())
+    print(f"{ready.capture.name}: {place}", flush=True)
+    return place
 
 
 def line(point: dict[str, Any]) -> str:

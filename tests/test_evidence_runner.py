@@ -138,5 +138,5 @@ def test_the_report_of_a_folder_of_photographs(tmp_path):
     steps = results["captures"]["own"]["steps"]
     assert set(steps) == {"scene", "paper", "losses", "rates", "between"}
     assert steps["scene"]["figures"]["encoded"]["psnr"] > 25
-    assert {curve["kind"] for curve in steps["rates"]["figures"]["curves"]} == {"ours", "video"}
+    assert {curve["kind"] for curve in steps["rates"]["figures"]["curves"]} == {"ours", "paper", "video"}
     assert "<html" in (tmp_path / "report" / "index.html").read_text()

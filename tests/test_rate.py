@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 
+import cv2
 import pytest
 from captures import write_capture
 from evidence import codecs
@@ -48,6 +49,9 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     for size, _, luma in film["orders"].values():  # none is better in both
         assert not (size < chosen[0] and luma > chosen[2])
     assert found["ceiling_420"]["psnr"] > 35 and found["views"] == 9
+    sheet = cv2.imread(str(tmp_path / "work" / "crops.png"))
+    side = min(96, 56) * 4  # of a crop, twice enlarged twice; three of them under a line of words, three columns
+    assert sheet.shape[0] == 20 + 3 * side and sheet.std() > 10
     assert set(found["bd"][film["name"]]) == {"psnr", "psnr_luma", "ssim"}
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rate_tables, "newest", lambda history: ({"nine": found}, []))

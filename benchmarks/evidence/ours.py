@@ -17,46 +17,86 @@ import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.format import parts
 from eigenfield.parallel import parallel_stream
+from eigenfield.pipeline import Options, open_fitted
 from eigenfield.rendering import Renderer
+
+QUALITIES = (70, 84, 91, 95)  # of a fit, the same for all captures
+QUICK_QUALITIES = (84, 91)
 
 Setting = tuple[float, int | None, int, int]
 
-# (density, triangles, textures, quality), the same for all captures. None: the whole mesh, 1.1 MB of Tarot's file; a
-# simplified one, which gets an atlas of many charts, is the better choice at low rates on Tarot, and nowhere on Shop.
-# Points that cost more bytes than a better one do not count in `rates.bd_rate`.
-POINTS: tuple[Setting, ...] = (
-    (0.75, 4000, 10, 35), (1.0, 10_000, 20, 45), (0.75, None, 5, 35), (1.0, None, 10, 45), (1.25, None, 20, 55),
-    (1.5, None, 40, 70),
-)  # fmt: skip
-QUICK_POINTS = (POINTS[3], POINTS[4])
+# (density, triangles, textures, quality) of the paper's way, the same for all captures. None: the whole mesh, 1.1 MB of
+# Tarot's file; a simplified one, which gets an atlas of many charts, is the better choice at low rates on Tarot, and
+# nowhere on Shop. Points that cost more bytes than a better one do not count in `rates.bd_rate`.
+POINTS: tuple[Setting, ...] = ((0.75, 4000, 10, 35), (0.75, None, 5, 35), (1.25, None, 20, 55), (1.5, None, 40, 70))
+QUICK_POINTS = ((1.0, None, 10, 45), (1.25, None, 20, 55))
+
+Covered = list[NDArray[np.bool_]]
 
 
-def ours(
-    prepared: Prepared,
+def fitted(
+    ready: Prepared,
     light_field: LightField,
     order: Sequence[int],
     photographs: Sequence[NDArray[np.uint8]],
-    covered: Sequence[NDArray[np.bool_]],
-) -> dict[str, Any]:
-    """The curve: every byte of the real .glb counted, each camera drawn with its own weights.
+    covered: Covered | None = None,
+    qualities: Sequence[int] = QUALITIES,
+) -> tuple[dict[str, Any], Covered]:
+    """The curve of what `encode` makes by default: one fit, coded at some qualities, every byte of the real .glb
+    counted, each camera drawn with its own weights; and the pixels that count.
 
-    order: views of the light field; photographs, covered: theirs.
+    order: views of the light field; photographs, covered: theirs; None: what the proxy covers as it is coded.
     """
+    points: list[dict[str, Any]] = []
+    names = [light_field.names[index] for index in order]
+    started = time.perf_counter()
+    with open_fitted(light_field, ready.mesh, Options(), work=ready.work) as coded:
+        fit = time.perf_counter() - started
+        for quality in qualities:
+            started = time.perf_counter()
+            scene = coded(quality)
+            path = ready.work / f"quality-{quality}.glb"
+            scene.save(path, overwrite=True)
+            seconds = time.perf_counter() - started
+            covered = covered or covered_pixels(path, order, light_field)
+            points.append(
+                {
+                    "parameter": quality,
+                    "file": path.name,
+                    "bytes": path.stat().st_size,
+                    "parts": dict(parts(path)),
+                    "textures": scene.textures,
+                    "encode_seconds": round(fit + seconds, 2),
+                    "access_seconds": access(path, order[len(order) // 2]),
+                    **figures(path, order, photographs, covered, names),
+                }
+            )
+    uncoded = {name: one["uncoded"] for name, one in scene.settings["fitted"]["psnr"].items()}
+    curve = {"name": "eigenfield", "kind": "ours", "points": points, "fit_seconds": round(fit, 1), "uncoded": uncoded}
+    assert covered is not None
+    return curve, covered
+
+
+def paper(
+    ready: Prepared,
+    light_field: LightField,
+    order: Sequence[int],
+    photographs: Sequence[NDArray[np.uint8]],
+    covered: Covered,
+) -> dict[str, Any]:
+    """The same curve of `--fit none`, as a peer's."""
     points = []
     names = [light_field.names[index] for index in order]
-    for density, triangles, textures, quality in QUICK_POINTS if prepared.quick else POINTS:
-        path = prepared.work / f"rate-{density:g}-{triangles}-{textures}-{quality}.glb"
+    for density, triangles, textures, quality in QUICK_POINTS if ready.quick else POINTS:
+        path = ready.work / f"rate-{density:g}-{triangles}-{textures}-{quality}.glb"
         started = time.perf_counter()
-        scene = ef.encode(
-            light_field, prepared.mesh, textures=textures, density=density, triangles=triangles, fit="none"
-        )
+        scene = ef.encode(light_field, ready.mesh, textures=textures, density=density, triangles=triangles, fit="none")
         scene.save(path, quality=quality, overwrite=True)
         seconds = time.perf_counter() - started
         points.append(
             {
                 "parameter": f"density {density:g}, {len(scene.mesh.faces)} triangles, N {scene.textures}, "
                 f"quality {quality}",
-                "file": path.name,
                 "bytes": path.stat().st_size,
                 "parts": dict(parts(path)),
                 "encode_seconds": round(seconds, 2),
@@ -64,7 +104,7 @@ def ours(
                 **figures(path, order, photographs, covered, names),
             }
         )
-    return {"name": "eigenfield", "kind": "ours", "points": points}
+    return {"name": "eigenfield, --fit none", "key": "fit-none", "kind": "paper", "points": points}
 
 
 def figures(
@@ -95,12 +135,12 @@ def access(path: Path, index: int) -> dict[str, float]:
     return {"first": round(first, 4), "next": round(time.perf_counter() - started - first, 4)}
 
 
-def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) -> list[NDArray[np.bool_]]:
+def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) -> Covered:
     """The covered pixels of each view: what the whole proxy covers, within the mask where there is one."""
     return covered_pixels(prepared.work / "all.glb", order, light_field)
 
 
-def covered_pixels(path: Path, order: Sequence[int], light_field: LightField) -> list[NDArray[np.bool_]]:
+def covered_pixels(path: Path, order: Sequence[int], light_field: LightField) -> Covered:
     """The pixels that a file's mesh covers in some of a light field's views, within the mask where there is one."""
     scene = ef.load(path)
     renderer, cameras = Renderer(scene), dict(zip(scene.names, range(len(scene.names)), strict=True))

@@ -55,8 +55,9 @@ def peers(prepared: Prepared, folder: Path) -> dict[str, Any]:
         light_field, order, [light_field.names[index] for index in order],
         parallel_map(lambda index: codes(light_field, index), order), ours.surfaces(prepared, light_field, order),
     )  # fmt: skip
-    mine = ours.ours(prepared, light_field, order, views.photographs, views.covered)
-    others, left_out = [], []
+    part = (prepared, light_field, order, views.photographs, views.covered)
+    mine, _ = ours.fitted(*part, qualities=ours.QUICK_QUALITIES if prepared.quick else ours.QUALITIES)
+    others, left_out = [ours.paper(*part)], []
     key = _key(views, prepared.quick)
     for codec in (*codecs.VIDEO, *stills.STILLS):
         missing = codecs.missing(codec) if isinstance(codec, VideoCodec) else stills.missing(codec)
@@ -162,7 +163,7 @@ def _crops(
     scene = ef.load(prepared.work / own["file"])
     shown = {
         "photograph": (photograph, None),
-        f"eigenfield, {own['parameter']}": (drawn(Renderer(scene), scene, views.order[views.middle])[0], own),
+        f"eigenfield, quality {own['parameter']}": (drawn(Renderer(scene), scene, views.order[views.middle])[0], own),
         f"{film['name']}, crf {other['parameter']}": (pictures.read(prepared.work / "peers" / other["middle"]), other),
     }
     corners = pictures.busiest([photograph] * 2, [picture for picture, point in shown.values() if point])

@@ -116,7 +116,8 @@ def busiest(photographs: list[Picture], others: list[Picture], count: int = 2) -
 def crop(picture: Picture, corner: tuple[int, int]) -> Picture:
     """The CROP square at `corner`, ENLARGED."""
     row, column = corner
-    part = picture[row : row + CROP, column : column + CROP]
+    side = min(CROP, *picture.shape[:2])
+    part = picture[row : row + side, column : column + side]
     return np.repeat(np.repeat(part, ENLARGED, axis=0), ENLARGED, axis=1)
 
 
