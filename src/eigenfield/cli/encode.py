@@ -54,7 +54,8 @@ Examples:
   eigenfield encode photos/ --proxy mesh.obj --uv-ssim 0.98 --hold-out odd -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --codec png --align -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --fit photographs --quality 80 -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
+  eigenfield encode photos/ --proxy mesh.glb --fit photographs --residual 70 -o archive.glb"""
 )
 @click.argument("capture", type=click.Path(path_type=Path))
 @click.option(
@@ -162,6 +163,15 @@ Examples:
 )
 @click.option("--target-ssim", type=float, metavar="S", help="The smallest file with this SSIM of captured views.")
 @click.option(
+    "--residual",
+    is_flag=False,
+    flag_value="40",
+    type=click.IntRange(0, 100),
+    metavar="[Q]",
+    help="For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
+    "40 unless said. Other views gain nothing by it.",
+)
+@click.option(
     "--keep-maps",
     type=click.Path(path_type=Path),
     metavar="DIR",
@@ -209,6 +219,7 @@ def command(
     target_size: int | None,
     target_psnr: float | None,
     target_ssim: float | None,
+    residual: int | None,
     keep_maps: Path | None,
     work: Path | None,
     overwrite: bool,
@@ -223,10 +234,11 @@ def command(
     """  # fmt: skip
     from eigenfield.capture import open_any, open_capture
     from eigenfield.files import mended, refuse_existing
-    from eigenfield.format import parts, save
+    from eigenfield.format import encode_scene, parts, read_scene, save
     from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
     from eigenfield.mesh import Mesh
     from eigenfield.pipeline import Options, Target, check_options, encode
+    from eigenfield.residual import with_residual
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
@@ -237,6 +249,12 @@ def command(
     fit = fit or ("none" if target is None else "photographs")
     if fit != "none" and codec is not None:
         raise OptionError("codec", "a fit codes its pictures itself (10-bit AVIF)", remedy="leave --codec out")
+    if residual is not None and target is not None:
+        raise OptionError(
+            "residual",
+            "a target is about the textures, and a residual comes on top of them",
+            remedy="say --quality and --residual Q instead",
+        )
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
@@ -279,7 +297,11 @@ def command(
             keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         kept = fit != "none"  # coded already
-        save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)
+        if residual is not None:
+            read = read_scene(encode_scene(scene, codec=codec, quality=None if kept else quality, progress=progress))
+            scene, kept = with_residual(read, light_field, residual, progress), True
+        coded: dict[str, Any] = {} if kept else {"codec": codec, "quality": quality}
+        save(scene, output, **coded, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]
