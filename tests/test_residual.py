@@ -123,6 +123,10 @@ def test_planes_and_back():
     assert all((plane[-1] == 512).all() for plane in planes)  # below the photograph: no difference
     back = to_difference(planes, 30, 40, SCALE)
     np.testing.assert_allclose(back[4:-6, 4:-4], difference[4:-6, 4:-4], atol=1.8 / 510)
+    noise = np.random.default_rng(2).normal(0, 0.1, (30, 40, 3)).astype(np.float32)
+    planes = to_planes(noise, (32, 40), SCALE, full=True)
+    assert [plane.shape for plane in planes] == [(96, 40), (48, 20), (48, 20)]
+    np.testing.assert_allclose(to_difference(planes, 30, 40, SCALE, full=True), noise, atol=1.8 / 510)
 
 
 def test_what_a_code_stands_for():
@@ -168,7 +172,7 @@ def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
         made = corrected(drawn, difference)
         covered = drawn.coverage > 0.999
         assert made.image.shape == (camera.height, camera.width, 3)
-        assert psnr(made.image, photograph, covered) >= 50 > 35 > psnr(drawn.image, photograph, covered)
+        assert psnr(made.image, photograph, covered) >= 50 > 40 > psnr(drawn.image, photograph, covered)
     for where in ({"at": (0.3, -0.4)}, {"camera": "view_04.png"}, {"camera": "view_00.png"}):
         np.testing.assert_array_equal(ef.render(exact, **where).image, ef.render(base, **where).image)
 
@@ -252,8 +256,8 @@ def test_viewers_are_handed_the_file_without_it(base, data, tmp_path):
 
 def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplog):
     length = parts(stored(data, tmp_path))["residual"]
-    start = len(data) - length - (-length % 4)
-    for keep in (start, start + 1, len(data) - length // 2, len(data) - 5):
+    start = len(data) - length - (-length % 4) - 16  # before it the order of the frames, its own too
+    for keep in (start, start + 4, start + 1, len(data) - length // 2, len(data) - 5):
         path = stored(data[:keep], tmp_path)
         found = ef.load(path)
         assert found.residual is None
@@ -285,6 +289,7 @@ def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplo
         (ours("residual", "scale", value=[0.002, 0]), "residual-scale"),
         (ours("residual", "scale", value=[-0.002, 0.1]), "residual-scale"),
         (ours("residual", "scale", value=[0.002, "x"]), "json-type"),
+        (ours("residual", "full", value=1), "json-type"),
         (ours("residual", "order", value=0), "accessor-type"),
         (ours("residual", "order", value=77), "accessor-missing"),
     ],
@@ -305,7 +310,7 @@ def test_an_order_is_one_of_all_encoded_cameras(data, tmp_path):
 
 
 def test_limits_hold(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(limits, "MAX_FILM", 64 * 64 * 7)
+    monkeypatch.setattr(limits, "MAX_FILM", 64 * 64 * 3 * 7)
     assert outcome(tmp_path / "a.glb", data) == "residual-size"
 
 

@@ -79,15 +79,22 @@ class Plane:
 class Residual:
     """Photographs of the encoded cameras minus what the scene draws of them, coded: for captured views alone.
 
-    film: AV1, a frame for each encoded camera. size: (rows, columns) of the frames, whose top left part a photograph
-    is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma, and of
-    chroma, stands for.
+    film: AV1, a frame for each encoded camera. size: (rows, columns) of the pictures in it, whose top left part a
+    photograph is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma,
+    and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine.
     """
 
     film: bytes
     size: tuple[int, int]
     order: NDArray[np.int64]
     scale: tuple[float, float]
+    full: bool = False
+
+    @property
+    def frame(self) -> tuple[int, int]:
+        """(rows, columns) of the film's frames."""
+        rows, columns = self.size
+        return (3 * rows if self.full else rows), columns
 
 
 @dataclass(frozen=True, eq=False)

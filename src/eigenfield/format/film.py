@@ -70,7 +70,7 @@ def _frame(planes: Planes, number: int) -> Any:
 
 def residual_frames(residual: Residual) -> Iterator[Planes]:
     """The frames of a residual, in its order. FormatError `residual-damaged`."""
-    return decode_film(residual.film, residual.size, len(residual.order), f"/extensions/{limits.EXTENSION}/residual")
+    return decode_film(residual.film, residual.frame, len(residual.order), f"/extensions/{limits.EXTENSION}/residual")
 
 
 def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
@@ -86,6 +86,7 @@ def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> I
 
     context: Any = av.CodecContext.create("libdav1d", "r")
     context.options = {"max_pixels": str(size[0] * size[1])}
+    context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged film
     number = 0
     for unit in chain(_units(data), [None]):
         try:

@@ -30,13 +30,15 @@ def read_residual(
     luma, chroma = (item.number(1) for item in entry["scale"].items(2, 2))
     if min(luma, chroma) <= 0:
         entry["scale"].fail("residual-scale", "a scale is not positive")
+    full = entry.has("full") and entry["full"].boolean()
     film = bytes(document.data(entry["bufferView"]))
     if cameras is None:  # only while validating a file whose cameras are damaged
         return None
     sizes = [(one.height, one.width) for one, held in zip(cameras.cameras, cameras.held_out, strict=True) if not held]
     if columns % 2 or rows % 2 or any(height > rows or width > columns for height, width in sizes):
         entry["size"].fail("residual-size", f"frames of {columns}x{rows} are odd, or smaller than a photograph")
-    if columns * rows > limits.MAX_TEXELS or columns * rows * len(sizes) > limits.MAX_FILM:
+    pixels = columns * rows * (3 if full else 1)
+    if pixels > limits.MAX_TEXELS or pixels * len(sizes) > limits.MAX_FILM:
         entry["size"].fail(
             "residual-size", f"{len(sizes)} frames of {columns}x{rows}, {limits.MAX_FILM} pixels allowed"
         )
@@ -45,4 +47,4 @@ def read_residual(
         order = document.array(entry["order"], "SCALAR", (UINT16, UINT32), limits.MAX_CAMERAS).astype(np.int64)
         if not np.array_equal(np.sort(order), np.arange(len(sizes))):
             entry["order"].fail("residual-order", f"is no order of {len(sizes)} encoded cameras")
-    return Residual(film, (rows, columns), order, (luma, chroma))
+    return Residual(film, (rows, columns), order, (luma, chroma), full)

@@ -250,6 +250,8 @@ def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
 def _residual(residual: Residual, buffer: _Buffer) -> dict[str, Any]:
     order, count = residual.order, len(residual.order)
     made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
+    if residual.full:
+        made["full"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
     return made | {"bufferView": buffer.view(residual.film)}

@@ -26,20 +26,32 @@ FORWARD = _matrix().astype(np.float32)
 BACKWARD = np.linalg.inv(_matrix()).astype(np.float32)
 
 
-def to_planes(difference: NDArray[np.float32], size: tuple[int, int], scale: tuple[float, float]) -> Planes:
-    """(h, w, 3) differences of R, G, B as codes around 512; of no difference where the frame, `size` (rows, columns),
-    both even, is larger. scale: what a code of luma, and of chroma, stands for."""
+def to_planes(
+    difference: NDArray[np.float32], size: tuple[int, int], scale: tuple[float, float], full: bool = False
+) -> Planes:
+    """(h, w, 3) differences of R, G, B as codes around 512; of no difference where `size` (rows, columns), both even,
+    is larger. scale: what a code of luma, and of chroma, stands for. full: chroma below luma in luma's plane."""
     height, width = difference.shape[:2]
     converted = np.zeros((*size, 3), np.float32)
     converted[:height, :width] = difference @ FORWARD.T
+    if full:
+        stacked = np.concatenate([_codes(converted[..., channel], scale[min(channel, 1)]) for channel in range(3)])
+        flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), FLAT, np.uint16)
+        return stacked, flat, flat
     blue, red = (_halved(converted[..., channel]) for channel in (1, 2))
     return _codes(converted[..., 0], scale[0]), _codes(blue, scale[1]), _codes(red, scale[1])
 
 
-def to_difference(planes: Planes, height: int, width: int, scale: tuple[float, float]) -> NDArray[np.float32]:
+def to_difference(
+    planes: Planes, height: int, width: int, scale: tuple[float, float], full: bool = False
+) -> NDArray[np.float32]:
     """(height, width, 3) differences of R, G, B of a frame's planes, whose top left part they are."""
-    luma, blue, red = ((plane.astype(np.float32) - FLAT) for plane in planes)
-    channels = (luma * np.float32(scale[0]), *(doubled(plane) * np.float32(scale[1]) for plane in (blue, red)))
+    if full:
+        luma, blue, red = np.split(planes[0].astype(np.float32) - FLAT, 3)
+    else:
+        luma, *halves = (plane.astype(np.float32) - FLAT for plane in planes)
+        blue, red = (doubled(plane) for plane in halves)
+    channels = luma * np.float32(scale[0]), blue * np.float32(scale[1]), red * np.float32(scale[1])
     converted = np.stack([channel[:height, :width] for channel in channels], axis=-1)
     return np.asarray(converted @ BACKWARD.T, np.float32)
 

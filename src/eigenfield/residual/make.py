@@ -19,6 +19,7 @@ from eigenfield.scene import Residual, Scene
 DEFAULT_QUALITY = 40
 CODE = 1 / 510  # what a code of luma stands for: every difference of photographs has one
 CHROMA_GAIN = 1.6  # codes of chroma are as much finer
+FULL_FROM = 90  # the quality from which chroma is as fine as luma: half as fine it alone holds Tarot below 43.5 dB
 PRESET = 2  # SVT-AV1's; 4 loses 0.1 dB at equal bytes (Tarot) for a quarter of the time
 
 
@@ -46,20 +47,20 @@ def with_residual(
     cameras = [scene.cameras[index] for index in encoded]
     rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
     scale = CODE, CODE / CHROMA_GAIN
-    renderer = Renderer(scene)
+    renderer, full = Renderer(scene), quality >= FULL_FROM
 
     def planes(row: int) -> Planes:
         index = int(encoded[row])
         shown = capture.photograph(index)
         drawn = renderer.draw(scene.cameras[index], camera_weights(scene, index), colour=camera_colour(scene, index))
         counted = drawn.coverage > 0 if shown.mask is None else (drawn.coverage > 0) & (shown.mask > 0.5)
-        return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale)
+        return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full)
 
     way = film_order(cameras)
     frames = track(parallel_stream(planes, way.tolist()), "residual", len(way), progress)
-    film = encode_film(frames, (rows, columns), crf_of(quality), PRESET)
+    film = encode_film(frames, (3 * rows if full else rows, columns), crf_of(quality), PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
-    return replace(scene, residual=Residual(film, (rows, columns), way, scale), settings=settings)
+    return replace(scene, residual=Residual(film, (rows, columns), way, scale, full), settings=settings)
 
 
 def check_residual_quality(quality: int) -> None:

@@ -23,7 +23,7 @@ def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
     for row, planes in zip(residual.order, residual_frames(residual), strict=True):
         index = int(scene.encoded[row])
         camera = scene.cameras[index]
-        yield index, to_difference(planes, camera.height, camera.width, residual.scale)
+        yield index, to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
 
 
 def with_differences(
@@ -54,7 +54,7 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     camera = scene.cameras[index]
     for number, planes in enumerate(residual_frames(residual)):
         if number == position:
-            return to_difference(planes, camera.height, camera.width, residual.scale)
+            return to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
     raise AssertionError("a film ends with an error")
 
 

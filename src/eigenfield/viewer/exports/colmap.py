@@ -61,7 +61,7 @@ def write_colmap(
     """
     todo = _captured(shots) if points is None else _along(shots, points)
     files = file_names([shot.name for shot in todo])
-    refuse_attributes(sum(plane.mean.shape[2] for plane in shots.scene.planes))
+    refuse_attributes(shots.scene.channels)
     sparse = _sparse_points(shots.scene, todo)
     plain = replace(shots, resolution=None)
     if residual and (points is not None or any(camera.K[0, 1] for camera in shots.scene.cameras)):
@@ -180,8 +180,13 @@ def _tracks(seen: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int64], NDA
 
 def _mean_colours(scene: Scene, uv: NDArray[np.float64]) -> NDArray[np.uint8]:
     """(n, 3) of the mean's texels at (n, 2) texture coordinates, greys repeated."""
-    mean = np.concatenate([plane.mean for plane in scene.planes], axis=2)
-    size = np.array(mean.shape[1::-1])
-    column, row = np.clip(uv * size, 0, size - 1).astype(np.int64).T
-    texels = np.clip(np.rint(mean[row, column] * np.float32(255)), 0, 255).astype(np.uint8)
+    found = []
+    for plane in scene.planes:  # of sizes of their own
+        size = np.array(plane.mean.shape[1::-1])
+        column, row = np.clip(uv * size, 0, size - 1).astype(np.int64).T
+        found.append(plane.mean[row, column])
+    mean = np.concatenate(found, axis=1)
+    if scene.to_rgb is not None:
+        mean = mean @ scene.to_rgb.T
+    texels = np.clip(np.rint(mean * np.float32(255)), 0, 255).astype(np.uint8)
     return np.repeat(texels, 3, axis=1) if texels.shape[1] == 1 else texels
