@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from captures import write_capture
 from glb_surgery import ours, outcome, without
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from PIL import Image
 from scenes import row_grid
 
@@ -416,3 +418,17 @@ def test_combinations_that_cannot_be(run, data, capture, tmp_path, words, said):
     command = [places.get(word, word).replace("OUT", str(tmp_path / "out")) for word in words]
     code, _, error = run(*command, "-q")
     assert code == 2 and said in error
+
+
+PAIR = st.lists(st.floats(-2, 2) | st.integers(-1, 200), min_size=2, max_size=2)
+ODD = st.one_of(
+    st.none(), st.booleans(), st.integers(-(2**70), 2**70), st.integers(-2, 90), st.floats(allow_nan=True),
+    st.text(max_size=5), st.just([]), st.just({}), st.lists(st.integers(-1, 90), max_size=3), PAIR,
+)  # fmt: skip
+
+
+@given(st.sampled_from(["bufferView", "size", "full", "order", "scale"]), ODD)
+@settings(max_examples=100, deadline=None)
+def test_odd_entries_never_surprise(tmp_path_factory, data, key, value):
+    changed = glb_surgery.changed(data, ours("residual", key, value=value))
+    outcome(tmp_path_factory.getbasetemp() / "odd.glb", changed)

@@ -61,7 +61,9 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
     extension = None
     with findings.part():
-        extension = find_extension(document)
+        found = find_extension(document)
+        document.check_end(found)
+        extension = found
     if extension is None:
         return None
     version = extension["version"].text()
@@ -81,8 +83,6 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     settings: Mapping[str, Any] = {}
     scores: Mapping[str, Any] = {}
     generator = ""
-    with findings.part():
-        document.check_end(extension)
     with findings.part():
         document.check_buffer()
     with findings.part():
