@@ -26,7 +26,7 @@ from eigenfield.format import encode_scene, limits, parts, read_scene, validate,
 from eigenfield.format.film import decode_film, encode_film
 from eigenfield.metrics import psnr, to_codes
 from eigenfield.rendering import Shots, camera_colour, camera_weights
-from eigenfield.residual import captured_pixels, corrected, difference_of, differences, with_residual
+from eigenfield.residual import captured_pixels, check_residual, corrected, difference_of, differences, with_residual
 from eigenfield.residual.colour import doubled, to_difference, to_planes
 from eigenfield.residual.make import crf_of
 from eigenfield.residual.orders import film_order
@@ -152,7 +152,7 @@ def test_doubling_is_catmull_and_roms():
 def test_qualities_and_crf():
     assert [crf_of(quality) for quality in (0, 50, 100)] == [63, 32, 1]
     with pytest.raises(OptionError, match="0 to 100"):
-        with_residual(None, None, 101)
+        check_residual(row_grid(9, 64, 56), 101)
 
 
 def test_a_grid_is_walked_to_and_fro():
@@ -187,6 +187,15 @@ def test_coarser_films_are_smaller_and_worse(base, capture):
             (len(scene.residual.film), evaluate(scene, capture, png_maps="none")["image"]["residual"]["psnr"])
         )
     assert figures == sorted(figures) and figures[0][1] < figures[2][1] - 3
+
+
+def test_photographs_too_large_for_the_encoder(base):
+    tall = [replace(camera, height=3000) for camera in base.cameras]
+    assert check_residual(tall, 89) == (3000, 64)
+    with pytest.raises(OptionError, match=r"64x9000.*less than 90"):
+        check_residual(tall, FINE)
+    with pytest.raises(OptionError, match="scale the photographs down"):
+        check_residual([replace(camera, height=8705) for camera in base.cameras], 0)
 
 
 def test_one_camera_is_any_of_them(exact):
@@ -398,6 +407,19 @@ def test_the_command_line(run, capture, tmp_path):
     listing = json.loads(next((tmp_path / "colmap").glob("*.json")).read_text(encoding="utf-8"))
     assert len(listing["residual"]) == 8 and not set(listing["residual"]) & set(listing["heldOut"])
     np.testing.assert_array_equal(shown, np.asarray(Image.open(tmp_path / "colmap" / listing["images"]["view_00.png"])))
+
+
+@pytest.mark.parametrize("codec", ["avif", "png"])
+def test_a_residual_on_the_papers_way(run, capture, tmp_path, codec):
+    folder, out = Path(capture.root), tmp_path / "archive.glb"
+    how = ["--proxy", folder / "proxy.ply", "-n", "2", "--atlas", "64", "--codec", codec]
+    assert run("encode", folder, *how, "-o", tmp_path / "plain.glb", "-q")[0] == 0
+    assert run("encode", folder, *how, "--residual", "90", "-o", out, "-q")[0] == 0
+    plain, made = ef.load(tmp_path / "plain.glb"), ef.load(out)
+    for name in ("view_00.png", "view_07.png"):
+        np.testing.assert_array_equal(ef.render(made, camera=name).image, ef.render(plain, camera=name).image)
+    shown = captured_pixels(Shots(made), 7, difference_of(made, 7))
+    assert psnr(shown, to_codes(capture.photograph(7).pixels)) > 45
 
 
 @pytest.mark.parametrize(

@@ -169,7 +169,8 @@ Examples:
     type=click.IntRange(0, 100),
     metavar="[Q]",
     help="For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
-    "40 unless said. Other views gain nothing by it.",
+    "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
+    "--textures 24 --quality 86, and as many bytes for the film as are left.",
 )
 @click.option(
     "--keep-maps",
@@ -238,7 +239,7 @@ def command(
     from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
     from eigenfield.mesh import Mesh
     from eigenfield.pipeline import Options, Target, check_options, encode
-    from eigenfield.residual import with_residual
+    from eigenfield.residual import check_residual, with_residual
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
@@ -290,6 +291,8 @@ def command(
             light_field, mesh, triangles = made.light_field, made.mesh, None
             tell(light_field.problems[len(opened.problems) :], quiet)
             tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
+        if residual is not None:
+            check_residual(light_field.cameras, residual)
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,

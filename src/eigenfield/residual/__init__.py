@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from eigenfield.residual.make import DEFAULT_QUALITY, check_residual_quality, with_residual
+from eigenfield.residual.make import DEFAULT_QUALITY, check_residual, with_residual
 from eigenfield.residual.views import captured_pixels, corrected, difference_of, differences, with_differences
 
 __all__ = [
     "DEFAULT_QUALITY",
     "captured_pixels",
-    "check_residual_quality",
+    "check_residual",
     "corrected",
     "difference_of",
     "differences",

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
+from eigenfield.camera import Camera
 from eigenfield.capture import LightField
 from eigenfield.errors import OptionError
 from eigenfield.format.deep import SMALLEST
@@ -20,6 +22,7 @@ DEFAULT_QUALITY = 40
 CODE = 1 / 510  # what a code of luma stands for: every difference of photographs has one
 CHROMA_GAIN = 1.6  # codes of chroma are as much finer
 FULL_FROM = 90  # the quality from which chroma is as fine as luma: half as fine it alone holds Tarot below 43.5 dB
+LARGEST = 16_384, 8_704  # columns and rows that SVT-AV1 takes
 PRESET = 2  # SVT-AV1's; 4 loses 0.1 dB at equal bytes (Tarot) for a quarter of the time
 
 
@@ -34,9 +37,8 @@ def with_residual(
     scene: as its file gives it back (`format.read_scene`), since what coding has lost is in the residual too. capture:
     what it was encoded from. quality: 0 to 100, the film's: `crf_of`.
 
-    Raises OptionError `residual-quality`, `not-photographs`, and what reading photographs raises.
+    Raises OptionError `not-photographs`, as `check_residual`, and what reading photographs raises.
     """
-    check_residual_quality(quality)
     if scene.channels != 3:
         raise OptionError(
             "not-photographs",
@@ -45,7 +47,7 @@ def with_residual(
         )
     encoded = scene.encoded
     cameras = [scene.cameras[index] for index in encoded]
-    rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
+    rows, columns = check_residual(cameras, quality)
     scale = CODE, CODE / CHROMA_GAIN
     renderer, full = Renderer(scene), quality >= FULL_FROM
 
@@ -58,15 +60,26 @@ def with_residual(
 
     way = film_order(cameras)
     frames = track(parallel_stream(planes, way.tolist()), "residual", len(way), progress)
-    film = encode_film(frames, (3 * rows if full else rows, columns), crf_of(quality), PRESET)
+    made = Residual(b"", (rows, columns), way, scale, full)
+    film = encode_film(frames, made.frame, crf_of(quality), PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
-    return replace(scene, residual=Residual(film, (rows, columns), way, scale, full), settings=settings)
+    return replace(scene, residual=replace(made, film=film), settings=settings)
 
 
-def check_residual_quality(quality: int) -> None:
-    """Raises OptionError `residual-quality` outside 0 to 100."""
+def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
+    """Rows and columns of the pictures in a film of these cameras. Raises OptionError `residual-quality` outside 0 to
+    100, `residual` where the encoder does not take frames so large."""
     if not 0 <= quality <= 100:
         raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
+    rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
+    high = 3 * rows if quality >= FULL_FROM else rows
+    if columns > LARGEST[0] or high > LARGEST[1]:
+        raise OptionError(
+            "residual",
+            f"frames of {columns}x{high}, the film's encoder takes {LARGEST[0]}x{LARGEST[1]}",
+            remedy=f"ask for less than {FULL_FROM}" if rows <= LARGEST[1] else "scale the photographs down",
+        )
+    return rows, columns
 
 
 def crf_of(quality: int) -> int:
