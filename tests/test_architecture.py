@@ -30,7 +30,7 @@ FLOORS = {
     ],
     1: ["capture", "stereo"],
     2: ["calibrate", "proxy", "basis", "texturing"],
-    3: ["rendering", "format", "fitting", "draft", "pipeline", "holdout", "reconstruction"],
+    3: ["rendering", "format", "fitting", "draft", "pipeline", "holdout", "reconstruction", "residual"],
     4: ["evaluation", "demo", "viewer"],
     5: ["cli", "__init__"],
     6: ["__main__"],
@@ -47,6 +47,8 @@ SAME_FLOOR = {
     ("pipeline", "draft"),
     ("pipeline", "fitting"),
     ("reconstruction", "holdout"),
+    ("residual", "format"),
+    ("residual", "rendering"),
 }
 EXCEPTIONS = {("scene.py", "format"), ("scene.py", "viewer")}  # Scene.save, and how a notebook shows a scene
 

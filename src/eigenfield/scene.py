@@ -76,6 +76,28 @@ class Plane:
 
 
 @dataclass(frozen=True, eq=False)
+class Residual:
+    """Photographs of the encoded cameras minus what the scene draws of them, coded: for captured views alone.
+
+    film: AV1, a frame for each encoded camera. size: (rows, columns) of the pictures in it, whose top left part a
+    photograph is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma,
+    and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine.
+    """
+
+    film: bytes
+    size: tuple[int, int]
+    order: NDArray[np.int64]
+    scale: tuple[float, float]
+    full: bool = False
+
+    @property
+    def frame(self) -> tuple[int, int]:
+        """(rows, columns) of the film's frames."""
+        rows, columns = self.size
+        return (3 * rows if self.full else rows), columns
+
+
+@dataclass(frozen=True, eq=False)
 class Scene:
     """Everything needed to draw any viewpoint on the view plane.
 
@@ -91,6 +113,7 @@ class Scene:
         its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
     to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what is
         drawn.
+    residual: what is missing from captured views, or None. No other view has anything of it.
     """
 
     mesh: Mesh
@@ -106,6 +129,7 @@ class Scene:
     generator: str = ""
     colours: NDArray[np.float32] | None = None
     to_rgb: NDArray[np.float32] | None = None
+    residual: Residual | None = None
 
     @property
     def atlas(self) -> tuple[int, int]:

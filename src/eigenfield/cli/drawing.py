@@ -48,6 +48,13 @@ def flight_options(function: F) -> F:
     return function
 
 
+def residual_option(function: F) -> F:
+    """Add --residual."""
+    option = click.option("--residual", is_flag=True,
+                          help="Captured views as they were photographed, where the file has a residual.")  # fmt: skip
+    return option(function)
+
+
 def _size(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
     if value is None:
         return None

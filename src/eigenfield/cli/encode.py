@@ -54,7 +54,8 @@ Examples:
   eigenfield encode photos/ --proxy mesh.obj --fit none --uv-ssim 0.98 -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --fit none --codec png -o scene.glb
   eigenfield encode photos/ --proxy mesh.glb --preset small -o small.glb
-  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb"""
+  eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
+  eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb"""
 )
 @click.argument("capture", type=click.Path(path_type=Path))
 @click.option(
@@ -169,6 +170,16 @@ Examples:
 )
 @click.option("--target-ssim", type=float, metavar="S", help="The smallest file with this SSIM of captured views.")
 @click.option(
+    "--residual",
+    is_flag=False,
+    flag_value="40",
+    type=click.IntRange(0, 100),
+    metavar="[Q]",
+    help="For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
+    "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
+    "--textures 24 --quality 86, and as many bytes for the film as are left.",
+)
+@click.option(
     "--keep-maps",
     type=click.Path(path_type=Path),
     metavar="DIR",
@@ -217,6 +228,7 @@ def command(
     target_size: int | None,
     target_psnr: float | None,
     target_ssim: float | None,
+    residual: int | None,
     keep_maps: Path | None,
     work: Path | None,
     overwrite: bool,
@@ -231,10 +243,11 @@ def command(
     """  # fmt: skip
     from eigenfield.capture import open_any, open_capture
     from eigenfield.files import mended, refuse_existing
-    from eigenfield.format import parts, save
+    from eigenfield.format import encode_scene, parts, read_scene, save
     from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
     from eigenfield.mesh import Mesh
     from eigenfield.pipeline import Options, Target, check_options, encode
+    from eigenfield.residual import check_residual, with_residual
 
     started = time.monotonic()
     refuse_existing(output, overwrite)
@@ -242,6 +255,12 @@ def command(
     target = None
     if any(value is not None for value in (target_size, target_psnr, target_ssim)):
         target = Target(target_size, target_psnr, target_ssim)
+    if residual is not None and target is not None:
+        raise OptionError(
+            "residual",
+            "a target is about the textures, and a residual comes on top of them",
+            remedy="say --quality and --residual Q instead",
+        )
     if blind and hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
     options = Options(
@@ -277,6 +296,8 @@ def command(
             light_field, mesh, triangles = made.light_field, made.mesh, None
             tell(light_field.problems[len(opened.problems) :], quiet)
             tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
+        if residual is not None:
+            check_residual(light_field.cameras, residual)
         scene = encode(
             light_field, mesh, textures=textures, uv_ssim=uv_ssim, density=density, atlas=atlas, triangles=triangles,
             align=align, harmonise=harmonise, reference=reference, hold_out=hold_out, resampling=resampling,
@@ -284,7 +305,11 @@ def command(
             target=target, keep_maps=keep_maps, work=scratch, progress=progress,
         )  # fmt: skip
         kept = options.fit != "none"  # coded already
-        save(scene, output, codec=codec, quality=None if kept else quality, overwrite=overwrite, progress=progress)
+        if residual is not None:
+            read = read_scene(encode_scene(scene, codec=codec, quality=None if kept else quality, progress=progress))
+            scene, kept = with_residual(read, light_field, residual, progress), True
+        coded: dict[str, Any] = {} if kept else {"codec": codec, "quality": quality}
+        save(scene, output, **coded, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]

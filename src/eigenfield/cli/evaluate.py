@@ -107,7 +107,8 @@ def command(
 ) -> None:
     """Measure the file SCENE against the photographs of CAPTURE, matched by name.
 
-    docs/measures.md defines every figure. With --json all figures go to standard output, otherwise a table does.
+    docs/measures.md defines every figure. Where the file has a residual, captured views are measured without it
+    and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
     from eigenfield.capture import PhotoSet, open_any
     from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras
@@ -151,8 +152,10 @@ def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[s
     uv = figures["uv"]
     why = "none: the scene was fitted to the photographs (encode --fit none makes them)" if fitted else "not measured"
     lines += _rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL}}{why}"]
-    for key, label in (("encoded", "encoded"), ("held_out", "held out")):
+    for key, label in (("encoded", "encoded"), ("residual", "with residual"), ("held_out", "held out")):
         part = figures["image"][key]
+        if part is None and key == "residual":
+            continue
         if part is None:
             lines.append(f"{label:{LABEL}}none")
             continue

@@ -10,7 +10,7 @@ import click
 from click.core import ParameterSource
 
 from eigenfield.cli.common import common_options, note, progress_bars
-from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options
+from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
 from eigenfield.errors import OptionError
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ OPTIONS = {  # what each kind takes, beside the options of all
     "obj": {"textures"},
     "maps": {"textures"},
     "quilt": PICTURE | {"quilt", "spread"},
-    "colmap": PICTURE | {"path", "frames"},
+    "colmap": PICTURE | {"path", "frames", "residual"},
 }
 ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "quilt": (".png",)}
 NO_FOLDER = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
@@ -83,6 +83,7 @@ Examples:
 )
 @flight_options
 @picture_options
+@residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files, and folders that an export wrote.")
 @common_options
 def command(
@@ -167,7 +168,7 @@ def _write(
         quilt = exports.quilt_of(scene, options["quilt"], options["resolution"], options["spread"])
         path = exports.write_quilt(shots, quilt, output, progress=progress, **how)
         return f"{path}: {quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
-    exports.write_colmap(shots, output, points=points, progress=progress, **how)
+    exports.write_colmap(shots, output, points=points, residual=options["residual"], progress=progress, **how)
     return f"{output}: {len(scene.names) if points is None else len(points)} pictures and a COLMAP model"
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from eigenfield.cli.common import common_options, note, progress_bars
-from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options
+from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
 from eigenfield.errors import OptionError
 
 
@@ -28,6 +28,7 @@ Examples:
   eigenfield render scene.glb -o view.png
   eigenfield render scene.glb --at 0.3,-0.2 --resolution 1024x768 -o view.png
   eigenfield render scene.glb --camera out_08_08 --background transparent -o view.png
+  eigenfield render archive.glb --camera out_08_08 --residual -o view.png
   eigenfield render scene.glb --path circle --frames 240 -o around.mp4
   eigenfield render scene.glb --path grid --frames 25 -o 'frames/%04d.png'"""
 )
@@ -44,12 +45,14 @@ Examples:
 @click.option("--camera", metavar="NAME", help="A captured camera.  [default: the reference camera]")
 @flight_options
 @picture_options
+@residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files.")
 @common_options
 def command(
     scene: Path, output: Path, at: tuple[float, float] | None, camera: str | None, path: str | None,
     frames: int | None, fps: Fraction, resolution: tuple[int, int] | None, background: tuple[float, ...] | None,
-    weights: str, filter: str, textures: int | None, samples: int | None, renderer: str, overwrite: bool, quiet: bool,
+    weights: str, filter: str, textures: int | None, samples: int | None, renderer: str, residual: bool,
+    overwrite: bool, quiet: bool,
 ) -> None:  # fmt: skip
     """Draw SCENE: one picture, or a fly-through.
 
@@ -58,9 +61,13 @@ def command(
     from eigenfield.files import is_numbered, refuse_existing, write_bytes
 
     _check(output, is_numbered(output), at, camera, path, frames, background)
+    if residual and (at is not None or path is not None):
+        raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.format import load
-    from eigenfield.rendering import Shots, path_points, viewpoint, viewpoint_colour
+    from eigenfield.rendering import Shots, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.flight import refuse_flight, write_flight
+    from eigenfield.rendering.shots import png
+    from eigenfield.residual import captured_pixels, difference_of
 
     count = DEFAULT_FRAMES if frames is None else frames
     points = None if path is None else path_points(path, count)
@@ -69,6 +76,12 @@ def command(
     else:
         refuse_flight(output, count, overwrite)
     shots = Shots(load(scene), resolution, background, weights, filter, textures, samples, renderer)
+    if residual:
+        index = shots.scene.reference if camera is None else camera_index(shots.scene, camera)
+        data = png(captured_pixels(shots, index, difference_of(shots.scene, index)))
+        write_bytes(output, data, overwrite=overwrite)
+        note(f"wrote {output}", quiet)
+        return
     if points is None:
         chosen = viewpoint(shots.scene, at=at, camera=camera, weights=weights)
         colour = viewpoint_colour(shots.scene, at=at, camera=camera)

@@ -61,7 +61,7 @@ def command(
     The address goes to standard output. Nobody but this machine can open it, and nothing is fetched from elsewhere.
     Ctrl-C ends it, with exit code 0.
     """
-    from eigenfield.format import file_bytes, outline
+    from eigenfield.format import file_bytes, outline, without_residual
     from eigenfield.scene import check_scale
     from eigenfield.viewer import Server, make_manifest
 
@@ -75,7 +75,8 @@ def command(
         note(f"{scene} has no eigen textures: it is shown as the plain glTF file that it is", quiet)
         glb, photographs = scene.read_bytes(), None
     else:
-        glb, photographs = file_bytes(loaded) or b"", _photographs(loaded, capture, options, quiet)
+        glb = without_residual(file_bytes(loaded) or b"")
+        photographs = _photographs(loaded, capture, options, quiet)
     manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
     with Server(manifest, host, port) as server:
         try:

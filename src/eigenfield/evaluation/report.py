@@ -15,6 +15,7 @@ from eigenfield.evaluation.session import Measured, Session, start_session
 from eigenfield.format import parts
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
+from eigenfield.residual import with_differences
 from eigenfield.scene import Scene
 
 SCHEMA = "eigenfield.evaluate/1"
@@ -51,20 +52,21 @@ def evaluate(
         png_maps=png_maps, flip=flip,
     )  # fmt: skip
     indices = list(session.photographs)
-    results = dict(
-        zip(
-            indices,
-            track(parallel_stream(session.measure, indices), "measuring", len(indices), progress),
-            strict=True,
-        )
-    )
+    views = with_differences(scene, indices, session.measures_residual)
+    measured = parallel_stream(lambda view: (view[0], session.measure(*view)), views)
+    found = dict(track(measured, "measuring", len(indices), progress))
+    results = {index: found[index] for index in indices}
     figures: dict[str, Any] = {
         "schema": SCHEMA,
         "textures": session.counts[-1],
         "filter": filter,
         "weights": weights,
         "uv": _uv(session, results, -1),
-        "image": {"encoded": _image(session, results, False), "held_out": _image(session, results, True)},
+        "image": {
+            "encoded": _image(session, results, False),
+            "residual": _residual(session, results),
+            "held_out": _image(session, results, True),
+        },
         "bytes": None if path is None else dict(parts(Path(path))),
         "ratio": None if path is None else _ratios(session, results, parts(Path(path))["total"]),
         "png_maps": _png_maps(session, results, png_maps),
@@ -113,9 +115,22 @@ def _image(session: Session, results: Mapping[int, Measured], held_out: bool) ->
     return figures
 
 
+def _residual(session: Session, results: Mapping[int, Measured]) -> dict[str, Any] | None:
+    """The encoded cameras' figures with the residual; never of others."""
+    found = {index: result.residual for index, result in results.items() if result.residual is not None}
+    if not found:
+        return None
+    names = [session.scene.names[index] for index in found]
+    figures = {"cameras": len(found), **summary([image for image, _ in found.values()], names)}
+    outside = [part for _, part in found.values() if part is not None]
+    if outside:
+        figures["outside"] = summary(outside, names)
+    return figures
+
+
 def _camera(session: Session, index: int, result: Measured) -> dict[str, Any]:
     texture = result.texture
-    figures = {
+    figures: dict[str, Any] = {
         "name": session.scene.names[index],
         "held_out": bool(session.scene.held_out[index]),
         "psnr": result.image["psnr"],
@@ -124,6 +139,8 @@ def _camera(session: Session, index: int, result: Measured) -> dict[str, Any]:
         "uv_psnr": None if texture is None else texture.psnr[-1],
         "uv_ssim": None if texture is None else texture.ssim[-1],
     }
+    if result.residual is not None:
+        figures["residual"] = {key: result.residual[0][key] for key in ("psnr", "ssim")}
     return figures | ({"flip": result.image["flip"]} if "flip" in result.image else {})
 
 

@@ -16,7 +16,8 @@ from eigenfield.errors import CaptureError, OptionError
 from eigenfield.evaluation.exclusion import Circle
 from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapFigures, measure_map
-from eigenfield.rendering import Renderer, camera_colour, camera_weights
+from eigenfield.rendering import Picture, Renderer, camera_colour, camera_weights
+from eigenfield.residual import corrected
 from eigenfield.scene import Scene
 from eigenfield.texturing import FILTERS, Atlas, harmonised, make_atlas, texture_map
 
@@ -30,11 +31,13 @@ SAME_CAMERA = 0.5  # pixels by which two calibrations may differ without a warni
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """What one camera gave. outside, texture: None where not asked for, or held out."""
+    """What one camera gave. outside, texture: None where not asked for, or held out. residual: figures, and those
+    outside, of the picture with its residual; None where it has none."""
 
     image: Figures
     outside: Figures | None
     texture: MapFigures | None
+    residual: tuple[Figures, Figures | None] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,14 +83,18 @@ class Session:
         return picture
 
     def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """The picture drawn from camera `index`, (H, W, 3), and (H, W) the pixels that the proxy covers. A harmonised
-        scene gives an encoded camera its own exposure; a held-out one has none that may be known."""
+        """The picture drawn from camera `index`, (H, W, 3), and (H, W) the pixels that the proxy covers."""
+        picture = self.picture(index)
+        return picture.image, picture.covered
+
+    def picture(self, index: int) -> Picture:
+        """As it is drawn from camera `index`. A harmonised scene gives an encoded camera its own exposure; a held-out
+        one has none that may be known."""
         row = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
-        picture = self.renderer.draw(
+        return self.renderer.draw(
             self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], colour=colour
         )
-        return picture.image, picture.covered
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """Camera `index`'s texture map as `encode` made it: (n, 3) values and (n,) visibility."""
@@ -102,22 +109,36 @@ class Session:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference, self.align)
 
-    def measure(self, index: int) -> Measured:
-        """All figures of one camera."""
+    @property
+    def measures_residual(self) -> bool:
+        """Whether captured views are measured with their residual too: it is what the whole scene, drawn as it is
+        meant to be, leaves of them."""
+        whole = self.counts[-1] == self.scene.textures and self.filter == "bicubic"
+        return whole and self.scene.residual is not None
+
+    def measure(self, index: int, difference: NDArray[np.float32] | None = None) -> Measured:
+        """All figures of one camera. difference: (H, W, 3), its residual."""
         photograph = self.photograph(index)
-        drawn, surface = self.draw(index)
-        figures = measure_picture(drawn, surface, photograph.pixels, photograph.mask, self.flip)
-        outside = None
-        if self.circles is not None:
-            circle = self.circles.get(self.scene.names[index])
-            outside = measure_outside(drawn, surface, photograph.pixels, photograph.mask, circle, self.flip)
+        drawn = self.picture(index)
+        figures, outside = self._figures(index, drawn, photograph)
+        residual = None
+        if difference is not None:
+            residual = self._figures(index, corrected(drawn, difference), photograph)
         texture = None
         if self.atlas is not None and not self.scene.held_out[index]:
             values, seen = self.texture(index, photograph)
             row = int(np.searchsorted(self.scene.encoded, index))
             counts = self.counts if index in self.curved else self.counts[-1:]
             texture = measure_map(self.scene.planes[0], row, self.atlas, values, seen, counts, index in self.packed)
-        return Measured(figures, outside, texture)
+        return Measured(figures, outside, texture, residual)
+
+    def _figures(self, index: int, drawn: Picture, photograph: Photograph) -> tuple[Figures, Figures | None]:
+        """Of the whole picture, and of what lies outside its circle where there are circles."""
+        given = drawn.image, drawn.covered, photograph.pixels, photograph.mask
+        figures = measure_picture(*given, self.flip)
+        if self.circles is None:
+            return figures, None
+        return figures, measure_outside(*given, self.circles.get(self.scene.names[index]), self.flip)
 
 
 def start_session(

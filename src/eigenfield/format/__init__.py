@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from eigenfield.format.contents import describe, parts, store_scores
+from eigenfield.format.contents import describe, parts, store_scores, without_residual
 from eigenfield.format.findings import Finding
-from eigenfield.format.read import file_bytes, load, outline, validate
+from eigenfield.format.read import file_bytes, load, outline, read_scene, validate
 from eigenfield.format.write import encode_scene, save
 
 __all__ = [
@@ -15,7 +15,9 @@ __all__ = [
     "load",
     "outline",
     "parts",
+    "read_scene",
     "save",
     "store_scores",
     "validate",
+    "without_residual",
 ]

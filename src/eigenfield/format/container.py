@@ -28,12 +28,18 @@ class Glb:
     binary: the first buffer's bytes, empty if there is no binary chunk.
     size: bytes of the file.
     rest: offset of the first byte behind the JSON chunk.
+    missing: bytes of the binary chunk that lie behind the end of the file.
     """
 
     json: Any
     binary: memoryview
     size: int
     rest: int
+    missing: int = 0
+
+    def cut_off(self) -> FormatError:
+        """What is to be raised where the missing bytes are needed."""
+        return _truncated(self.size, self.size + self.missing)
 
 
 def read_file(path: Path) -> bytes:
@@ -53,7 +59,7 @@ def read_file(path: Path) -> bytes:
 
 
 def parse_glb(data: bytes) -> Glb:
-    """Take a container apart.
+    """Take a container apart. One that ends within its binary chunk is not refused here: see `Glb.missing`.
 
     FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
     """
@@ -65,12 +71,7 @@ def parse_glb(data: bytes) -> Glb:
     if version != 2:
         raise FormatError("glb-version", f"glTF {version}, not 2", where="byte 4")
     if length > len(data):
-        raise FormatError(
-            "truncated",
-            f"ends after {len(data)} of {length} bytes",
-            where=f"byte {len(data)}",
-            remedy="copy or download it again",
-        )
+        return _cut(data, length)
     if length < len(data):
         raise FormatError("glb-length", f"{len(data) - length} bytes follow the end", where="byte 8")
     chunks = _chunks(data)
@@ -78,6 +79,29 @@ def parse_glb(data: bytes) -> Glb:
     first, last = chunks.get(BINARY_CHUNK, (end, end))
     value = strict_json.parse(data[start:end], f"byte {start}")
     return Glb(value, memoryview(data)[first:last], len(data), end)
+
+
+def _cut(data: bytes, length: int) -> Glb:
+    """A container of `length` bytes that ends within its binary chunk; FormatError `truncated` where it ends before."""
+    start = HEADER.size + CHUNK.size
+    if len(data) >= start:
+        size, kind = CHUNK.unpack_from(data, HEADER.size)
+        end, first = start + size, start + size + CHUNK.size
+        if kind == JSON_CHUNK and first <= len(data):
+            extent, kind = CHUNK.unpack_from(data, end)
+            if kind == BINARY_CHUNK and len(data) < first + extent <= length:
+                value = strict_json.parse(data[start:end], f"byte {start}")
+                return Glb(value, memoryview(data)[first:], len(data), end, first + extent - len(data))
+    raise _truncated(len(data), length)
+
+
+def _truncated(size: int, length: int) -> FormatError:
+    return FormatError(
+        "truncated",
+        f"ends after {size} of {length} bytes",
+        where=f"byte {size}",
+        remedy="copy or download it again",
+    )
 
 
 def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:

@@ -10,7 +10,7 @@ from typing import Any
 from eigenfield.errors import FormatError
 from eigenfield.files import atomic_writer
 from eigenfield.format import limits
-from eigenfield.format.container import front, json_bytes, parse_glb, read_file
+from eigenfield.format.container import BINARY_CHUNK, CHUNK, front, json_bytes, parse_glb, read_file
 from eigenfield.format.document import Document
 from eigenfield.format.layout import Layout, find_extension
 from eigenfield.format.read import naming, open_layout
@@ -25,10 +25,11 @@ def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
 
 
 def parts(path: str | os.PathLike[str]) -> dict[str, int]:
-    """Bytes by part: total, mean, textures, weights, mesh, other; the last five sum to the first.
+    """Bytes by part: total, mean, textures, weights, mesh, residual, other; the last six sum to the first.
 
     mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices; a
     coded one, and the coarse one for other viewers.
+    residual: what only captured views have; 0 where there is none.
     other: JSON, calibration, triangles, headers and padding. Raises FormatError.
     """
     return describe(path)[1]
@@ -49,18 +50,45 @@ def _parts(document: Document) -> dict[str, int]:
     mesh = [_view_of(document, reference) for reference in attributes]
     if extension.has("mesh"):
         mesh.append(extension["mesh"]["bufferView"])
+    residual = [extension["residual"]["bufferView"]] if extension.has("residual") and not document.glb.missing else []
     counted: set[int] = set()
     made = {"total": document.glb.size}
-    for name, references in (("mean", pictures), ("textures", textures), ("weights", weights), ("mesh", mesh)):
+    found = {"mean": pictures, "textures": textures, "weights": weights, "mesh": mesh, "residual": residual}
+    for name, references in found.items():
         views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
         counted |= views.keys()
         made[name] = sum(views.values())
-    made["other"] = made["total"] - sum(made[name] for name in ("mean", "textures", "weights", "mesh"))
+    made["other"] = made["total"] - sum(made[name] for name in found)
     return made
 
 
 def _view_of(document: Document, accessor: Value) -> Value:
     return document.root["accessors"].at(accessor.integer(0, 2**31))["bufferView"]
+
+
+def without_residual(data: bytes) -> bytes:
+    """A good file without its residual, of which viewers show nothing: the same bytes where it has none, or where it is
+    not the last thing in the binary chunk. FormatError `truncated` where that leaves a file that is cut off."""
+    glb = parse_glb(data)
+    document = Document(glb)
+    views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
+    extension = dict(glb.json["extensions"][limits.EXTENSION])
+    residual = extension.pop("residual", None)
+    if residual is None:
+        return data
+    end = document.view_range(len(views) - 1)[0]
+    if residual["bufferView"] != len(views) - 1 or any(document.view_range(i)[1] > end for i in range(len(views) - 1)):
+        if glb.missing:
+            raise glb.cut_off()
+        return data
+    del views[-1]
+    if residual.get("order") == len(accessors) - 1 and accessors[-1]["bufferView"] == len(views) - 1:
+        end = document.view_range(len(views) - 1)[0]
+        del views[-1], accessors[-1]
+    made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
+    made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
+    binary = bytes(glb.binary[:end]) + bytes(-end % 4)
+    return front(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
 
 
 def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:
@@ -72,6 +100,8 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
     with naming(path):
         data = read_file(target)
         glb = parse_glb(data)
+        if glb.missing:
+            raise glb.cut_off()
         find_extension(Document(glb))
     glb.json["extensions"][limits.EXTENSION]["scores"] = dict(scores)
     text = json_bytes(glb.json)

@@ -50,8 +50,22 @@ class Document:
         if buffers[0].has("uri"):
             buffers[0].fail("buffer", "the buffer lies in another file")
         length = buffers[0]["byteLength"].integer(1, limits.MAX_FILE)
-        if not 0 <= len(self.glb.binary) - length < 4:
-            buffers[0].fail("buffer", f"{length} bytes, but the binary chunk has {len(self.glb.binary)}")
+        if not 0 <= self._length - length < 4:
+            buffers[0].fail("buffer", f"{length} bytes, but the binary chunk has {self._length}")
+
+    def check_end(self, extension: Value) -> None:
+        """A file may end within its residual, and nowhere else: `truncated`."""
+        if self.glb.missing and not (extension.has("residual") and self.cut_off(extension["residual"]["bufferView"])):
+            raise self.glb.cut_off()
+
+    def cut_off(self, reference: Value) -> bool:
+        """Whether the file ends before the buffer view whose index `reference` holds does. FormatError as `view`."""
+        view = self._view(self._index(reference))
+        return view.offset + view.length > len(self.glb.binary)
+
+    @property
+    def _length(self) -> int:
+        return len(self.glb.binary) + self.glb.missing
 
     def check_overlap(self) -> None:
         """No byte belongs to two buffer views: `view-overlap`."""
@@ -64,12 +78,23 @@ class Document:
                 )
 
     def view(self, reference: Value) -> View:
-        """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`."""
+        """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`, `truncated`."""
+        view = self._view(self._index(reference))
+        if view.offset + view.length > len(self.glb.binary):
+            raise self.glb.cut_off()
+        return view
+
+    def _index(self, reference: Value) -> int:
         count = len(list(self.root["bufferViews"].items(limits.MAX_VIEWS)))
         index = reference.integer(0, 2**31)
         if index >= count:
             reference.fail("view-missing", f"there are {count} buffer views, {index} is none of them")
-        return self._view(index)
+        return index
+
+    def view_range(self, index: int) -> tuple[int, int]:
+        """First byte of a buffer view in the binary chunk, and the first one behind it."""
+        view = self._view(index)
+        return view.offset, view.offset + view.length
 
     def _view(self, index: int) -> View:
         entry = self.root["bufferViews"].at(index)
@@ -78,8 +103,8 @@ class Document:
         offset = entry["byteOffset"].integer(0, limits.MAX_FILE) if entry.has("byteOffset") else 0
         length = entry["byteLength"].integer(1, limits.MAX_FILE)
         stride = entry["byteStride"].integer(4, 252) if entry.has("byteStride") else 0
-        if offset + length > len(self.glb.binary):
-            entry.fail("view-range", f"ends at byte {offset + length} of {len(self.glb.binary)}")
+        if offset + length > self._length:
+            entry.fail("view-range", f"ends at byte {offset + length} of {self._length}")
         return View(index, offset, length, stride)
 
     def data(self, reference: Value) -> memoryview:

@@ -27,13 +27,15 @@ from eigenfield.format.layout_geometry import (
     read_view_plane,
 )
 from eigenfield.format.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
+from eigenfield.format.layout_residual import read_residual
 from eigenfield.format.strict_json import Value, quoted
 from eigenfield.mesh import Mesh
+from eigenfield.scene import Residual
 from eigenfield.viewplane import ViewPlane
 
 _KEYS = {
-    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "reference", "settings", "scores",
-    "generator",
+    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "reference", "residual", "settings",
+    "scores", "generator",
 }  # fmt: skip
 
 
@@ -49,6 +51,7 @@ class Layout:
     triangles: NDArray[np.int32] | None
     reference: int | None
     to_rgb: NDArray[np.float32] | None
+    residual: Residual | None
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
@@ -58,11 +61,13 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
     extension = None
     with findings.part():
-        extension = find_extension(document)
+        found = find_extension(document)
+        document.check_end(found)
+        extension = found
     if extension is None:
         return None
     version = extension["version"].text()
-    if version not in (limits.FIRST, limits.SECOND, limits.VERSION):
+    if version not in (limits.FIRST, limits.SECOND, limits.THIRD, limits.VERSION):
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )
@@ -74,7 +79,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         findings.note(
             "warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean"
         )
-    mesh = cameras = planes = view_plane = triangles = reference = to_rgb = None
+    mesh = cameras = planes = view_plane = triangles = reference = to_rgb = residual = None
     settings: Mapping[str, Any] = {}
     scores: Mapping[str, Any] = {}
     generator = ""
@@ -102,12 +107,16 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
         reference = extension["reference"].integer(0, count - 1)
     with findings.part():
+        residual = read_residual(document, extension, cameras, findings)
+    with findings.part():
         settings = extension["settings"].mapping() if extension.has("settings") else {}
     with findings.part():
         scores = extension["scores"].mapping() if extension.has("scores") else {}
     with findings.part():
         generator = extension["generator"].text() if extension.has("generator") else ""
-    return Layout(version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, settings, scores, generator)
+    return Layout(
+        version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings, scores, generator
+    )  # fmt: skip
 
 
 def find_extension(document: Document) -> Value:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.2"  # a reader takes any 1.x
+VERSION = "1.3"  # a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
+THIRD = "1.2"  # what "needs" may name
 FEATURES = frozenset(
     {"bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB"}
 )  # what an entry of "needs" may be
@@ -35,6 +36,8 @@ MAX_WEIGHTS = 2**28
 
 MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal
 MAX_OFFSET = 1_000
+
+MAX_FILM = 2**35  # pixels of all frames of a residual: they are decoded one by one
 
 LARGEST = 1e30  # of lengths, calibrations, scales, weights: squares and products stay finite
 ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

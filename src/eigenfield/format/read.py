@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import weakref
 from collections.abc import Iterator
@@ -15,6 +16,7 @@ from eigenfield.errors import FormatError
 from eigenfield.format import limits
 from eigenfield.format.container import parse_glb, read_file
 from eigenfield.format.document import Document
+from eigenfield.format.film import residual_frames
 from eigenfield.format.findings import Finding, Findings
 from eigenfield.format.layout import Layout, read_layout
 from eigenfield.format.layout_geometry import read_mesh
@@ -23,6 +25,8 @@ from eigenfield.format.quantise import mean_values
 from eigenfield.format.stored import PictureFile, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
 from eigenfield.scene import Basis, Plane, Scene
+
+log = logging.getLogger("eigenfield.format")
 
 _bytes: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # of scenes that came from a file
 
@@ -67,6 +71,11 @@ def outline(path: str | os.PathLike[str]) -> Scene:
     return _read(path, pictures=False)
 
 
+def read_scene(data: bytes) -> Scene:
+    """The scene that a file of these bytes holds. Raises FormatError."""
+    return _scene_of(data, pictures=True)
+
+
 def file_bytes(scene: Scene) -> bytes | None:
     """The bytes of the file that `scene` was read from, as they were then; None if it came from no file."""
     return _bytes.get(scene)
@@ -74,10 +83,15 @@ def file_bytes(scene: Scene) -> bytes | None:
 
 def _read(path: str | os.PathLike[str], pictures: bool) -> Scene:
     with naming(path):
-        data = read_file(Path(path))
-        _, layout = _layout_of(data)
-        planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
-        scene = _scene(layout, planes)
+        return _scene_of(read_file(Path(path)), pictures)
+
+
+def _scene_of(data: bytes, pictures: bool) -> Scene:
+    document, layout = _layout_of(data)
+    if document.glb.missing:
+        log.warning("the file ends within its residual: captured views go without (copy or download it again)")
+    planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
+    scene = _scene(layout, planes)
     _bytes[scene] = data
     return scene
 
@@ -99,6 +113,7 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
         generator=layout.generator,
         colours=layout.cameras.colours,
         to_rgb=layout.to_rgb,
+        residual=layout.residual,
     )
 
 
@@ -149,6 +164,7 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
         layout = read_layout(document, findings)
         if layout is not None:
             _check_pictures(layout, findings)
+            _check_residual(layout, findings)
             _check_preview(document, findings)
             _check_bounds(document, layout, findings)
             _check_use(document, findings)
@@ -160,6 +176,13 @@ def _check_pictures(layout: Layout, findings: Findings) -> None:
         for picture in [plane.mean, *(texture for basis in plane.bases for texture in basis.textures)]:
             with findings.part():
                 picture.decode()
+
+
+def _check_residual(layout: Layout, findings: Findings) -> None:
+    if layout.residual is not None:
+        with findings.part():
+            for _ in residual_frames(layout.residual):
+                pass
 
 
 def _check_preview(document: Document, findings: Findings) -> None:

@@ -130,6 +130,10 @@ class Value:
             self.fail("json-value", f"{found} is not within {least} to {most}")
         return found
 
+    def boolean(self) -> bool:
+        found: bool = self._expect(bool, "true or false")
+        return found
+
     def number(self, largest: float = 3.4e38) -> float:
         """A number of magnitude up to `largest` (float32's range unless said)."""
         found = float(self._expect((int, float), "a number"))

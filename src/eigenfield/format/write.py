@@ -27,7 +27,7 @@ from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
-from eigenfield.scene import Plane, Scene
+from eigenfield.scene import Plane, Residual, Scene
 
 QUALITY = 70  # of the eigen textures, for avif
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
@@ -137,7 +137,7 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     ]
     needs = _needs(scene, coded, mesh is not None, poses is not None)
     extension: dict[str, Any] = {
-        "version": limits.VERSION if needs else limits.FIRST if scene.colours is None else limits.SECOND,
+        "version": _version(scene, bool(needs)),
         "needs": needs,
         **proxy,
         "planes": planes,
@@ -153,6 +153,8 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
         for basis, files in zip(plane["bases"], made.bases, strict=True):
             for entry, file in zip(basis["textures"], files, strict=True):
                 entry["bufferView"] = buffer.view(file.data)
+    if scene.residual is not None:  # behind all that any view is drawn of: a file that is cut off there loses it alone
+        extension["residual"] = _residual(scene.residual, buffer)
     perspective, nodes = _nodes(scene)
     return {
         "asset": {"version": "2.0", "generator": f"eigenfield {__version__}"},
@@ -182,6 +184,13 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
+
+
+def _version(scene: Scene, needs: bool) -> str:
+    """The first version that has all that the file uses."""
+    if scene.residual is not None:
+        return limits.VERSION
+    return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
 
 
 def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
@@ -236,6 +245,16 @@ def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
     """The numbers of `count` textures; of one, where all have the same."""
     each = numbers.reshape(count, -1)
     return shortest(each[:1] if (each == each[0]).all() else each)
+
+
+def _residual(residual: Residual, buffer: _Buffer) -> dict[str, Any]:
+    order, count = residual.order, len(residual.order)
+    made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
+    if residual.full:
+        made["full"] = True
+    if (order != np.arange(count)).any():
+        made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
+    return made | {"bufferView": buffer.view(residual.film)}
 
 
 def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool) -> list[str]:

@@ -80,7 +80,10 @@ class Shots:
         self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None
     ) -> NDArray[np.uint8]:
         """(H, W, 1 to 4) uint8 as `png` takes it, with (straight) alpha where it is to be transparent."""
-        picture = self.picture(camera, mix, colour)
+        return self.pixels_of(self.picture(camera, mix, colour))
+
+    def pixels_of(self, picture: Picture) -> NDArray[np.uint8]:
+        """`pixels` of a picture that `picture` drew."""
         if self.background is not None:
             return picture.to_uint8()
         part = picture.coverage[..., None]

@@ -6,7 +6,7 @@ import html
 import weakref
 
 from eigenfield.errors import EigenfieldError
-from eigenfield.format import encode_scene, file_bytes
+from eigenfield.format import encode_scene, file_bytes, without_residual
 from eigenfield.scene import Scene
 from eigenfield.viewer.page import single_file
 
@@ -43,7 +43,7 @@ def _glb(scene: Scene) -> bytes:
     found = file_bytes(scene) or _coded.get(scene)
     if found is None:
         found = _coded[scene] = encode_scene(scene)
-    return found
+    return without_residual(found)
 
 
 def _line(message: str) -> str:

@@ -20,7 +20,8 @@ from eigenfield.parallel import parallel_map, pieces
 from eigenfield.progress import Progress, track
 from eigenfield.raster import rasterise_view
 from eigenfield.rendering import Shots, at_resolution, camera_colour, camera_weights, viewpoint
-from eigenfield.rendering.shots import refuse_attributes
+from eigenfield.rendering.shots import png, refuse_attributes
+from eigenfield.residual import captured_pixels, with_differences
 from eigenfield.scene import Scene
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
 from eigenfield.viewer.exports.maps import mean_map
@@ -47,6 +48,7 @@ def write_colmap(
     folder: Path,
     *,
     points: NDArray[np.float64] | None = None,
+    residual: bool = False,
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
@@ -55,24 +57,40 @@ def write_colmap(
 
     Captured cameras have their own exposure. The model's world is the capture's. points: (n, 2) viewpoints to draw in
     place of the captured cameras, as path_0000.png and so on. Skew, which COLMAP cannot say, is left out of the
-    pictures too. Raises OutputError, and OptionError as `Renderer.draw`.
+    pictures too. residual: encoded cameras' pictures have their residual on them; the listing says which.
+    Raises OutputError, OptionError as `Renderer.draw`, and `residual` where there is none, or with skew.
     """
     todo = _captured(shots) if points is None else _along(shots, points)
     files = file_names([shot.name for shot in todo])
     refuse_attributes(shots.scene.channels)
     sparse = _sparse_points(shots.scene, todo)
     plain = replace(shots, resolution=None)
-    drawn = plain.each(lambda shot: plain.png(shot.camera, shot.mix, shot.colour), todo)
+    if residual and (points is not None or any(camera.K[0, 1] for camera in shots.scene.cameras)):
+        raise OptionError(
+            "residual", "these are not the captured cameras", remedy="leave it out: it is of captured views alone"
+        )
+    exact: list[str] = []
+
+    def draw(view: tuple[int, NDArray[np.float32] | None]) -> tuple[int, bytes]:
+        number, difference = view
+        shot = todo[number]
+        if difference is None:
+            return number, plain.png(shot.camera, shot.mix, shot.colour)
+        exact.append(files[number])
+        return number, png(captured_pixels(shots, number, difference))
+
+    drawn = plain.each(draw, with_differences(shots.scene, range(len(todo)), residual))
     with atomic_folder(folder, overwrite) as part:
         images = part / "images"
-        for file, data in zip(files, track(drawn, "drawing", len(todo), progress), strict=True):
-            put(images / file, data)
+        for number, data in track(drawn, "drawing", len(todo), progress):
+            put(images / files[number], data)
         views = tuple(View(shot.name, images / file, shot.camera) for shot, file in zip(todo, files, strict=True))
         model = colmap_model(LightField(images, views, (), "colmap"), sparse)
         assert model is not None, "pinholes without skew have a model"
         for name, data in model.items():
             put(part / "sparse" / "0" / name, data)
         held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(shots.scene.held_out)]}
+        held |= {"residual": sorted(exact)} if residual else {}
         named = {shot.name: f"images/{file}" for shot, file in zip(todo, files, strict=True)}
         write_listing(part, "colmap", {"images": named, **held})
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from eigenfield.files import refuse_existing, write_bytes
-from eigenfield.format import encode_scene, file_bytes
+from eigenfield.format import encode_scene, file_bytes, without_residual
 from eigenfield.scene import Scene
 from eigenfield.viewer.page import single_file
 
@@ -24,6 +24,6 @@ def write_page(
     Raises OutputError.
     """
     refuse_existing(output, overwrite)
-    glb = file_bytes(scene) or encode_scene(scene)
+    glb = without_residual(file_bytes(scene) or encode_scene(scene))
     data = single_file(glb, title=output.stem if title is None else title, metres_per_unit=metres_per_unit)
     write_bytes(output, data, overwrite=overwrite)
