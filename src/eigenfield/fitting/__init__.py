@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from eigenfield.fitting.colour import to_rgb
+from eigenfield.fitting.colour import split_matrix, to_rgb
 from eigenfield.fitting.fit import Coded, Pixels, PlaneSettings, Rate, code_plane, fit_plane
-from eigenfield.fitting.planes import PRESETS, Fits, fitted_textures, open_fits
+from eigenfield.fitting.planes import PRESETS, Fits, byte_price, fitted_textures, open_fits
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.target import Target, reach, reached
 
@@ -17,6 +17,7 @@ __all__ = [
     "Rate",
     "Shots",
     "Target",
+    "byte_price",
     "code_plane",
     "fit_plane",
     "fitted_textures",
@@ -24,6 +25,7 @@ __all__ = [
     "open_shots",
     "reach",
     "reached",
+    "split_matrix",
     "thinned",
     "to_rgb",
 ]
