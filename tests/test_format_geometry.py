@@ -141,7 +141,9 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
     [
         (lambda e: e["mesh"].update(bufferView=e["cameras"]["coded"]), {"coded-damaged", "coded-size"}),
         (lambda e: e["cameras"].update(coded=e["mesh"]["bufferView"]), {"coded-damaged", "coded-size"}),
-        (lambda e: e["cameras"]["names"].pop(), {"camera-count"}),
+        (lambda e: e["cameras"]["pattern"].update(counts=[8, 1]), {"camera-count"}),
+        (lambda e: e["viewPlane"].update(codedTriangles=e["cameras"]["coded"]), {"coded-damaged", "coded-size"}),
+        (lambda e: e["planes"][0]["bases"][0].update(picture=[]), {"json-type"}),
         (lambda e: e["cameras"].update(size=[0, 40]), {"json-value"}),
         (lambda e: e["planes"][0]["bases"][0].update(codedWeights=e["mesh"]["bufferView"]),
          {"coded-damaged", "coded-size", "weights-count"}),

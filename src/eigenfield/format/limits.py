@@ -7,8 +7,11 @@ VERSION = "1.2"  # a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
 FEATURES = frozenset(
-    {"bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB"}
-)  # what an entry of "needs" may be
+    {
+        "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "regions",
+        "sharedPicture", "stacks", "toRGB",
+    }
+)  # fmt: skip  # what an entry of "needs" may be
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk
