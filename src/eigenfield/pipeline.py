@@ -82,7 +82,8 @@ def encode(
     uv_ssim: instead, the smallest N whose UV measure reaches this. density: atlas texels per photograph pixel along
     one axis, in the camera nearest the centre; the side is at most 4096, and the texels at most twice the
     photographs' pixels. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many;
-    without it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to
+    without it only a mesh that needs an atlas and has over 30,000, and for a
+    fit a relief, by what its pictures lose (`simplification`). align: "dis" or "tvl1", optical-flow alignment to
     the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic", "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
