@@ -13,8 +13,9 @@ import numpy as np
 from eigenfield.errors import FormatError
 from eigenfield.format.camera_coder import code_cameras, decode_cameras
 from eigenfield.format.mesh_coder import decode_mesh, encode_mesh
+from eigenfield.format.triangle_coder import code_triangles, decode_triangles, sorted_triangles
 from eigenfield.format.weight_coder import code_weights, decode_weights
-from test_table_coders import GRID, array_cameras, smooth_weights
+from test_table_coders import GRID, array_cameras, array_triangles, smooth_weights
 
 DAMAGED = 25  # of each
 
@@ -31,6 +32,7 @@ def streams():
     steps = {"intrinsic_step": 0.02, "rotation_step": 1e-4, "centre_step": 1e-3}
     yield "cameras-line", code_cameras(array_cameras(), **steps)[0]
     yield "cameras-grid", code_cameras(array_cameras(), **steps, grid=GRID)[0]
+    yield "triangles-grid", code_triangles(sorted_triangles(array_triangles()))
 
 
 def decoded(kind, stream):
@@ -41,6 +43,8 @@ def decoded(kind, stream):
             parts = {"positions": mesh.vertices, "uv": mesh.uv, "indices": mesh.faces}
         elif kind == "weights":
             parts = {"values": decode_weights(stream)}
+        elif kind == "triangles":
+            parts = {"corners": decode_triangles(stream)}
         else:
             parts = dict(zip(("intrinsics", "poses"), decode_cameras(stream), strict=True))
     except FormatError:

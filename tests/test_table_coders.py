@@ -1,4 +1,4 @@
-"""Coded weights and cameras: within half a step, on grids and off them; any bytes."""
+"""Coded weights, cameras and triangles: within half a step, on grids and off them; any bytes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
 from eigenfield.format.camera_coder import HEADER as CAMERA_HEADER
 from eigenfield.format.camera_coder import code_cameras, decode_cameras
+from eigenfield.format.triangle_coder import code_triangles, decode_triangles, sorted_triangles
 from eigenfield.format.weight_coder import code_weights, decode_weights
 
 ROWS, COLUMNS = 7, 9
@@ -41,6 +42,35 @@ def array_cameras(rows=ROWS, columns=COLUMNS, jitter=0.01):
             K = np.array([[500 + random.normal(), 0, 320 - 4.0 * column], [0, 501, 240 - 5.0 * row], [0, 0, 1]])
             cameras.append(Camera(K, R, -R @ centre, 640, 480))
     return cameras
+
+
+def array_triangles():
+    """(T, 3) of the cells of GRID, cut either way."""
+    corners = np.stack([GRID[:-1, :-1], GRID[:-1, 1:], GRID[1:, :-1], GRID[1:, 1:]], axis=-1).reshape(-1, 4)
+    cut = np.random.default_rng(6).integers(0, 2, len(corners)).astype(bool)
+    one = np.where(cut[:, None], corners[:, [3, 0, 1]], corners[:, [1, 2, 0]])
+    other = np.where(cut[:, None], corners[:, [2, 0, 3]], corners[:, [2, 1, 3]])
+    return np.concatenate([other, one]).astype(np.int32)
+
+
+def test_triangles_come_back_in_order_with_their_sense():
+    triangles = array_triangles()
+    ordered = sorted_triangles(triangles)
+
+    def cyclic(rows):
+        return {min((a, b, c), (b, c, a), (c, a, b)) for a, b, c in rows.tolist()}
+
+    assert len(ordered) == len(triangles) and cyclic(ordered) == cyclic(triangles)
+    stream = code_triangles(ordered)
+    np.testing.assert_array_equal(decode_triangles(stream), ordered)
+    assert len(stream) < len(triangles)  # of 6 bytes plain
+
+
+def test_triangles_of_no_camera_are_refused():
+    for wrong in (-1, 100_000):
+        stream = code_triangles(np.array([[wrong, 1, 2]], np.int32))
+        with pytest.raises(FormatError, match="cameras"):
+            decode_triangles(stream)
 
 
 @pytest.mark.parametrize("grid", [None, GRID, GRID[::-1, ::-1]], ids=["line", "grid", "turned"])
@@ -155,6 +185,7 @@ def streams():
         (decode_weights, code_weights(weights, 0.1)[0]), (decode_weights, code_weights(weights, 0.1, GRID)[0]),
         (decode_cameras, code_cameras(cameras, **steps)[0]),
         (decode_cameras, code_cameras(cameras, **steps, grid=np.arange(6).reshape(2, 3))[0]),
+        (decode_triangles, code_triangles(sorted_triangles(array_triangles()))),
     ]  # fmt: skip
 
 
@@ -174,7 +205,8 @@ def test_damaged_bytes_give_numbers_or_a_format_error(streams, data):
 def test_large_numbers_in_a_short_stream_allocate_nothing(streams):
     for decode, stream in streams:
         large = bytearray(stream)
-        large[6:10] = (10**5).to_bytes(4, "little")
+        at = 1 if decode is decode_triangles else 6
+        large[at : at + 4] = (10**5).to_bytes(4, "little")
         with pytest.raises(FormatError):
             decode(bytes(large))
     wide = bytearray(streams[1][1])

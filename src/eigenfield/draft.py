@@ -16,7 +16,7 @@ from eigenfield import __version__
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import OptionError
-from eigenfield.fitting import KINDS, PRESETS, Target
+from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, split_matrix
 from eigenfield.format.geometry import coded_cameras, coded_mesh
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
@@ -24,6 +24,7 @@ from eigenfield.progress import Progress
 from eigenfield.proxy import prepare_proxy
 from eigenfield.rendering import delaunay_triangles
 from eigenfield.scene import Plane, Scene, check_scale
+from eigenfield.simplification import slim_mesh
 from eigenfield.texturing import (
     FILTERS,
     SIDE_LIMIT,
@@ -93,6 +94,21 @@ class Options:
                 raise OptionError(
                     "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
                 )
+
+    @property
+    def fit_preset(self) -> Preset:
+        """What a fit aims at."""
+        return PRESETS[DEFAULT_PRESET if self.preset is None else self.preset]
+
+    @property
+    def fit_planes(self) -> str:
+        """Which planes a fit has."""
+        return DEFAULT_PLANES if self.planes is None else self.planes
+
+    @property
+    def fit_quality(self) -> int:
+        """At which quality a fit is coded, unless a target says otherwise."""
+        return self.fit_preset.quality if self.quality is None else self.quality
 
     def _choose_fit(self) -> None:
         """Decide what `fit` is where it was not said, and raise OptionError for options that do not go with it."""
@@ -242,13 +258,33 @@ def make_draft(
     centre = _reference(options.reference, names, coordinates, encoded)
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
+    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     if options.fit != "none":
-        mesh = coded_mesh(mesh, cameras, centre)
+        if triangles is None:
+            texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
+            mesh = _slim(
+                capture.subset(encoded.tolist()), mesh, [cameras[i] for i in encoded],
+                int(np.searchsorted(encoded, centre)), options, texels,
+            )  # fmt: skip
+        else:
+            mesh = coded_mesh(mesh, cameras, centre)
         cameras = list(coded_cameras(cameras, mesh, _grid_of(coordinates)))
         plane = fit_view_plane(cameras)
         coordinates = plane.coordinates([camera.centre for camera in cameras])
-    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     return Draft(capture, options, mesh, tuple(cameras), plane, coordinates, held, centre, size)
+
+
+def _slim(
+    shown: LightField, mesh: Mesh, cameras: Sequence[Camera], reference: int, options: Options, texels: float
+) -> Mesh:
+    """The proxy in as few bytes as it is worth at the quality that is asked for. shown: the encoded views; reference:
+    among those. texels: of the atlas for a pixel."""
+    luma = split_matrix()[0][0]
+
+    def grey(index: int) -> NDArray[np.float32]:
+        return np.asarray(shown.photograph(index).pixels @ luma, np.float32)
+
+    return slim_mesh(mesh, cameras, reference, grey, byte_price(options.fit_quality), texels)
 
 
 def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:

@@ -27,8 +27,6 @@ from eigenfield.basis import (
 from eigenfield.capture import LightField
 from eigenfield.draft import (
     DEFAULT_DENSITY,
-    DEFAULT_PLANES,
-    DEFAULT_PRESET,
     DEFAULT_RESAMPLING,
     DEFAULT_TEXTURES,
     Draft,
@@ -39,8 +37,6 @@ from eigenfield.draft import (
 from eigenfield.errors import CaptureError
 from eigenfield.fitting import (
     KINDS,
-    PRESETS,
-    Preset,
     Shots,
     Target,
     fitted_textures,
@@ -96,7 +92,8 @@ def encode(
     uv_ssim: instead, the smallest N whose UV measure reaches this. density: atlas texels per photograph pixel along
     one axis, in the camera nearest the centre; the side is at most 4096, and the texels at most twice the
     photographs' pixels. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many;
-    without it only a mesh that needs an atlas and has over 30,000. align: "dis" or "tvl1", optical-flow alignment to
+    without it only a mesh that needs an atlas and has over 30,000, and for a
+    fit a relief, by what its pictures lose (`simplification`). align: "dis" or "tvl1", optical-flow alignment to
     the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic" (None), "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the
@@ -123,7 +120,7 @@ def encode(
         with _fitted(draft, place, progress) as (coded, measured, shots):
             if target is not None:
                 return measured(reach(target, coded, shots))
-            return measured(coded(_preset(options).quality if quality is None else quality))
+            return measured(coded(options.fit_quality))
     layout = make_atlas(draft.mesh, *draft.atlas)
     resampling = DEFAULT_RESAMPLING if resampling is None else resampling
     with texture_maps(
@@ -170,7 +167,7 @@ def _fitted(
     with (
         open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
         open_fits(
-            shots, component_count(asked, len(used)), _preset(options), KINDS[_planes(options)], work, progress
+            shots, component_count(asked, len(used)), options.fit_preset, KINDS[options.fit_planes], work, progress
         ) as fits,
     ):
         apart = fits.planes[0][1].mean_alone
@@ -178,7 +175,10 @@ def _fitted(
 
         def coded(quality: int) -> Scene:
             own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": fits.reached()}}
-            planes, matrix = fits.coded(quality, draft.grid, progress), None if _planes(options) == "rgb" else to_rgb()
+            planes, matrix = (
+                fits.coded(quality, draft.grid, progress),
+                None if options.fit_planes == "rgb" else to_rgb(),
+            )
             return draft.scene(tuple(planes.values()), own, to_rgb=matrix)
 
         def measured(scene: Scene) -> Scene:
@@ -186,14 +186,6 @@ def _fitted(
             return replace(scene, settings={**scene.settings, "fitted": fitted})
 
         yield coded, measured, shots
-
-
-def _planes(options: Options) -> str:
-    return DEFAULT_PLANES if options.planes is None else options.planes
-
-
-def _preset(options: Options) -> Preset:
-    return PRESETS[DEFAULT_PRESET if options.preset is None else options.preset]
 
 
 def _decompose(

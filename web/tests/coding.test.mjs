@@ -1,4 +1,4 @@
-// The decoders of coded meshes, weights and cameras against what Python codes and decodes, damaged bytes included.
+// The decoders of coded meshes, weights, cameras and triangles against what Python codes and decodes, damaged bytes included.
 
 import assert from "node:assert/strict";
 import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
@@ -31,7 +31,7 @@ before(async () => {
 
 after(() => rm(folder, { recursive: true, force: true }));
 
-const functions = { mesh: "decodeMesh", weights: "decodeWeights", cameras: "decodeCameras" };
+const functions = { mesh: "decodeMesh", weights: "decodeWeights", cameras: "decodeCameras", triangles: "decodeTriangles" };
 
 async function vector(name) {
   const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
@@ -52,7 +52,7 @@ function assertAlike(found, expected, name) {
 
 test("what Python codes decodes to the same numbers", async () => {
   const whole = names.filter((name) => !name.includes("damaged"));
-  assert.equal(whole.length, 9);
+  assert.equal(whole.length, 10);
   for (const name of whole) {
     const { expected, decode } = await vector(name);
     assert.notEqual(expected, null, name);
@@ -84,7 +84,7 @@ test("damaged bytes give what Python makes of them, or an error of ours", async 
 });
 
 test("large numbers in few bytes allocate nothing", async () => {
-  for (const [name, at] of [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6]]) {
+  for (const [name, at] of [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6], ["triangles-grid", 1]]) {
     const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
     new DataView(bytes.buffer).setUint32(at, 2 ** 26, true);
     assert.throws(() => decoders[functions[name.split("-")[0]]](bytes), { name: "SceneError" });

@@ -92,7 +92,8 @@ Examples:
     "--triangles",
     type=int,
     metavar="N",
-    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is]",
+    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is, but that a fit "
+    "simplifies a relief by what its pictures lose]",
 )
 @click.option(
     "--align",

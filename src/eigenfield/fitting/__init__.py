@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from eigenfield.fitting.colour import to_rgb
+from eigenfield.fitting.colour import split_matrix, to_rgb
 from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
-from eigenfield.fitting.planes import KINDS, PRESETS, Fits, Preset, fitted_textures, open_fits
+from eigenfield.fitting.planes import KINDS, PRESETS, Fits, Preset, byte_price, fitted_textures, open_fits
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.target import Target, reach
 
@@ -18,6 +18,7 @@ __all__ = [
     "Rate",
     "Shots",
     "Target",
+    "byte_price",
     "code_plane",
     "coded_psnr",
     "fit_plane",
@@ -25,6 +26,7 @@ __all__ = [
     "open_fits",
     "open_shots",
     "reach",
+    "split_matrix",
     "thinned",
     "to_rgb",
 ]

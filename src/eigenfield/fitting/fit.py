@@ -224,7 +224,7 @@ def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
     more to take off as much: `LAGRANGE` step^2 a bit, times the pixels that a texel of the mean answers for.
     """
     seen, share = scales.mean[scales.mean > 0], scales.coarse[block.window]
-    price = 8 * LAGRANGE * rate.mean_step**2 * float(np.median(seen)) if len(seen) else 0.0  # of a byte
+    price = price_of(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
     gains: list[float] = []
     for file in files_of(coded) or ():
         part = slice(len(gains), len(gains) + file.count)
@@ -232,6 +232,11 @@ def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
         less = np.einsum("nchw,nchw,hw->n", after, 2 * before - after, share, dtype=np.float64)  # b^2 - (b - a)^2
         gains += (less - price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
     return int(np.argmax([0.0, *np.cumsum(gains)]))
+
+
+def price_of(mean_step: float) -> float:
+    """Squared error of a mean that a byte of it takes off, for each pixel that a texel is seen in."""
+    return 8 * LAGRANGE * mean_step**2
 
 
 def _drawn(shots: Shots, model: Model, composer: Composer) -> float:

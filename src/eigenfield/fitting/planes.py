@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.colour import split_matrix
-from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
+from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane, price_of
 from eigenfield.fitting.shots import Shots, thinned
 from eigenfield.format.deep import SMALLEST, encoder_step
 from eigenfield.format.deep_code import STEP
@@ -136,6 +136,12 @@ def step_of(quality: int) -> float:
     """Quantiser step of luma's components, were they as dense as the atlas, in the photographs' range: quality 0 to 100
     is SVT-AV1's crf 63 to 0 at half a grey level a code."""
     return encoder_step(0.63 * (100 - quality)) * STEP / TEXTURE_SHARE
+
+
+def byte_price(quality: int) -> float:
+    """Squared error of luma that a byte takes off the pictures at a quality, for each pixel that a texel of the mean is
+    seen in."""
+    return price_of(KINDS["luma-chroma"][0].mean_step * step_of(quality))
 
 
 def scaled(size: tuple[int, int], share: float) -> tuple[int, int]:

@@ -16,7 +16,7 @@ from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
 from eigenfield.scene import Basis, Plane, Scene
 
-SMALL_PREVIEW = 128, 60  # texels and quality of the preview beside pictures of a fit: as little as tells what is there
+SMALL_PREVIEW = 128, 50  # texels and quality of the preview beside pictures of a fit: as little as tells what is there
 MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: there a byte gains as much (Tarot)
 
 

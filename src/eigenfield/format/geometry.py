@@ -23,7 +23,7 @@ from eigenfield.mesh import Mesh
 PIXEL_STEP = 0.25  # pixels of the reference camera, for meshes that are no relief
 DEPTH_ERROR = 0.04  # pixels by which a rounded depth moves a point in the camera that is farthest from the reference
 WORLD_STEP = 0.1  # pixels of the reference camera at the median depth: of a mesh that is not all before that camera
-CAMERA_STEP = 0.02  # pixels
+CAMERA_STEP = 0.04  # pixels
 UV_BITS = 12
 
 

@@ -19,8 +19,9 @@ class Lattice:
     matrix: NDArray[np.float64]
     flat: bool
 
-    def points(self, steps: NDArray[np.int64]) -> NDArray[np.float64]:
-        """(n, 3) lattice coordinates to world positions. The order of the sums is part of the format."""
+    def points(self, steps: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
+        """(n, 3) lattice coordinates, and places between, to world positions. The order of the sums is part of the
+        format."""
         i, j, k = steps.astype(np.float64).T
         m = self.matrix
         with np.errstate(all="ignore"):

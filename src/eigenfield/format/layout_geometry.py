@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.camera import Camera
 from eigenfield.format import limits
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document, all_finite
+from eigenfield.format.name_pattern import read_pattern
 from eigenfield.format.stored import keep_cameras, keep_stream
 from eigenfield.format.strict_json import Value, printable, quoted
 from eigenfield.mesh import Mesh
@@ -68,13 +69,7 @@ def read_coded_mesh(document: Document, entry: Value) -> Mesh:
 
 def read_cameras(document: Document, entry: Value) -> CameraList:
     """FormatError: `camera-*`, `accessor-*`."""
-    names: list[str] = []
-    for name in entry["names"].items(limits.MAX_CAMERAS, 1):
-        if not printable(name.text()):
-            name.fail("camera-name", "a name with control characters")
-        names.append(name.value)
-    if len(set(names)) < len(names):
-        entry["names"].fail("camera-name", "two cameras have one name")
+    names = _read_names(entry)
     count = len(names)
     held_out = np.zeros(count, bool)
     if entry.has("heldOut"):
@@ -111,6 +106,22 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
         good = (gain >= 1 / limits.MAX_GAIN) & (gain <= limits.MAX_GAIN) & (np.abs(offset) <= limits.MAX_OFFSET)
         _refuse(entry, names, "colour", ~good.all(axis=1), "has a gain or an offset outside their range")
     return CameraList(tuple(names), cameras, held_out, colours)
+
+
+def _read_names(entry: Value) -> list[str]:
+    """One by one, or by what they have in common."""
+    given = entry["pattern"] if entry.has("pattern") else entry["names"]
+    if entry.has("pattern"):
+        names = read_pattern(given)
+    else:
+        names = [name.text() for name in given.items(limits.MAX_CAMERAS, 1)]
+    for index, name in enumerate(names):
+        if not printable(name):
+            where = given if entry.has("pattern") else given.at(index)
+            where.fail("camera-name", "a name with control characters")
+    if len(set(names)) < len(names):
+        given.fail("camera-name", "two cameras have one name")
+    return names
 
 
 def cameras_of(
@@ -176,12 +187,21 @@ def read_view_plane(entry: Value) -> ViewPlane:
 
 def read_triangles(document: Document, entry: Value, cameras: CameraList | None) -> NDArray[np.int32]:
     """(T, 3) indices of encoded cameras. FormatError: `view-plane-triangles`, `accessor-*`."""
-    if not entry.has("triangles"):
-        return np.zeros((0, 3), np.int32)
-    flat = document.array(entry["triangles"], "SCALAR", (UINT16, UINT32), 6 * limits.MAX_CAMERAS)
-    if len(flat) % 3:
-        entry["triangles"].fail("view-plane-triangles", f"{len(flat)} indices are no whole number of triangles")
     most = limits.MAX_CAMERAS if cameras is None else cameras.encoded
-    if flat.max() >= most:
-        entry["triangles"].fail("view-plane-triangles", f"index {flat.max()} with {most} encoded cameras")
-    return flat.astype(np.int32).reshape(-1, 3)
+    found: NDArray[Any]
+    if entry.has("codedTriangles"):
+        from eigenfield.format.triangle_coder import decode_triangles  # as above
+
+        given = entry["codedTriangles"]
+        found = decode_triangles(bytes(document.data(given)), given.where)
+    elif entry.has("triangles"):
+        given = entry["triangles"]
+        flat = document.array(given, "SCALAR", (UINT16, UINT32), 6 * limits.MAX_CAMERAS)
+        if len(flat) % 3:
+            given.fail("view-plane-triangles", f"{len(flat)} indices are no whole number of triangles")
+        found = flat.astype(np.int64).reshape(-1, 3)
+    else:
+        return np.zeros((0, 3), np.int32)
+    if found.max(initial=0) >= most:
+        given.fail("view-plane-triangles", f"index {found.max()} with {most} encoded cameras")
+    return found.astype(np.int32)

@@ -125,8 +125,10 @@ def _read_basis(
     size = _size(entry["size"], channels)
     textures: list[Picture] = []
     total = 0
-    for texture in entry["textures"].items(limits.MAX_COMPONENTS):
+    common = entry["picture"].mapping() if entry.has("picture") else {}
+    for own in entry["textures"].items(limits.MAX_COMPONENTS):
         with findings.part():
+            texture = Value(dict(common) | own.mapping(), own.where)
             count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
             total += count  # also of a picture that is damaged: its weights are there
             textures.append(_picture(document, texture, size, channels, count, bare=False))

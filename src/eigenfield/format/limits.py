@@ -8,8 +8,11 @@ FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
 THIRD = "1.2"  # what "needs" may name
 FEATURES = frozenset(
-    {"bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB"}
-)  # what an entry of "needs" may be
+    {
+        "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "regions",
+        "sharedPicture", "stacks", "toRGB",
+    }
+)  # fmt: skip  # what an entry of "needs" may be
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk

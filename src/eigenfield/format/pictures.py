@@ -102,7 +102,7 @@ def encode_preview(codes: Codes, side: int = PREVIEW_SIDE, quality: int = PREVIE
     if size != image.size:
         image = image.resize(size, Image.Resampling.LANCZOS)
     buffer = io.BytesIO()
-    image.save(buffer, "JPEG", quality=quality)
+    image.save(buffer, "JPEG", quality=quality, optimize=True)
     return buffer.getvalue()
 
 

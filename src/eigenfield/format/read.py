@@ -225,7 +225,7 @@ def _check_bounds(document: Document, layout: Layout, findings: Findings) -> Non
                 findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
 
 
-_REFERENCES = ("bufferView", "coded", "codedWeights")  # keys that name a buffer view
+_REFERENCES = ("bufferView", "coded", "codedTriangles", "codedWeights")  # keys that name a buffer view
 
 
 def _check_use(document: Document, findings: Findings) -> None:

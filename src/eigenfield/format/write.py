@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -20,9 +20,10 @@ from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
 from eigenfield.format.coarse import coarse_mesh
 from eigenfield.format.coded_pictures import Coded, CodedPlane, code_pictures, shortest
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
-from eigenfield.format.document import FLOAT, UINT16, UINT32, Document
+from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
+from eigenfield.format.name_pattern import name_pattern
 from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
 from eigenfield.mesh import Mesh
@@ -54,7 +55,7 @@ class _Buffer:
 
     def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
         """Append an array as an accessor of its own buffer view; its index."""
-        dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2"}[component]
+        dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2", UINT8: "u1"}[component]
         view = self.view(np.ascontiguousarray(array, dtype).tobytes(), target)
         self.accessors.append(
             {"bufferView": view, "componentType": component, "count": len(array), "type": kind, **more}
@@ -127,7 +128,7 @@ def check_readable(text: bytes, binary: bytes) -> None:
 def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
     mesh, poses = stream_of(scene.mesh), cameras_stream(scene.cameras)
-    primitive = _primitive(scene.mesh if mesh is None else coarse_mesh(scene.mesh), buffer)
+    primitive = _primitive(scene.mesh if mesh is None else coarse_mesh(scene.mesh), buffer, mesh is not None)
     proxy = {} if mesh is None else {"mesh": {"bufferView": buffer.view(mesh)}}
     first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
@@ -135,15 +136,21 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
         _plane(plane, made, buffer, inline=index > 0 or coded.preview is not None)
         for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
     ]
-    needs = _needs(scene, coded, mesh is not None, poses is not None)
+    cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
+    used = {
+        "namePattern": "pattern" in cameras,
+        "codedTriangles": "codedTriangles" in view_plane,
+        "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
+    }
+    needs = _needs(scene, coded, mesh is not None, poses is not None, used)
     extension: dict[str, Any] = {
         "version": _version(scene, bool(needs)),
         "needs": needs,
         **proxy,
         "planes": planes,
         **({} if scene.to_rgb is None else {"toRGB": shortest(scene.to_rgb.ravel())}),
-        "cameras": _cameras(scene, buffer, poses),
-        "viewPlane": _view_plane(scene, buffer, bool(needs)),
+        "cameras": cameras,
+        "viewPlane": view_plane,
         "reference": int(scene.reference),
         "settings": dict(scene.settings),
         "scores": dict(scene.scores),
@@ -193,16 +200,18 @@ def _version(scene: Scene, needs: bool) -> str:
     return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
 
 
-def _primitive(mesh: Mesh, buffer: _Buffer) -> dict[str, Any]:
+def _primitive(mesh: Mesh, buffer: _Buffer, small: bool) -> dict[str, Any]:
+    """small: whether indices may have 8 bits, which other viewers read but need not be quick at."""
     assert mesh.uv is not None
-    short = len(mesh.vertices) < 65_536  # 65535 itself restarts a primitive and may not be an index
+    # the largest index of a type restarts a primitive and may not be used
+    index = UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
     bounds = {"min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()}
     return {
         "attributes": {
             "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
             "TEXCOORD_0": buffer.accessor(mesh.uv, FLOAT, "VEC2", _VERTICES),
         },
-        "indices": buffer.accessor(mesh.faces.ravel(), UINT16 if short else UINT32, "SCALAR", _INDICES),
+        "indices": buffer.accessor(mesh.faces.ravel(), index, "SCALAR", _INDICES),
         "material": 0,
     }
 
@@ -224,9 +233,21 @@ def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) ->
             entry["codedWeights"] = buffer.view(stream)
         elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
-        entry["textures"] = [{"bufferView": -1, **_picture(file)} for file in files]
+        entry |= _textures([_picture(file) for file in files])
         made["bases"].append(entry)
     return made
+
+
+def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
+    """Entries of pictures of more than one texture, what most of them say said once; the buffer views come later."""
+    common: dict[str, Any] = {}
+    if len(entries) > 1 and any("count" in entry for entry in entries):
+        common = {"count": 1} | entries[0]
+        entries = [{"count": 1} | entry for entry in entries]
+        common = {key: value for key, value in common.items() if all(key in entry for entry in entries)}
+        entries = [{key: value for key, value in one.items() if common.get(key) != value} for one in entries]
+    shared = {"picture": common} if common else {}
+    return shared | {"textures": [{"bufferView": -1, **entry} for entry in entries]}
 
 
 def _picture(file: PictureFile) -> dict[str, Any]:
@@ -257,8 +278,8 @@ def _residual(residual: Residual, buffer: _Buffer) -> dict[str, Any]:
     return made | {"bufferView": buffer.view(residual.film)}
 
 
-def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool) -> list[str]:
-    """The features that a reader must know to draw this scene rightly."""
+def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool, used: Mapping[str, bool]) -> list[str]:
+    """The features that a reader must know to draw this scene rightly; used: some of them."""
     files = [file for plane in coded.planes for some in [[plane.mean], *plane.bases] for file in some]
     found = {
         "bits": any(file.bits != 8 for file in files),
@@ -268,13 +289,14 @@ def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool) -> list[str]:
         "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
         "stacks": any(file.count != 1 for file in files),
         "toRGB": scene.to_rgb is not None,
+        **used,
     }
-    return [name for name, needed in found.items() if needed]
+    return sorted(name for name, needed in found.items() if needed)
 
 
 def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, Any]:
     sizes = np.array([[c.width, c.height] for c in scene.cameras])
-    made: dict[str, Any] = {"names": list(scene.names), "heldOut": np.flatnonzero(scene.held_out).tolist()}
+    made = _names(scene.names, stream is not None) | {"heldOut": np.flatnonzero(scene.held_out).tolist()}
     if stream is not None:
         made["coded"] = buffer.view(stream)
     else:
@@ -292,10 +314,15 @@ def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, A
     return made
 
 
+def _names(names: Sequence[str], short: bool) -> dict[str, Any]:
+    """short: whether a pattern may stand for them, which readers of 1.1 do not know."""
+    pattern = name_pattern(names) if short else None
+    return {"names": list(names)} if pattern is None else {"pattern": pattern}
+
+
 def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:
-    """short: whether the triangles may have 16 bits, which readers of 1.1 refuse."""
+    """short: whether the triangles may be coded, which readers of 1.1 do not know."""
     plane = scene.view_plane
-    short &= len(scene.encoded) < 65_536
     made: dict[str, Any] = {
         name: (np.asarray(value, np.float64) + 0.0).tolist()  # + 0.0: no minus zero in the file
         for name, value in (
@@ -306,7 +333,12 @@ def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:
         )
     }
     if len(scene.triangles):
-        made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT16 if short else UINT32, "SCALAR")
+        if short:
+            from eigenfield.format.triangle_coder import code_triangles, sorted_triangles  # numba: most files need none
+
+            made["codedTriangles"] = buffer.view(code_triangles(sorted_triangles(scene.triangles)))
+        else:
+            made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT32, "SCALAR")
     return made
 
 

@@ -42,7 +42,7 @@ export interface SceneDocument {
   right: [number, number, number];
   up: [number, number, number];
   extent: [number, number];
-  triangles: Accessor | null;
+  triangles: Accessor | Stream | null;
   settings: JsonObject;
   scores: JsonObject;
   views: View[];
@@ -56,6 +56,9 @@ export interface SceneDocument {
 type ComponentType = 5121 | 5123 | 5125 | 5126;
 const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
 const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
+const MOST_PARTS = 64; // of a pattern of names
+const MOST_DIGITS = 9;
+const MOST_NUMBER = 10 ** MOST_DIGITS;
 const USHORT = 5123;
 const UINT = 5125;
 
@@ -91,7 +94,7 @@ export function readDocument(json: Json): SceneDocument {
   if (colour.exists && colours.length < 3) throw colour.wrong("needs three channels");
 
   const viewPlane = extension.key("viewPlane");
-  const triangles = viewPlane.key("triangles");
+  const [triangles, codedTriangles] = [viewPlane.key("triangles"), viewPlane.key("codedTriangles")];
   const primitive = root.key("meshes").at(0).key("primitives").at(0);
   const mode = primitive.key("mode");
   if (mode.exists && mode.integer(0, 6) !== 4) throw mode.wrong("no triangles");
@@ -110,9 +113,11 @@ export function readDocument(json: Json): SceneDocument {
     sizes: sizesOf(cameras, count, accessor),
     colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
     ...readViewPlane(viewPlane),
-    triangles: triangles.exists
-      ? trianglesOf(accessor(triangles, "SCALAR", [USHORT, UINT], null), 2 * limits.MAX_CAMERAS)
-      : null,
+    triangles: codedTriangles.exists
+      ? streamOf(codedTriangles, codedTriangles, viewOf)
+      : triangles.exists
+        ? trianglesOf(accessor(triangles, "SCALAR", [USHORT, UINT], null), 2 * limits.MAX_CAMERAS)
+        : null,
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
     views,
@@ -236,12 +241,42 @@ function previewOf(root: Value, viewOf: ViewReader): number | null {
 }
 
 function namesOf(cameras: Value): string[] {
-  const names = cameras.key("names").items(limits.MAX_CAMERAS).map((name) => name.text(limits.MAX_NAME));
-  if (!names.length) throw cameras.key("names").wrong("no cameras");
-  if (new Set(names).size !== names.length) throw cameras.key("names").wrong("a name stands twice");
-  const odd = names.findIndex((name) => /[\u0000-\u001f\u007f-\u009f]/.test(name));
-  if (odd >= 0) throw cameras.key("names").at(odd).wrong("control characters");
+  const pattern = cameras.key("pattern");
+  const given = pattern.exists ? pattern : cameras.key("names");
+  const names = pattern.exists
+    ? patternNames(pattern)
+    : given.items(limits.MAX_CAMERAS).map((name) => name.text(limits.MAX_NAME));
+  if (!names.length) throw given.wrong("no cameras");
+  if (new Set(names).size !== names.length) throw given.wrong("a name stands twice");
+  if (names.some((name) => /[\u0000-\u001f\u007f-\u009f]/.test(name))) throw given.wrong("control characters");
   return names;
+}
+
+/** Names of which the pieces are the same in all, along rows or along columns. */
+function patternNames(pattern: Value): string[] {
+  const counts = pattern.key("counts").items(2).map((item) => item.integer(1, limits.MAX_CAMERAS));
+  const [rows = 0, columns = 0] = counts;
+  if (!columns || rows * columns > limits.MAX_CAMERAS) throw pattern.wrong("no counts of rows and columns");
+  const pieces = pattern.key("parts").items(MOST_PARTS).map((part): [number, string[]] => {
+    if (typeof part.raw === "string") return [0, Array<string>(rows).fill(part.text(limits.MAX_NAME))];
+    const axis = part.key("axis").integer(0, 1);
+    const count = axis ? columns : rows;
+    const texts = part.key("texts");
+    if (texts.exists) {
+      const listed = texts.items(count).map((item) => item.text(limits.MAX_NAME));
+      if (listed.length !== count) throw texts.wrong(`${count} texts are needed`);
+      return [axis, listed];
+    }
+    const [first, step] = [part.key("first").integer(0, MOST_NUMBER), part.key("step").integer(0, MOST_NUMBER)];
+    const digits = part.key("digits").integer(1, MOST_DIGITS);
+    return [axis, Array.from({ length: count }, (_, k) => String(first + step * k).padStart(digits, "0"))];
+  });
+  return Array.from({ length: rows * columns }, (_, i) => {
+    const at = [Math.floor(i / columns), i % columns];
+    const name = pieces.map(([axis, texts]) => texts[at[axis] ?? 0]).join("");
+    if (name.length > limits.MAX_NAME) throw pattern.wrong(`names of more than ${limits.MAX_NAME} characters`);
+    return name;
+  });
 }
 
 function heldOutOf(cameras: Value, count: number): boolean[] {

@@ -1,12 +1,13 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
 import { decodeCameras } from "./camera-decoder.js";
-import type { Accessor, SceneDocument } from "./document.js";
+import type { Accessor, SceneDocument, Stream } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import type { Basis } from "./planes.js";
+import { decodeTriangles } from "./triangle-decoder.js";
 import { decodeWeights } from "./weight-decoder.js";
 
 const SHORTEST = 1e-6; // of focal lengths, in pixels
@@ -216,7 +217,7 @@ export function atlasOf(scene: SceneDocument, means: [number, number][]): [numbe
 export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
   if (!scene.triangles) return new Uint32Array(0);
   const { where } = scene.triangles;
-  const triangles = Uint32Array.from(await readNumbers(scene.triangles, scene, bytes));
+  const triangles = await readCorners(scene.triangles, scene, bytes);
   const encoded = scene.heldOut.filter((out) => !out).length;
   for (let i = 0; i < triangles.length; i += 3) {
     const [a = encoded, b = encoded, c = encoded] = triangles.subarray(i, i + 3);
@@ -224,6 +225,11 @@ export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Pro
     if (a === b || b === c || c === a) throw damaged(where, "a triangle with one camera twice");
   }
   return triangles;
+}
+
+async function readCorners(triangles: Accessor | Stream, scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
+  if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene, bytes));
+  return decodeTriangles(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
 }
 
 export function sceneInfo(

@@ -2,7 +2,8 @@
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
 export const KNOWN_NEEDS: ReadonlySet<string> = new Set([
-  "bits", "codedCameras", "codedMesh", "codedWeights", "regions", "stacks", "toRGB",
+  "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "regions", "sharedPicture",
+  "stacks", "toRGB",
 ]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes

@@ -171,7 +171,10 @@ function readBasis(
   if (!Number.isInteger(column) || !Number.isInteger(row)) throw corner.wrong("no whole numbers");
   if (column + size[0] > whole[0] || row + size[1] > whole[1]) throw basis.wrong("textures beyond their grid");
   let count = 0;
-  const pictures = basis.key("textures").items(limits.MAX_COMPONENTS).map((picture) => {
+  const common = basis.key("picture");
+  const shared = common.exists ? common.object() : {};
+  const pictures = basis.key("textures").items(limits.MAX_COMPONENTS).map((own) => {
+    const picture = new Value({ ...shared, ...own.object() }, own.where);
     const several = picture.key("count");
     const textures = several.exists ? several.integer(1, limits.MAX_COMPONENTS) : 1;
     count += textures;

@@ -26,11 +26,14 @@ var ae = "EIGENFIELD_eigen_textures", oe = /* @__PURE__ */ new Set([
 	"bits",
 	"codedCameras",
 	"codedMesh",
+	"codedTriangles",
 	"codedWeights",
+	"namePattern",
 	"regions",
+	"sharedPicture",
 	"stacks",
 	"toRGB"
-]), se = 64 * 2 ** 20, M = 16384, ce = 16384, le = 2 ** 27, ue = 4096, de = 8 * 2 ** 30, fe = 1e5, pe = 65535, me = 2 ** 29, he = 1024, ge = 2 ** 26, _e = 2 ** 27, ve = 2 ** 28, ye = 1e30, N = 65536, be = 126, P = 64, xe = 0, Se = 1, Ce = 2, we = 24, Te = 44, Ee = 21, De = 26214, Oe = 4, ke = Float64Array.from({ length: 4095 }, (e, t) => Math.round(N / (1 + Math.exp((2047 - t) / 256)))), Ae = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), je = Float64Array.from({ length: 127 }, (e, t) => Math.round(N / (t + 1.5)));
+]), se = 64 * 2 ** 20, ce = 16384, le = 16384, ue = 2 ** 27, de = 4096, fe = 8 * 2 ** 30, pe = 1e5, me = 65535, he = 2 ** 29, M = 1024, ge = 2 ** 26, _e = 2 ** 27, ve = 2 ** 28, ye = 1e30, N = 65536, be = 126, P = 64, xe = 0, Se = 1, Ce = 2, we = 24, Te = 44, Ee = 21, De = 26214, Oe = 4, ke = Float64Array.from({ length: 4095 }, (e, t) => Math.round(N / (1 + Math.exp((2047 - t) / 256)))), Ae = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), je = Float64Array.from({ length: 127 }, (e, t) => Math.round(N / (t + 1.5)));
 function F(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + F(Math.floor(e / 4294967296));
 }
@@ -159,7 +162,7 @@ function et(e, t = "cameras") {
 	let n = I(e, Ze, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Qe) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
-	Ne(e, Math.max(L * i, o * s), L * fe, t);
+	Ne(e, Math.max(L * i, o * s), L * pe, t);
 	let l = Ze + (a ? 132 : 0);
 	I(e, l, t);
 	let u = (e, t) => a ? n.getFloat32(Ze + 4 * (e * L + t), !0) : 0, d = Ge(e.subarray(l)), f = a ? Xe(d, o * s, i, t) : null, p = Ye(d, i, L, (r & $e) !== 0);
@@ -223,26 +226,37 @@ function nt(e, t, n, r) {
 		]
 	].flat();
 }
+// eigenfield-three/src/triangle-decoder.ts
+var rt = 5;
+function it(e, t = "triangles") {
+	let n = I(e, rt, t).getUint32(1, !0);
+	Ne(e, 3 * n, 6 * pe, t);
+	let r = Ge(e.subarray(rt)), i = Ye(r, n, 3, !0);
+	r.checkEnd(t);
+	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw j(t, "triangles of cameras that there cannot be");
+	return { corners: Uint32Array.from(a) };
+}
 // eigenfield-three/src/weight-decoder.ts
-var rt = 14, it = 2 ** 20;
-function at(e, t = "weights") {
-	let n = I(e, rt, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var at = 14, ot = 2 ** 20;
+function st(e, t = "weights") {
+	let n = I(e, at, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
-	Ne(e, o * s * Math.max(a, 1), ve, t), I(e, rt + 4 * a, t);
+	Ne(e, o * s * Math.max(a, 1), ve, t), I(e, at + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw j(t, "a grid with too few cells");
-	let l = Ge(e.subarray(rt + 4 * a)), u = r ? Xe(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = Ge(e.subarray(at + 4 * a)), u = r ? Xe(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * it * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * ot * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(rt + 4 * e, !0);
+		let r = n.getFloat32(at + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
 		let i = Ke(l), h = Je(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? ot(h, o, s) : h;
+		let g = i === 2 ? ct(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -256,14 +270,14 @@ function at(e, t = "weights") {
 		values: p
 	};
 }
-function ot(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = st(n);
+function ct(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = lt(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = st(t);
+	let o = lt(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -271,33 +285,33 @@ function ot(e, t, n) {
 	}
 	return i;
 }
-function st(e) {
+function lt(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/info.ts
-var ct = 1e-6;
-async function lt(e, t, n) {
+var ut = 1e-6;
+async function dt(e, t, n) {
 	let r = await n(e.view), i = t.views[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw re(e.where);
 	let a = e.count * e.items, o = r.slice(e.offset, e.offset + (e.type === 5123 ? 2 : 4) * a);
-	return e.type === 5125 ? new Uint32Array(o) : e.type === 5123 ? new Uint16Array(o) : ut(new Float32Array(o), e.where);
+	return e.type === 5125 ? new Uint32Array(o) : e.type === 5123 ? new Uint16Array(o) : ft(new Float32Array(o), e.where);
 }
-function ut(e, t) {
+function ft(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
 	return e;
 }
-async function dt(e, t) {
+async function pt(e, t) {
 	let [{ lenses: n, poses: r }, i, a] = await Promise.all([
-		pt(e, t),
-		mt(e, t),
-		e.colour ? lt(e.colour, e, t) : null
+		ht(e, t),
+		gt(e, t),
+		e.colour ? dt(e.colour, e, t) : null
 	]);
 	return e.names.map((t, o) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = n.numbers.subarray(5 * o, 5 * o + 5);
-		if (!(s > ct && c > ct)) throw j(n.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ht([...r.numbers.subarray(12 * o, 12 * o + 12)], r.where, t), [m = 0, h = 0] = i.numbers.subarray(2 * o, 2 * o + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > me) throw j(i.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > ut && c > ut)) throw j(n.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = _t([...r.numbers.subarray(12 * o, 12 * o + 12)], r.where, t), [m = 0, h = 0] = i.numbers.subarray(2 * o, 2 * o + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > he) throw j(i.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -314,13 +328,13 @@ async function dt(e, t) {
 				0,
 				1
 			]
-		], [_, v] = a ? gt([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
+		], [_, v] = a ? vt([...a.subarray(6 * o, 6 * o + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: Tt(f, p),
+			centre: Ot(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -328,25 +342,25 @@ async function dt(e, t) {
 		};
 	});
 }
-async function ft(e, t, n) {
+async function mt(e, t, n) {
 	return {
-		numbers: await lt(e, t, n),
+		numbers: await dt(e, t, n),
 		where: e.where
 	};
 }
-async function pt(e, t) {
+async function ht(e, t) {
 	let { calibration: n, names: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ft(r, e, t),
-			poses: await ft(i, e, t)
+			lenses: await mt(r, e, t),
+			poses: await mt(i, e, t)
 		};
 	}
 	let { view: i, where: a } = n, o = et(new Uint8Array(await t(i)), a), s = o.poses.length / 12;
 	if (s !== r.length) throw j(a, `${s} cameras in it, and ${r.length} names`);
 	let c = (e) => ({
-		numbers: ut(e, a),
+		numbers: ft(e, a),
 		where: a
 	});
 	return {
@@ -354,15 +368,15 @@ async function pt(e, t) {
 		poses: c(o.poses)
 	};
 }
-async function mt(e, t) {
-	if (!Array.isArray(e.sizes)) return ft(e.sizes, e, t);
+async function gt(e, t) {
+	if (!Array.isArray(e.sizes)) return mt(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.names.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ht(e, t, n) {
+function _t(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -386,13 +400,13 @@ function ht(e, t, n) {
 		t: a
 	};
 }
-function gt(e, t, n) {
+function vt(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function _t(e, t) {
-	let n = R(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => vt(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function yt(e, t) {
+	let n = R(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => bt(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -400,26 +414,26 @@ async function _t(e, t) {
 	}
 	return o;
 }
-async function vt({ weights: e, count: t }, n, r, i) {
+async function bt({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return lt(e, r, i);
-	let { view: a, where: o } = e, { cameras: s, components: c, values: l } = at(new Uint8Array(await i(a)), o);
-	if (s === n && c === t) return ut(l, o);
+	if ("type" in e) return dt(e, r, i);
+	let { view: a, where: o } = e, { cameras: s, components: c, values: l } = st(new Uint8Array(await i(a)), o);
+	if (s === n && c === t) return ft(l, o);
 	throw j(o, `${s} x ${c} weights, and ${n} encoded cameras x ${t} textures`);
 }
 function R(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function yt(e) {
+function xt(e) {
 	return Math.max(0, ...R(e).map(({ count: e }) => e));
 }
-function bt(e, t) {
+function St(e, t) {
 	let n = [...t, ...R(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function xt(e, t) {
+async function Ct(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = Uint32Array.from(await lt(e.triangles, e, t)), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await wt(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -427,7 +441,10 @@ async function xt(e, t) {
 	}
 	return r;
 }
-function St(e, t, n, r, i, a) {
+async function wt(e, t, n) {
+	return "type" in e ? Uint32Array.from(await dt(e, t, n)) : it(new Uint8Array(await n(e.view)), e.where).corners;
+}
+function Tt(e, t, n, r, i, a) {
 	let { right: o, up: s } = e, c = B(o, s), l = [
 		0,
 		0,
@@ -456,8 +473,8 @@ function St(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: Ct(e, i),
-		size: bt(e, n),
+		bytes: Et(e, i),
+		size: St(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -471,8 +488,8 @@ function St(e, t, n, r, i, a) {
 		facesPlane: Math.abs(z(l, c)) > .7
 	};
 }
-function Ct(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.map((e) => e.mean.view), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(yt(e)).fill(0);
+function Et(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.map((e) => e.mean.view), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(xt(e)).fill(0);
 	for (let { pictures: t } of R(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -498,7 +515,7 @@ function Ct(e, t) {
 		textures: s
 	};
 }
-function wt(e, t) {
+function Dt(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -506,7 +523,7 @@ function wt(e, t) {
 	];
 	return [r[0] > 0 ? z(i, e.right) / r[0] : 0, r[1] > 0 ? z(i, e.up) / r[1] : 0];
 }
-function Tt(e, t) {
+function Ot(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -525,7 +542,7 @@ function B(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Et(e, t, n) {
+function kt(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -564,7 +581,7 @@ function Et(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Dt(n, o, s);
+		let r = At(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -575,7 +592,7 @@ function Et(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = kt(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ot(t) * m[0], Ot(n) * m[1]], _ = [
+	let u = Mt(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [jt(t) * m[0], jt(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -592,7 +609,7 @@ function Et(e, t, n) {
 		offset: null
 	};
 }
-function Dt({ K: e, width: t, height: n }, r, i) {
+function At({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -612,10 +629,10 @@ function Dt({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ot(e) {
+function jt(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function kt(e) {
+function Mt(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
@@ -629,24 +646,24 @@ function kt(e) {
 	}
 	return t;
 }
-function At(e, t, n, r, i = 1) {
+function Nt(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return jt(e, t, n), Mt(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Pt(e, t, n), Ft(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function jt(e, t, n) {
+function Pt(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function Mt(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Nt(e, n);
+function Ft(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = It(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Nt(e, t) {
+function It(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -656,19 +673,19 @@ function Nt(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Pt = 256;
-function Ft(e, t, n) {
+var Lt = 256;
+function Rt(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Pt)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Lt)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => It(t, i.getX(e), i.getY(e), i.getZ(e))), l = Lt(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => zt(t, i.getX(e), i.getY(e), i.getZ(e))), l = Bt(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Lt(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Bt(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -678,7 +695,7 @@ function Ft(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function It({ K: e, R: t, t: n }, r, i, a) {
+function zt({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -686,36 +703,36 @@ function It({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Lt(e) {
+function Bt(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Rt = 4 / 3, zt = 4, Bt = 8, Vt = 2, Ht = 2 ** 20;
-function Ut() {
+var Vt = 4 / 3, Ht = 4, Ut = 8, Wt = 2, Gt = 2 ** 20;
+function Kt() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Wt(e) ? Math.min(t ?? 4, 6) * 128 * Ht : Math.min(t ?? 8, 8) * 256 * Ht;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && qt(e) ? Math.min(t ?? 4, 6) * 128 * Gt : Math.min(t ?? 8, 8) * 256 * Gt;
 }
-function Wt(e) {
+function qt(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function V([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Gt(e, t) {
+function Jt(e, t) {
 	let [n, r] = V(e, t);
 	return n * r;
 }
-function Kt(e) {
+function Yt(e) {
 	return Math.ceil(e / 4);
 }
-function qt(e, t) {
-	return t * H(e);
+function Xt(e, t) {
+	return t * Zt(e);
 }
-function H(e) {
+function Zt(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Jt(e) {
+function Qt(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -723,14 +740,14 @@ function Jt(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function Yt(e, t) {
+function $t(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Xt(e, n) <= t.memory / 2) ?? 16, o = Xt(e, a) + e.geometry, s = (t, n) => o + Qt(e, t, n), c = (n, r) => s(n, r) + en(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && en(e, n) <= t.memory / 2) ?? 16, o = en(e, a) + e.geometry, s = (t, n) => o + nn(e, t, n), c = (n, r) => s(n, r) + an(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -744,66 +761,66 @@ function Yt(e, t) {
 	};
 	return {
 		...p,
-		limitation: tn(p, n, e, t)
+		limitation: on(p, n, e, t)
 	};
 }
-function Xt(e, t) {
-	let n = e.means.map((e) => Zt(e) * Kt(e.channels) * Gt(e.size, t)), r = Jt(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Rt : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Bt * Gt(n, t) * (r + +!!i);
+function en(e, t) {
+	let n = e.means.map((e) => tn(e) * Yt(e.channels) * Jt(e.size, t)), r = Qt(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Vt : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Ut * Jt(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Zt({ deep: e }) {
-	return e ? Bt : zt;
+function tn({ deep: e }) {
+	return e ? Ut : Ht;
 }
-function Qt({ bases: e, rays: t }, n, r) {
+function nn({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? H(a) * 129 * 129 * Bt : 0;
-		return e + Zt(i) * qt(a, i.channels) * Gt(i.size, n) + o;
+		let o = t ? Zt(a) * 129 * 129 * Ut : 0;
+		return e + tn(i) * Xt(a, i.channels) * Jt(i.size, n) + o;
 	}, 0);
 }
-function $t({ means: e, bases: t }, n, r) {
+function rn({ means: e, bases: t }, n, r) {
 	let i = [...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => V(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => V(e, r))];
 	return [Math.max(1, ...i.map(([e]) => e)), Math.max(1, ...i.map(([, e]) => e))];
 }
-function en(e, t) {
-	let [n, r] = $t({
+function an(e, t) {
+	let [n, r] = rn({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (zt + (e.bases.some(({ deep: e }) => e) ? Vt : 0)) * n * r;
+	return (Ht + (e.bases.some(({ deep: e }) => e) ? Wt : 0)) * n * r;
 }
-function tn(e, t, n, r) {
+function on(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Xt(n, 1) + Qt(n, 1, t) + en(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${nn(a)} MB of graphics memory and ${nn(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${rn(i.join(", "))}: ${o}.`;
+	let a = en(n, 1) + nn(n, 1, t) + an(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${sn(a)} MB of graphics memory and ${sn(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${cn(i.join(", "))}: ${o}.`;
 }
-function nn(e) {
+function sn(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function rn(e) {
+function cn(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var an = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", on = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", sn = 2, cn = `
+var ln = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", un = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", dn = 2, fn = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${on}${an}`, ln = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", un = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", dn = `${cn}
+${un}${ln}`, pn = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", mn = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", hn = `${fn}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, fn = "sumTextures", pn = "finerValue";
-function mn(n, r, i) {
+`, gn = "sumTextures", _n = "finerValue";
+function vn(n, r, i) {
 	let o = new w({
 		glslVersion: f,
-		vertexShader: ln,
-		fragmentShader: `${cn}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: pn,
+		fragmentShader: `${fn}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
 			rectangle: { value: new ee(...r) },
 			...i
@@ -839,7 +856,7 @@ function mn(n, r, i) {
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function hn([e, t], n) {
+function yn([e, t], n) {
 	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
@@ -848,29 +865,29 @@ function hn([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function gn(e, t) {
+function bn(e, t) {
 	let n = B(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...wt(e, t), z(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Dt(e, t), z(r, n) / (Math.max(...e.extent) || 1)];
 }
-function _n(t, n, r) {
+function xn(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(gn(n, [
+	for (let e = 0; e < i.count; e++) o.set(bn(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - sn), u = l.flatMap((e) => l.map((t) => new D(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - dn), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
 	let p = new w({
 		glslVersion: f,
-		vertexShader: un.replace("SHIFTS", String(u.length)),
-		fragmentShader: dn,
+		vertexShader: mn.replace("SHIFTS", String(u.length)),
+		fragmentShader: hn,
 		uniforms: {
 			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
@@ -890,7 +907,7 @@ function _n(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var vn = class {
+var Sn = class {
 	mesh;
 	plane;
 	grids;
@@ -898,14 +915,14 @@ var vn = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Jt({
+		let [a, ...o] = Qt({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(yn), a = new T();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Cn), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: hn(V(e, n), r),
+				target: yn(V(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -913,7 +930,7 @@ var vn = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = mn(pn, [
+			let t = vn(_n, [
 				0,
 				0,
 				1,
@@ -927,10 +944,10 @@ var vn = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && Sn(this.composed, n) || (this.composed = n, Tn(e, t, () => {
+		this.composed && En(this.composed, n) || (this.composed = n, kn(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) bn(e, t, n);
+				for (let e of t.steps) wn(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -942,22 +959,22 @@ var vn = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = hn([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = _n(this.mesh, this.plane, t.places);
+		t.places = yn([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = xn(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function yn(e) {
+function Cn(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = mn(fn, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = vn(gn, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -981,42 +998,42 @@ function yn(e) {
 	}
 	return i;
 }
-function bn({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function wn({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => xn(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Tn(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function xn(e, t, n, r) {
+function Tn(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function Sn(e, t) {
+function En(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Cn = new i(0), wn = new i();
-function Tn(e, t, n) {
+var Dn = new i(0), On = new i();
+function kn(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(wn), e.setClearColor(Cn, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(wn, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(On), e.setClearColor(Dn, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(On, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function En(e, t, n, i, a) {
+function An(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? H(t) : 0;
+		u += e, d += t ? Zt(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -1035,19 +1052,19 @@ function En(e, t, n, i, a) {
 	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Dn = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", On = {
+var jn = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Mn = {
 	bilinear: 0,
 	bicubic: 1
-}, kn = {
+}, Nn = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, An = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", jn = `
+}, Pn = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Fn = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${on}${Dn}
+${un}${jn}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -1077,28 +1094,28 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function Mn(e) {
+function In(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new O(1, 1, 1) },
 		exposureBias: { value: new O() },
-		shown: { value: kn.picture },
+		shown: { value: Nn.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
 	}, n = new w({
 		glslVersion: f,
-		vertexShader: An,
-		fragmentShader: jn,
+		vertexShader: Pn,
+		fragmentShader: Fn,
 		uniforms: t,
-		defines: { BICUBIC: On.bicubic },
+		defines: { BICUBIC: Mn.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
 // eigenfield-three/src/json.ts
-var Nn = class e {
+var Ln = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1155,74 +1172,74 @@ var Nn = class e {
 	wrong(e) {
 		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, Pn = {
+}, Rn = {
 	5121: 1,
 	5123: 2,
 	5125: 4,
 	5126: 4
-}, Fn = {
+}, zn = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
-}, In = 5123, Ln = 5125;
-function Rn(e) {
-	let t = new Nn(e, "");
+}, Bn = 64, Vn = 9, Hn = 10 ** Vn, Un = 5123, Wn = 5125;
+function Gn(e) {
+	let t = new Ln(e, "");
 	try {
 		return t.key("extensions").key(ae).exists;
 	} catch {
 		return !1;
 	}
 }
-function zn(e) {
-	let t = new Nn(e, ""), n = t.key("extensions").key(ae), r = Bn(n), i = Vn(t), a = Un(t, i), o = (e) => e.integer(0, i.length - 1);
-	Hn(t);
-	let s = qn(t, o), c = n.key("cameras"), l = Jn(c), u = Yn(c, l.length), d = u.filter((e) => !e).length, f = rr(n, d, s, a, o), p = ir(n, f), m = l.length, h = c.key("colour");
+function Kn(e) {
+	let t = new Ln(e, ""), n = t.key("extensions").key(ae), r = qn(n), i = Jn(t), a = Xn(t, i), o = (e) => e.integer(0, i.length - 1);
+	Yn(t);
+	let s = er(t, o), c = n.key("cameras"), l = tr(c), u = rr(c, l.length), d = u.filter((e) => !e).length, f = dr(n, d, s, a, o), p = fr(n, f), m = l.length, h = c.key("colour");
 	if (h.exists && p.length < 3) throw h.wrong("needs three channels");
-	let g = n.key("viewPlane"), _ = g.key("triangles"), v = t.key("meshes").at(0).key("primitives").at(0), y = v.key("mode");
-	if (y.exists && y.integer(0, 6) !== 4) throw y.wrong("no triangles");
-	let [b, x] = [v.key("attributes"), v.key("indices")], S = n.key("generator"), C = n.key("mesh");
+	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
+	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
+	let [x, S] = [y.key("attributes"), y.key("indices")], C = n.key("generator"), w = n.key("mesh");
 	return {
 		version: r,
-		generator: S.exists ? S.text(he) : "",
+		generator: C.exists ? C.text(M) : "",
 		planes: f,
 		colours: p,
 		names: l,
 		heldOut: u,
 		reference: n.key("reference").integer(0, m - 1),
-		calibration: Xn(c, m, a, o),
-		sizes: Zn(c, m, a),
-		colour: h.exists ? a(h, "SCALAR", [U], 6 * m) : null,
-		...Qn(g),
-		triangles: _.exists ? Gn(a(_, "SCALAR", [In, Ln], null), 2 * fe) : null,
-		settings: $n(n.key("settings")),
-		scores: $n(n.key("scores")),
+		calibration: ir(c, m, a, o),
+		sizes: ar(c, m, a),
+		colour: h.exists ? a(h, "SCALAR", [H], 6 * m) : null,
+		...or(g),
+		triangles: v.exists ? $n(v, v, o) : _.exists ? Qn(a(_, "SCALAR", [Un, Wn], null), 2 * pe) : null,
+		settings: sr(n.key("settings")),
+		scores: sr(n.key("scores")),
 		views: i,
-		mesh: C.exists ? Kn(C, C.key("bufferView"), o) : null,
-		position: Wn(a(b.key("POSITION"), "VEC3", [U], null), ge),
-		uv: Wn(a(b.key("TEXCOORD_0"), "VEC2", [U], null), ge),
-		indices: Gn(a(x, "SCALAR", [
+		mesh: w.exists ? $n(w, w.key("bufferView"), o) : null,
+		position: Zn(a(x.key("POSITION"), "VEC3", [H], null), ge),
+		uv: Zn(a(x.key("TEXCOORD_0"), "VEC2", [H], null), ge),
+		indices: Qn(a(S, "SCALAR", [
 			5121,
-			In,
-			Ln
+			Un,
+			Wn
 		], null), _e),
 		preview: s
 	};
 }
-function Bn(e) {
-	let t = e.key("version").text(he);
+function qn(e) {
+	let t = e.key("version").text(M);
 	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(M) : []) {
-		let t = e.text(he);
+	for (let e of n.exists ? n.items(ce) : []) {
+		let t = e.text(M);
 		if (!oe.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Vn(e) {
+function Jn(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(M).map((e) => {
+	return e.key("bufferViews").items(ce).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1234,8 +1251,8 @@ function Vn(e) {
 		return i;
 	});
 }
-function Hn(e) {
-	let t = e.key("nodes").items(M), n = Array(t.length).fill(!1);
+function Yn(e) {
+	let t = e.key("nodes").items(ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1244,13 +1261,13 @@ function Hn(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(M)) {
+	for (let r of e.key("scenes").items(ce)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Un(e, t) {
-	let n = e.key("accessors").items(M);
+function Xn(e, t) {
+	let n = e.key("accessors").items(ce);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1260,14 +1277,14 @@ function Un(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Fn[r] ?? 1, u = o.key("count").integer(1, ve);
+		let l = zn[r] ?? 1, u = o.key("count").integer(1, ve);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Pn[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Rn[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Pn[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % Rn[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1278,35 +1295,54 @@ function Un(e, t) {
 		};
 	};
 }
-function Wn(e, t) {
+function Zn(e, t) {
 	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function Gn(e, t) {
+function Qn(e, t) {
 	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Wn(e, 3 * t);
+	return Zn(e, 3 * t);
 }
-function Kn(e, t, n) {
+function $n(e, t, n) {
 	return {
 		view: n(t),
 		where: e.where
 	};
 }
-function qn(e, t) {
+function er(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Jn(e) {
-	let t = e.key("names").items(fe).map((e) => e.text(he));
-	if (!t.length) throw e.key("names").wrong("no cameras");
-	if (new Set(t).size !== t.length) throw e.key("names").wrong("a name stands twice");
-	let n = t.findIndex((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e));
-	if (n >= 0) throw e.key("names").at(n).wrong("control characters");
-	return t;
+function tr(e) {
+	let t = e.key("pattern"), n = t.exists ? t : e.key("names"), r = t.exists ? nr(t) : n.items(pe).map((e) => e.text(M));
+	if (!r.length) throw n.wrong("no cameras");
+	if (new Set(r).size !== r.length) throw n.wrong("a name stands twice");
+	if (r.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e))) throw n.wrong("control characters");
+	return r;
 }
-function Yn(e, t) {
+function nr(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, pe));
+	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
+	let r = e.key("parts").items(Bn).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(M))];
+		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
+		if (a.exists) {
+			let e = a.items(i).map((e) => e.text(M));
+			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
+			return [r, e];
+		}
+		let [o, s] = [e.key("first").integer(0, Hn), e.key("step").integer(0, Hn)], c = e.key("digits").integer(1, Vn);
+		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
+	});
+	return Array.from({ length: t * n }, (t, i) => {
+		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
+		if (o.length > 1024) throw e.wrong(`names of more than ${M} characters`);
+		return o;
+	});
+}
+function rr(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1317,21 +1353,21 @@ function Yn(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Xn(e, t, n, r) {
+function ir(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Kn(i, i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [U], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [U], 12 * t)
+	return i.exists ? $n(i, i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [H], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [H], 12 * t)
 	};
 }
-function Zn(e, t, n) {
+function ar(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ln], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, pe);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Wn], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, me);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Qn(e) {
+function or(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1346,25 +1382,25 @@ function Qn(e) {
 		extent: [i, a]
 	};
 }
-function $n(e) {
+function sr(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/planes.ts
-var U = 5126, er = 10;
-function tr(e, t) {
+var H = 5126, cr = 10;
+function lr(e, t) {
 	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function nr(e) {
-	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, ce));
+function ur(e) {
+	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, le));
 	if (!t || !n) throw e.wrong("two numbers are needed");
-	if (t * n > le) throw e.wrong(`more than ${le} texels`);
+	if (t * n > ue) throw e.wrong(`more than ${ue} texels`);
 	return [t, n];
 }
-function rr(e, t, n, r, i) {
+function dr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = ur(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => dr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = vr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => yr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1378,11 +1414,11 @@ function rr(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${ue} textures`);
-	if (s > de) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${de} textures`);
+	if (s > fe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function ir(e, t) {
+function fr(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1414,15 +1450,15 @@ function ir(e, t) {
 			1
 		]
 	];
-	throw tr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw lr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function ar(e, t, n, r, i, a = !1) {
-	let o = e.key("mimeType").text(he);
+function pr(e, t, n, r, i, a = !1) {
+	let o = e.key("mimeType").text(M);
 	if (!/^image\/(png|jpeg|webp|avif)$/.test(o)) throw e.key("mimeType").wrong("an unknown type");
-	let s = e.key("bits"), c = s.exists ? s.integer(8, er) : 8;
-	if (c !== 8 && (c !== er || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
+	let s = e.key("bits"), c = s.exists ? s.integer(8, cr) : 8;
+	if (c !== 8 && (c !== cr || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
 	let l = t === 3 && c === 8 ? 1 : t;
-	r && fr(e, l * n, r);
+	r && br(e, l * n, r);
 	let [u, d] = [e.key("scale"), e.key("zero")], f = {
 		view: i(e.key("bufferView")),
 		mimeType: o,
@@ -1433,32 +1469,32 @@ function ar(e, t, n, r, i, a = !1) {
 	};
 	return a && c === 8 && !u.exists && !d.exists ? {
 		...f,
-		...or(t)
+		...mr(t)
 	} : {
 		...f,
-		scale: lr(u, t, n),
-		zero: lr(d, t, n)
+		scale: _r(u, t, n),
+		zero: _r(d, t, n)
 	};
 }
-function or(e) {
+function mr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function sr(e) {
+function hr(e) {
 	return e.some(({ bits: e }) => e > 8);
 }
-function cr({ bits: e }) {
+function gr({ bits: e }) {
 	return (2 ** e - 1) / 255;
 }
-function lr(e, t, n) {
+function _r(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function ur(e, t, n, r) {
+function vr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1470,44 +1506,47 @@ function ur(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...or(t)
+				...mr(t)
 			},
 			meanSize: null
 		};
 	}
-	let a = nr(i.key("size"));
+	let a = ur(i.key("size"));
 	return {
-		mean: ar(i, t, 1, a, r, !0),
+		mean: pr(i, t, 1, a, r, !0),
 		meanSize: a
 	};
 }
-function dr(e, t, n, r, i) {
-	let a = nr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? nr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, ce) : [];
+function yr(e, t, n, r, i) {
+	let a = ur(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ur(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, le) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("textures").items(ue).map((e) => {
-		let n = e.key("count"), r = n.exists ? n.integer(1, ue) : 1;
-		return d += r, ar(e, t, r, a, i);
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(de).map((e) => {
+		let n = new Ln({
+			...p,
+			...e.object()
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, de) : 1;
+		return d += o, pr(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${ue} textures`);
-	let p = e.key("codedWeights"), m = d ? p.exists ? Kn(p, p, i) : r(e.key("weights"), "SCALAR", [U], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${de} textures`);
+	let h = e.key("codedWeights"), g = d ? h.exists ? $n(h, h, i) : r(e.key("weights"), "SCALAR", [H], n * d) : null;
 	return {
 		size: a,
 		grid: c,
 		corner: [l, u],
-		pictures: f,
+		pictures: m,
 		count: d,
-		weights: m,
+		weights: g,
 		where: e.where
 	};
 }
-function fr(e, t, [n, r]) {
+function br(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > le) throw e.wrong(`more than ${le} texels`);
+	if (n * i > ue) throw e.wrong(`more than ${ue} texels`);
 }
 // eigenfield-three/src/parts.ts
-function pr(e, t, n) {
+function xr(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -1517,7 +1556,7 @@ function pr(e, t, n) {
 	return e.planes.forEach(({ channels: c, mean: l, bases: u }, d) => {
 		let f = e.colours.slice(i, i + c);
 		i += c;
-		let p = t.needs.means[d]?.size ?? [1, 1], m = t.means[d], h = mr(l, c);
+		let p = t.needs.means[d]?.size ?? [1, 1], m = t.means[d], h = Sr(l, c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -1545,7 +1584,7 @@ function pr(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...gr(d, c, h),
+					...wr(d, c, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -1553,12 +1592,12 @@ function pr(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? H(h) : 0;
+			o += p, s += h ? Zt(h) : 0;
 		}
 	}), r;
 }
-function mr(e, t) {
-	let { scale: n, zero: r } = e, i = hr([e]), a = {
+function Sr(e, t) {
+	let { scale: n, zero: r } = e, i = Cr([e]), a = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -1568,11 +1607,11 @@ function mr(e, t) {
 	}
 	return a;
 }
-function hr(e) {
-	return sr(e) ? 1 : 255;
+function Cr(e) {
+	return hr(e) ? 1 : 255;
 }
-function gr(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = hr(e), o = 4 * t * H(n), s = {
+function wr(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Cr(e), o = 4 * t * Zt(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -1583,12 +1622,12 @@ function gr(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/deep.ts
-var _r = /* @__PURE__ */ new Set([
+var Tr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
 ]);
-async function vr(e, t, n) {
+async function Er(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1597,7 +1636,7 @@ async function vr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!_r.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Tr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1611,7 +1650,7 @@ async function vr(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function yr(e, t, n, r) {
+function Dr(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1630,16 +1669,16 @@ function yr(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/headers.ts
-function br(e) {
+function Or(e) {
 	let t = new DataView(e);
 	try {
-		return xr(t) ?? Sr(t) ?? Cr(t) ?? wr(t);
+		return kr(t) ?? Ar(t) ?? jr(t) ?? Mr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function W(e, t) {
+function U(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1647,15 +1686,15 @@ function W(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function xr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || W(e, 12) !== "IHDR" ? null : {
+function kr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || U(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Sr(e) {
+function Ar(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1678,12 +1717,12 @@ function Sr(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Cr(e) {
-	if (W(e, 0) !== "RIFF" || W(e, 8) !== "WEBP") return null;
+function jr(e) {
+	if (U(e, 0) !== "RIFF" || U(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = W(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = U(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1703,11 +1742,11 @@ function Cr(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function wr(e) {
-	if (W(e, 4) !== "ftyp") return null;
+function Mr(e) {
+	if (U(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = W(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = U(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1730,44 +1769,44 @@ function wr(e) {
 	};
 }
 // eigenfield-three/src/decode.ts
-var Tr = {
+var Nr = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Er = {
+}, Pr = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Dr(e, t, n) {
-	let r = br(e);
+function Fr(e, t, n) {
+	let r = Or(e);
 	if (!r) throw j(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.bits !== 8 && t.bits !== o) throw j(t.where, `no picture of ${t.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > le) throw j(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > ue) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Or(e, t, n, r = 1) {
-	let [i, a] = Dr(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Ir(e, t, n, r = 1) {
+	let [i, a] = Fr(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = br(e)?.type ?? t.mimeType, u;
+	}, l = Or(e)?.type ?? t.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Tr,
+			...Nr,
 			...c
 		});
 	} catch (e) {
-		throw await jr(l) ? j(t.where, "it cannot be decoded") : Mr(l, t, e);
+		throw await zr(l) ? j(t.where, "it cannot be decoded") : Br(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-async function kr(e, t, n, r = 1) {
-	if (t.bits === 8) return Ar(e, t, n, r);
-	let i = t.pieces * t.textures, [a, o] = Dr(e, t, n && [n[0], i * n[1]]), s = await vr(e, a, o);
-	if (!s) return Ar(e, t, n, r);
+async function Lr(e, t, n, r = 1) {
+	if (t.bits === 8) return Rr(e, t, n, r);
+	let i = t.pieces * t.textures, [a, o] = Fr(e, t, n && [n[0], i * n[1]]), s = await Er(e, a, o);
+	if (!s) return Rr(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1775,7 +1814,7 @@ async function kr(e, t, n, r = 1) {
 			row: t * c,
 			rows: c
 		};
-		let n = yr(s, t * c, c, r);
+		let n = Dr(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1783,8 +1822,8 @@ async function kr(e, t, n, r = 1) {
 		};
 	});
 }
-async function Ar(e, t, n, r = 1) {
-	let i = t.pieces * t.textures, [a, o] = Dr(e, t, n && [n[0], i * n[1]]), s = await Or(e, t, [a, o], i === 1 ? r : 1);
+async function Rr(e, t, n, r = 1) {
+	let i = t.pieces * t.textures, [a, o] = Fr(e, t, n && [n[0], i * n[1]]), s = await Ir(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1797,7 +1836,7 @@ async function Ar(e, t, n, r = 1) {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Tr,
+		...Nr,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1808,11 +1847,11 @@ async function Ar(e, t, n, r = 1) {
 		rows: d
 	}));
 }
-function G(e) {
+function W(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
-async function jr(e) {
-	let t = Er[e];
+async function zr(e) {
+	let t = Pr[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1821,21 +1860,21 @@ async function jr(e) {
 		return !1;
 	}
 }
-function Mr(e, t, n) {
+function Br(e, t, n) {
 	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/strength.ts
-var K = 128, Nr = .98;
-async function Pr(e, t, n, r) {
+var G = 128, Vr = .98;
+async function Hr(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = cr(o), l = o.pieces < i, u = await Ar(await r(o.view), o, e.size), d = new OffscreenCanvas(K, K).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = gr(o), l = o.pieces < i, u = await Rr(await r(o.view), o, e.size), d = new OffscreenCanvas(G, G).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, K, K);
-		let { data: u } = d.getImageData(0, 0, K, K);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, G, G);
+		let { data: u } = d.getImageData(0, 0, G, G);
 		(l ? [
 			0,
 			1,
@@ -1844,40 +1883,40 @@ async function Pr(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), G(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Nr * f.length)] ?? 0;
+	}), W(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Vr * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/gpu.ts
-function Fr(e, t) {
+function Ur(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Ir(e, [t, n], r, i, a) {
-	return zr(e, e.TEXTURE_2D_ARRAY, () => {
+function Wr(e, [t, n], r, i, a) {
+	return qr(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Lr(e, t, n) {
+function Gr(e, t, n) {
 	let { width: r, height: i } = n;
-	Br(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	Jr(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Rr(e, [t, n], r = !1) {
-	return zr(e, e.TEXTURE_2D, () => {
+function Kr(e, [t, n], r = !1) {
+	return qr(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function zr(e, t, n) {
+function qr(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Br(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Jr(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Br(e, t, n, r) {
+function Jr(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -1892,11 +1931,11 @@ function Br(e, t, n, r) {
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
 // eigenfield-three/src/packing.ts
-var Vr = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Hr = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nout vec4 code;\nvoid main() {\n  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));\n}\n";
-function Ur(e, t) {
-	let n = Kr(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], a = e.getUniformLocation(n, "factors"), o = ({ picture: t, rows: o }, s, c, l) => {
+var Yr = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Xr = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nout vec4 code;\nvoid main() {\n  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));\n}\n";
+function Zr(e, t) {
+	let n = ei(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], a = e.getUniformLocation(n, "factors"), o = ({ picture: t, rows: o }, s, c, l) => {
 		e.useProgram(n), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, o);
-		for (let { channel: n, layer: r, component: i } of c) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, s, 0, r), Wr(t) ? e.uniform4f(a, 255, 65280, 0, 0) : e.uniform4fv(a, [
+		for (let { channel: n, layer: r, component: i } of c) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, s, 0, r), Qr(t) ? e.uniform4f(a, 255, 65280, 0, 0) : e.uniform4fv(a, [
 			0,
 			1,
 			2,
@@ -1905,9 +1944,9 @@ function Ur(e, t) {
 	};
 	return {
 		put(n, r, i, a) {
-			let { picture: s, row: c, rows: l } = n, u = Wr(s) ? t.codes : t.picture;
-			u && qr(e, () => Br(e, e.TEXTURE_2D, u, () => {
-				Wr(s) ? Gr(e, s, c, l) : (e.pixelStorei(e.UNPACK_SKIP_ROWS, c), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, s.width, l, e.RGBA, e.UNSIGNED_BYTE, s)), Jr(e, () => o(n, r, i, a));
+			let { picture: s, row: c, rows: l } = n, u = Qr(s) ? t.codes : t.picture;
+			u && ti(e, () => Jr(e, e.TEXTURE_2D, u, () => {
+				Qr(s) ? $r(e, s, c, l) : (e.pixelStorei(e.UNPACK_SKIP_ROWS, c), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, s.width, l, e.RGBA, e.UNSIGNED_BYTE, s)), ni(e, () => o(n, r, i, a));
 			}));
 		},
 		free() {
@@ -1915,27 +1954,27 @@ function Ur(e, t) {
 		}
 	};
 }
-function Wr(e) {
+function Qr(e) {
 	return "data" in e;
 }
-function Gr(e, { data: t, width: n, stride: r }, i, a) {
+function $r(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Kr(e) {
+function ei(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Vr], [e.FRAGMENT_SHADER, Hr]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Yr], [e.FRAGMENT_SHADER, Xr]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function qr(e, t) {
+function ti(e, t) {
 	let n = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0);
 	let r = e.getParameter(e.SAMPLER_BINDING);
 	e.bindSampler(0, null), t(), e.bindSampler(0, r), e.activeTexture(n);
 }
-function Jr(e, t) {
+function ni(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -1950,7 +1989,7 @@ function Jr(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/textures.ts
-var Yr = 3, Xr = class {
+var ri = 3, ii = class {
 	parts;
 	options;
 	means;
@@ -1977,15 +2016,15 @@ var Yr = 3, Xr = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			deep: sr(t.pictures)
+			deep: hr(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			deep: sr([t])
+			deep: hr([t])
 		}));
 		this.needs = {
-			atlas: bt(r, i),
+			atlas: St(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -2022,7 +2061,7 @@ var Yr = 3, Xr = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(G), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(W), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2045,20 +2084,20 @@ var Yr = 3, Xr = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < Yr && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < ri && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), G(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), W(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(G).catch(() => void 0);
+			for (let e of a) e.then(W).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.deep ? 255 * cr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.deep ? 255 * gr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2078,13 +2117,13 @@ var Yr = 3, Xr = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		for (let r = this.options.memory ?? Ut();; r /= 2) {
-			let i = Yt(this.needs, Fr(e, r)), { meanDown: a, scaleDown: o, usable: s } = i, c = a > 1 || o > 1, l = [...t.map(({ size: t, channels: n, deep: r }) => Ir(e, V(t, a), Kt(n), c, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
+		for (let r = this.options.memory ?? Kt();; r /= 2) {
+			let i = $t(this.needs, Ur(e, r)), { meanDown: a, scaleDown: o, usable: s } = i, c = a > 1 || o > 1, l = [...t.map(({ size: t, channels: n, deep: r }) => Wr(e, V(t, a), Yt(n), c, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
 				let a = Math.min(r, s);
-				return Ir(e, a ? V(t, o) : [1, 1], a ? qt(a, n) : 1, c, i);
-			})], u = $t(this.needs, a, o), d = Rr(e, u), f = [...t, ...n].some(({ deep: e }) => e), p = f ? Rr(e, u, !0) : null;
+				return Wr(e, a ? V(t, o) : [1, 1], a ? Xt(a, n) : 1, c, i);
+			})], u = rn(this.needs, a, o), d = Kr(e, u), f = [...t, ...n].some(({ deep: e }) => e), p = f ? Kr(e, u, !0) : null;
 			if (d && (p || !f) && l.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = l[t] ?? null), {
-				packer: Ur(e, {
+				packer: Zr(e, {
 					picture: d,
 					codes: p
 				}),
@@ -2100,18 +2139,18 @@ var Yr = 3, Xr = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i, meanSizes: a } = this.parts, { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(G), o = await Promise.all(r.planes.map(async ({ mean: e }, t) => kr(await i(e.view), e, a[t] ?? null, n)))), o.forEach((n, i) => {
+		this.decoded = null, (!o || n > 1) && (o?.forEach(W), o = await Promise.all(r.planes.map(async ({ mean: e }, t) => Lr(await i(e.view), e, a[t] ?? null, n)))), o.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), G(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), W(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let i = sr([n]), [a] = t;
+		let i = hr([n]), [a] = t;
 		if (a && t.length === 1 && !i && "close" in a.picture) {
-			Lr(e, r, a.picture);
+			Gr(e, r, a.picture);
 			return;
 		}
-		let o = i ? 255 * cr(n) : 1;
+		let o = i ? 255 * gr(n) : 1;
 		t.forEach((e, t) => {
 			let n = [{
 				channel: 0,
@@ -2123,10 +2162,10 @@ var Yr = 3, Xr = class {
 	}
 	decode(e, t) {
 		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => kr(e, r, n.size, t));
+		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => Lr(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Zr = 1.5, Qr = .001, $r = class extends l {
+}, ai = 1.5, oi = .001, si = class extends l {
 	parts;
 	mesh;
 	info;
@@ -2157,15 +2196,15 @@ var Yr = 3, Xr = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = yt(n), this.counts = R(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = xt(n), this.counts = R(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Xr(e, ri(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new ii(e, di(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = Mn(s), this.complete = new Promise((e, t) => {
+		this.material = In(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Ft(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Rt(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -2195,7 +2234,7 @@ var Yr = 3, Xr = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...wt(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Dt(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -2209,7 +2248,7 @@ var Yr = 3, Xr = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Zr * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return ai * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -2226,30 +2265,30 @@ var Yr = 3, Xr = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ni(t, n), [i, a] = wt(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = ui(t, n), [i, a] = Dt(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = On[this.filter];
+		let l = Mn[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new vn(i, pr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new Sn(i, xr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === kn.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Nn.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === kn.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Nn.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && gn(this.info.viewPlane, t),
+			eye: t && bn(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -2261,7 +2300,7 @@ var Yr = 3, Xr = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = kn[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Nn[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -2269,7 +2308,7 @@ var Yr = 3, Xr = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ii(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !fi(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -2280,7 +2319,7 @@ var Yr = 3, Xr = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Pr(s, e, o, r).then((t) => {
+				Hr(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -2290,13 +2329,13 @@ var Yr = 3, Xr = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Qr * Math.max(...r);
+		return Math.abs(i) <= oi * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = En(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = An(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -2304,33 +2343,33 @@ var Yr = 3, Xr = class {
 		}, n;
 	}
 	fail(e) {
-		if (ai(e)) return;
+		if (pi(e)) return;
 		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, ei = new _(), ti = new O();
-function ni(e, t) {
-	return ti.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ei.copy(t.matrixWorld).invert()), [
-		ti.x,
-		ti.y,
-		ti.z
+}, ci = new _(), li = new O();
+function ui(e, t) {
+	return li.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ci.copy(t.matrixWorld).invert()), [
+		li.x,
+		li.y,
+		li.z
 	];
 }
-function ri(e) {
+function di(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function ii(e) {
+function fi(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function ai(e) {
+function pi(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var oi = class {
+var mi = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -2373,53 +2412,53 @@ var oi = class {
 		}
 		return n.buffer;
 	}
-}, si = 1179937895, ci = 1313821514, li = 5130562;
-async function ui(e) {
+}, hi = 1179937895, gi = 1313821514, _i = 5130562;
+async function vi(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? hi(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? Ci(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== si) throw hi(!1);
+	if (new DataView(t).getUint32(0, !0) !== hi) throw Ci(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ci) throw j("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== gi) throw j("16", "it does not begin with JSON");
 	if (o > se) throw j("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = fi(await e.read(20, 20 + o));
+	let s = bi(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: pi(s),
-		binary: () => di(e, 20 + o, i)
+		json: xi(s),
+		binary: () => yi(e, 20 + o, i)
 	};
 }
-async function di(e, t, n) {
+async function yi(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === li) return r + 8;
+		if (t.getUint32(4, !0) === _i) return r + 8;
 		r += 8 + i;
 	}
 	throw j(String(t), "no binary chunk");
 }
-function fi(e) {
+function bi(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function pi(e) {
-	if (mi(e) > 64) throw j("20", "its JSON is nested too deep");
+function xi(e) {
+	if (Si(e) > 64) throw j("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw j("20", "its JSON cannot be read");
 	}
 }
-function mi(e) {
+function Si(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -2430,10 +2469,10 @@ function mi(e) {
 	}
 	return n;
 }
-function hi(e) {
+function Ci(e) {
 	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
-var gi = 2 ** 24, _i = class {
+var wi = 2 ** 24, Ti = class {
 	points;
 	start;
 	end;
@@ -2500,7 +2539,7 @@ var gi = 2 ** 24, _i = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * gi + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * wi + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -2508,57 +2547,57 @@ var gi = 2 ** 24, _i = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, vi = 2 ** 20, yi = .8, bi = 44, xi = 385, Si = 897, Ci = 1086, wi = 1095, [Ti, Ei, Di, Oi, ki] = [
+}, Ei = 2 ** 20, Di = .8, Oi = 44, ki = 385, Ai = 897, ji = 1086, Mi = 1095, [Ni, Pi, Fi, Ii, Li] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Ai(e) {
-	return Math.floor(Math.min(Math.max(e, -vi), vi) + .5);
+function Ri(e) {
+	return Math.floor(Math.min(Math.max(e, -Ei), Ei) + .5);
 }
-function ji(e, t, n) {
+function zi(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Mi(e, t, n, r, i) {
-	i.flat ? Ni(e, t, n, r, i.fine) : Pi(e, t, n, r);
+function Bi(e, t, n, r, i) {
+	i.flat ? Vi(e, t, n, r, i.fine) : Hi(e, t, n, r);
 }
-function Ni(e, t, n, r, i) {
+function Vi(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? yi : -.8, _ = 1 << i >> 1, v = Ai((l + d) * .5 + g * m) + _ >> i, y = Ai((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(F(Math.floor((p * p + m * m) / b)), 23), S = Math.min(F(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Ti), T = Math.min(F(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(xi + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Ei);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Di : -.8, _ = 1 << i >> 1, v = Ri((l + d) * .5 + g * m) + _ >> i, y = Ri((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(F(Math.floor((p * p + m * m) / b)), 23), S = Math.min(F(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Ni), T = Math.min(F(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(ki + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Pi);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
-	let k = ji(t, a, i) + 4 * ji(t, o, i);
-	if (e.flag(Si + k, 913 + ji(t, s, i), 917 + c, ki)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = zi(t, a, i) + 4 * zi(t, o, i);
+	if (e.flag(Ai + k, 913 + zi(t, s, i), 917 + c, Li)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Pi(e, t, n, { a: r, b: i, o: a }) {
+function Hi(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
 	let s = Math.min(F(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Ai(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, bi + o * 24 + c, 116 + o * bi + s, Di);
+		let l = Ri(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Oi + o * 24 + c, 116 + o * Oi + s, Fi);
 		t[3 * n + o] = l + u, c = Math.min(F(Math.abs(u)), 23);
 	}
 }
-function Fi(e, t, n, r, i) {
+function Ui(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -vi), vi) : 0, o = Ci + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Oi);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Ei), Ei) : 0, o = ji + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Ii);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Ii = 13, Li = 11, Ri = 12, q = 169, zi = 8, Bi = wi, Vi = Bi + q + 104 + 26, Hi = Vi + q + 104 + Ii, Ui = Hi + 64 + 64 + q, Wi = Ui + q + 4 + 1, Gi = Wi + 6, [Ki, qi, Ji, Yi, Xi] = [
+var Wi = 13, Gi = 11, Ki = 12, K = 169, qi = 8, Ji = Mi, Yi = Ji + K + 104 + 26, Xi = Yi + K + 104 + Wi, Zi = Xi + 64 + 64 + K, Qi = Zi + K + 4 + 1, $i = Qi + 6, [ea, ta, na, ra, ia] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], Zi = [
+], aa = [
 	-1,
 	-.4,
 	0,
@@ -2569,12 +2608,12 @@ var Ii = 13, Li = 11, Ri = 12, q = 169, zi = 8, Bi = wi, Vi = Bi + q + 104 + 26,
 	2,
 	4
 ];
-function Qi(e, t, n, r, i) {
+function oa(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new _i(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new Ti(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -2598,44 +2637,44 @@ function Qi(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Wi + n, Wi + 3 + n, Wi + n, Xi)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Qi + n, Qi + 3 + n, Qi + n, ia)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Fi(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Ui(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Ri : c.status[t] !== 1 || n === i || t === e ? Li : $i(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Ki : c.status[t] !== 1 || n === i || t === e ? Gi : sa(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Ii + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Bi + q + 104 + 2 * y + +(_ === v);
-		if (y < Li && e.flag(Bi + x, Bi + q + y * zi + S, w, Ki)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Wi + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Ji + K + 104 + 2 * y + +(_ === v);
+		if (y < Gi && e.flag(Ji + x, Ji + K + y * qi + S, w, ea)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Li && (v !== _ || y >= Li) && e.flag(Vi + x, Vi + q + b * zi + C, Vi + q + 104 + b, qi)) {
+		if (b < Gi && (v !== _ || y >= Gi) && e.flag(Yi + x, Yi + K + b * qi + C, Yi + K + 104 + b, ta)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Ri) + (b === Ri ? 2 : 0), E = ji(a, n, r.fine) + 4 * ji(a, l, r.fine), D = Hi + 64 + S * zi + C;
-		if (e.flag(Hi + T * 16 + E, D, Hi + 64 + 64 + x, Ji)) {
+		let T = +(y === Ki) + (b === Ki ? 2 : 0), E = zi(a, n, r.fine) + 4 * zi(a, l, r.fine), D = Xi + 64 + S * qi + C;
+		if (e.flag(Xi + T * 16 + E, D, Xi + 64 + 64 + x, na)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let O;
-		if (e.flag(Ui + x, Ui + q + T, Ui + q + 4, Yi)) {
+		if (e.flag(Zi + x, Zi + K + T, Zi + K + 4, ra)) {
 			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), Mi(e, a, O, {
+			], 3 * O), Bi(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
@@ -2647,7 +2686,7 @@ function Qi(e, t, n, r, i) {
 	if (l !== t) throw j(i, "fewer places than announced");
 	return o;
 }
-function $i(e, t, n, r, i, a) {
+function sa(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -2670,21 +2709,21 @@ function $i(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Zi.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = aa.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var ea = 32, ta = 4, [na, ra, ia, aa] = [
+var ca = 32, la = 4, [ua, da, fa, pa] = [
 	0,
 	1,
 	2,
 	3
-], oa = Gi, sa = oa + 64 + 12 + 16, J = sa + ta + 1, ca = J + 4, [la, ua, da] = [
+], ma = $i, ha = ma + 64 + 12 + 16, q = ha + la + 1, ga = q + 4, [_a, va, ya] = [
 	9,
 	10,
 	11
 ];
-function fa(e, t) {
+function ba(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -2694,7 +2733,7 @@ function fa(e, t) {
 		corners: i
 	};
 }
-function pa(e, t, n, r, i, a) {
+function xa(e, t, n, r, i, a) {
 	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
 		faces: new Int32Array(3 * o),
 		place: new Int32Array(n),
@@ -2709,7 +2748,7 @@ function pa(e, t, n, r, i, a) {
 		0,
 		0,
 		0
-	], p = new Int32Array(ta), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], p = new Int32Array(la), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
 		0,
 		0,
 		-1
@@ -2718,7 +2757,7 @@ function pa(e, t, n, r, i, a) {
 		return -1;
 	}, y = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + ea); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + ca); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (v(n, o) >= 0) return n;
@@ -2727,41 +2766,41 @@ function pa(e, t, n, r, i, a) {
 	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
 		let i = t.faces[3 * n + r], o = l[i];
 		if (o < 0) return -1;
-		m.fill(aa);
+		m.fill(pa);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (d[e] < 0) continue;
 			let t = b(d[e], i);
 			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
 		}
-		for (let e = 0; e < ea && s < ta && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		for (let e = 0; e < ca && s < la && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
 		let g = -1;
 		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = oa + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(oa + t * 16 + n * 4 + i, oa + 64 + t * 3 + r, a, la) && (g = p[t]);
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = ma + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(ma + t * 16 + n * 4 + i, ma + 64 + t * 3 + r, a, _a) && (g = p[t]);
 		}
 		if (g < 0) {
-			if (e.flag(sa + s, sa + s, sa + ta, ua)) return -1;
+			if (e.flag(ha + s, ha + s, ha + la, va)) return -1;
 			if (g = e.raw(F(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? ra : ia);
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? da : fa);
 		return g;
 	}, S = () => {
 		let t = g++;
-		if (!e.flag(J, J, J, da)) return c.kinds[t] = e.flag(J + 1, J + 1, J + 1, da) ? 2 : 0, t;
+		if (!e.flag(q, q, q, ya)) return c.kinds[t] = e.flag(q + 1, q + 1, q + 1, ya) ? 2 : 0, t;
 		c.kinds[t] = 1;
 		let n = _;
-		if (_ = t, n >= 0 && e.flag(J + 2, J + 2, J + 2, da)) {
+		if (_ = t, n >= 0 && e.flag(q + 2, q + 2, q + 2, ya)) {
 			let n = e.raw(F(t - 1));
 			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
 			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(J + 3, J + 3, J + 3, da);
+		let r = n >= 0 && e.flag(q + 3, q + 3, q + 3, ya);
 		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
 		return t;
 	};
 	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = na;
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = ua;
 		let r = -1, i = [];
 		for (let o = 0; o < 3; o++) {
 			let s = x(e, o);
@@ -2781,7 +2820,7 @@ function pa(e, t, n, r, i, a) {
 	return c;
 }
 // eigenfield-three/src/mesh-values.ts
-var ma = 16, ha = 6, ga = 13, _a = 14, va = 20, ya = ca, ba = ya + 169 + 280 + 182, xa = ba + 144 + 576 + 48, [Sa, Ca] = [12, 13], wa = [
+var Sa = 16, Ca = 6, wa = 13, Ta = 14, Ea = 20, Da = ga, Oa = Da + 169 + 280 + 182, ka = Oa + 144 + 576 + 48, [Aa, ja] = [12, 13], Ma = [
 	.5,
 	1.5,
 	3,
@@ -2789,14 +2828,14 @@ var ma = 16, ha = 6, ga = 13, _a = 14, va = 20, ya = ca, ba = ya + 169 + 280 + 1
 	12,
 	30
 ];
-function Ta(e, t) {
-	return Ai(Number.isNaN(e) ? t : e);
+function Na(e, t) {
+	return Ri(Number.isNaN(e) ? t : e);
 }
-function Ea(e) {
-	let t = wa.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? ha - t : ha + t;
+function Pa(e) {
+	let t = Ma.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? Ca - t : Ca + t;
 }
-function Da(e, t, n, r) {
+function Fa(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -2817,18 +2856,18 @@ function Da(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + ma); e++) for (let i = 1; i < 3; i++) {
-			let o = Oa(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Sa); e++) for (let i = 1; i < 3; i++) {
+			let o = Ia(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + ma); e++) for (let n = 1; n < 3; n++) {
-				let i = Oa(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Sa); e++) for (let n = 1; n < 3; n++) {
+				let i = Ia(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(F(v - _), 12), b = h / g, x = Math.min(Math.max(ka(s), p), m));
+		g > 0 && (y = Math.min(F(v - _), 12), b = h / g, x = Math.min(Math.max(La(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -2846,15 +2885,15 @@ function Da(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Ta(x, b), [D, O] = [Ea(S - E), Ea(b - E)], ee = e.integer(ya + D * ga + O, ya + 169 + y * va + f, ya + 169 + 280 + D * _a + y, Sa), k = E + ee;
+		let E = Na(x, b), [D, O] = [Pa(S - E), Pa(b - E)], ee = e.integer(Da + D * wa + O, Da + 169 + y * Ea + f, Da + 169 + 280 + D * Ta + y, Aa), k = E + ee;
 		i[3 * t + 2] = k, f = Math.min(F(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Oa(e, t, n) {
+function Ia(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function ka(e) {
+function La(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -2874,7 +2913,7 @@ function ka(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Aa(e, t, n, r, i) {
+function Ra(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -2886,25 +2925,25 @@ function Aa(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + ma); e++) {
-			let [r, s] = [Oa(a, i[e], 1), Oa(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Sa); e++) {
+			let [r, s] = [Ia(a, i[e], 1), Ia(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = ja(n, c, l, t, r, s, f === 2);
+			let [u, d] = za(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
 			_ = Math.max(_, F(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = ba + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Oa + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(ba + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Ca + n);
-			l[2 * t + n] = Ta(y[n], 0) + r, u[n] = Math.min(F(Math.abs(r)), 23);
+			let r = e.integer(Oa + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], ja + n);
+			l[2 * t + n] = Na(y[n], 0) + r, u[n] = Math.min(F(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function ja(e, t, n, r, i, a, o) {
+function za(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -2918,9 +2957,9 @@ function ja(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Ma = 144, Na = 18, Pa = 8;
-function Fa(e, t = "mesh") {
-	let n = I(e, Ma, t), [r, i, a] = [
+var Ba = 144, Va = 18, Ha = 8;
+function Ua(e, t = "mesh") {
+	let n = I(e, Ba, t), [r, i, a] = [
 		n.getUint8(1),
 		n.getUint8(2),
 		n.getUint8(3)
@@ -2930,18 +2969,18 @@ function Fa(e, t = "mesh") {
 		12
 	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
 	if (o > ge || c > ge || s > _e) throw j(t, `${c} vertices and ${s} faces`);
-	if (Ne(e, Math.max(o, s, c), _e, t), r > 1 || a > Pa * r || i < 1 || i > Na || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
-	let u = new Me(e.subarray(Ma), xa, 16), d = Qi(u, o, s, {
+	if (Ne(e, Math.max(o, s, c), _e, t), r > 1 || a > Ha * r || i < 1 || i > Va || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let u = new Me(e.subarray(Ba), ka, 16), d = oa(u, o, s, {
 		flat: r === 1,
 		fine: a
 	}, t);
 	u.checkEnd(t);
-	let f = fa(d.faces, o);
-	r && Da(u, d, f.first, f.corners);
-	let p = pa(u, d, c, f.first, f.corners, t), m = Ia(d.points, l), h = fa(p.faces, c), g = Aa(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), Ra(La(d, p, m, g, 2 ** i), t);
+	let f = ba(d.faces, o);
+	r && Fa(u, d, f.first, f.corners);
+	let p = xa(u, d, c, f.first, f.corners, t), m = Wa(d.points, l), h = ba(p.faces, c), g = Ra(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), Ka(Ga(d, p, m, g, 2 ** i), t);
 }
-function Ia(e, t) {
+function Wa(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -2949,7 +2988,7 @@ function Ia(e, t) {
 	}
 	return n;
 }
-function La(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+function Ga(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -2964,14 +3003,14 @@ function La(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 		indices: new Uint32Array(t)
 	};
 }
-function Ra(e, t) {
+function Ka(e, t) {
 	let n = (e) => Math.abs(e) <= ye;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/proxy.ts
-var za = 65535;
-function Ba(e, t) {
+var qa = 65535;
+function Ja(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -2981,46 +3020,46 @@ function Ba(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function Va({ view: n, where: r }, i) {
-	let { positions: a, uv: o, indices: s } = Fa(new Uint8Array(await i(n)), r);
+async function Ya({ view: n, where: r }, i) {
+	let { positions: a, uv: o, indices: s } = Ua(new Uint8Array(await i(n)), r);
 	if (!s.length) throw j(r, "a mesh without faces");
 	let c = new t();
 	c.setAttribute("position", new e(a, 3)), c.setAttribute("uv", new e(o, 2));
-	let l = a.length / 3 <= za;
+	let l = a.length / 3 <= qa;
 	return c.setIndex(new e(l ? Uint16Array.from(s) : s, 1)), c;
 }
-function Ha(e) {
+function Xa(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Ua(e) {
+function Za(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Wa(e, n, r) ?? (n === r ? null : Wa(e, r, n));
+		let r = t / n, i = Qa(e, n, r) ?? (n === r ? null : Qa(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Wa(e, t, n) {
-	let [r, i] = [Ka(e, 0), Ka(e, 1)];
-	if (t === 1 && qa(i) > 0 || n === 1 && qa(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Y(i, e) - Y(i, t));
+function Qa(e, t, n) {
+	let [r, i] = [eo(e, 0), eo(e, 1)];
+	if (t === 1 && to(i) > 0 || n === 1 && to(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => J(i, e) - J(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Y(r, e) - Y(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => J(r, e) - J(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Ga(n, t, (e, t) => Y(r, o(t, e))) && Ga(t, n, (e, t) => Y(i, o(e, t))) ? {
+	return $a(n, t, (e, t) => J(r, o(t, e))) && $a(t, n, (e, t) => J(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Ga(e, t, n) {
+function $a(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3030,33 +3069,33 @@ function Ga(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Ka(e, t) {
+function eo(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function qa(e) {
+function to(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Y = (e, t) => e[t] ?? 0, Ja = 1e-6, Ya = 32, Xa = class {
+var J = (e, t) => e[t] ?? 0, no = 1e-6, ro = 32, io = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Ua(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Za(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Za(e), this.isLine ? 0 : Za(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(ao(e), this.isLine ? 0 : ao(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => oo(e, t, this.places) : e === "bilinear" && this.grid ? co(this.places, this.grid) : eo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => mo(e, t, this.places) : e === "bilinear" && this.grid ? go(this.places, this.grid) : co(this.places, this.triangles);
 	}
 };
-function Za(e) {
+function ao(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Qa(e) {
+function oo(e) {
 	let t = {
 		camera: [
 			0,
@@ -3075,58 +3114,58 @@ function Qa(e) {
 		t.camera[r] = e, t.weight[r] = n;
 	}), t;
 }
-var X = (e, t) => e[2 * t] ?? 0, Z = (e, t) => e[2 * t + 1] ?? 0;
-function $a(e, t, n, r, i, a) {
-	let [o, s] = [X(n, r), Z(n, r)], [c, l] = [X(n, i) - o, Z(n, i) - s], [u, d] = [X(n, a) - o, Z(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
+var Y = (e, t) => e[2 * t] ?? 0, X = (e, t) => e[2 * t + 1] ?? 0;
+function so(e, t, n, r, i, a) {
+	let [o, s] = [Y(n, r), X(n, r)], [c, l] = [Y(n, i) - o, X(n, i) - s], [u, d] = [Y(n, a) - o, X(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
 		p,
 		m
 	];
 }
-function eo(e, t) {
+function co(e, t) {
 	if (!t.length) {
-		let t = ao(e, io(e));
-		return (n, r) => ro(n, r, e, t);
+		let t = po(e, fo(e));
+		return (n, r) => $(n, r, e, t);
 	}
-	let n = to(e, t, 3), r = no(t);
+	let n = lo(e, t, 3), r = uo(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Ya + $(i)] ?? []) {
+		for (let r of n[Q(a) * ro + Q(i)] ?? []) {
 			let [n, l, u] = [
-				Q(t, r, 0),
-				Q(t, r, 1),
-				Q(t, r, 2)
-			], d = $a(i, a, e, n, l, u), f = Math.min(...d);
+				Z(t, r, 0),
+				Z(t, r, 1),
+				Z(t, r, 2)
+			], d = so(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ro(i, a, e, r) : Qa(c.map((e, n) => [Q(t, o, n), e]));
+		return s < -1e-9 ? $(i, a, e, r) : oo(c.map((e, n) => [Z(t, o, n), e]));
 	};
 }
-var Q = (e, t, n) => e[3 * t + n] ?? 0;
-function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ya)));
+var Z = (e, t, n) => e[3 * t + n] ?? 0;
+function Q(e) {
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ro)));
 }
-function to(e, t, n) {
+function lo(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
-		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => X(e, t)), s = a.map((t) => Z(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ya + t]?.push(i);
+		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Y(e, t)), s = a.map((t) => X(e, t));
+		for (let e = Q(Math.min(...s)); e <= Q(Math.max(...s)); e++) for (let t = Q(Math.min(...o)); t <= Q(Math.max(...o)); t++) r[e * ro + t]?.push(i);
 	}
 	return r;
 }
-function no(e) {
+function uo(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Q(e, n, r), Q(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Z(e, n, r), Z(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3135,14 +3174,14 @@ function no(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ro(e, t, n, r) {
+function $(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
 		0
 	];
 	for (let o = 0; o + 1 < r.length; o += 2) {
-		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [X(n, s), Z(n, s)], [d, f] = [X(n, c) - l, Z(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
+		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [Y(n, s), X(n, s)], [d, f] = [Y(n, c) - l, X(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
 		h < i && ([i, a] = [h, [
 			s,
 			c,
@@ -3150,33 +3189,33 @@ function ro(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Qa([[o, 1 - c], [s, c]]);
+	return oo([[o, 1 - c], [s, c]]);
 }
-function io(e) {
+function fo(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ao(e, t) {
+function po(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
-	for (let n of t) r[0] = (r[0] ?? 0) + X(e, n) / t.length, r[1] = (r[1] ?? 0) + Z(e, n) / t.length;
+	for (let n of t) r[0] = (r[0] ?? 0) + Y(e, n) / t.length, r[1] = (r[1] ?? 0) + X(e, n) / t.length;
 	let [i, a, o] = [
 		0,
 		0,
 		0
 	];
 	for (let n of t) {
-		let [t, s] = [X(e, n) - (r[0] ?? 0), Z(e, n) - (r[1] ?? 0)];
+		let [t, s] = [Y(e, n) - (r[0] ?? 0), X(e, n) - (r[1] ?? 0)];
 		[i, a, o] = [
 			i + t * t,
 			a + t * s,
 			o + s * s
 		];
 	}
-	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => X(e, t) * Math.cos(s) + Z(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
+	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Y(e, t) * Math.cos(s) + X(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function oo(e, t, n) {
+function mo(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3187,15 +3226,15 @@ function oo(e, t, n) {
 		Infinity
 	];
 	for (let l = 0; 2 * l < n.length; l++) {
-		let [u, d] = [X(n, l) - e, Z(n, l) - t], f = u * u + d * d;
+		let [u, d] = [Y(n, l) - e, X(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || so(n, r, i, a) <= Ja) return ro(e, t, n, ao(n, [
+	if (a < 0 || ho(n, r, i, a) <= no) return $(e, t, n, po(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = $a(e, t, n, r, i, a);
+	let [l, u, d] = so(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3211,15 +3250,15 @@ function oo(e, t, n) {
 		]
 	};
 }
-function so(e, t, n, r) {
-	let [i, a] = [X(e, n) - X(e, t), Z(e, n) - Z(e, t)], [o, s] = [X(e, r) - X(e, t), Z(e, r) - Z(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
+function ho(e, t, n, r) {
+	let [i, a] = [Y(e, n) - Y(e, t), X(e, n) - X(e, t)], [o, s] = [Y(e, r) - Y(e, t), X(e, r) - X(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function co(e, t) {
+function go(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ao(e, io(e));
-		return (n, r) => ro(n, r, e, t);
+		let t = po(e, fo(e));
+		return (n, r) => $(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3228,7 +3267,7 @@ function co(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = to(e, o.flat(), 4), c = [];
+	let s = lo(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3236,12 +3275,12 @@ function co(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Ya + $(t)] ?? []) {
-			let s = o[a], c = s ? lo(t, n, e, s) : -Infinity;
+		for (let a of s[Q(n) * ro + Q(t)] ?? []) {
+			let s = o[a], c = s ? _o(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ro(t, n, e, l);
-		let [a, c] = uo(t, n, e, r);
+		if (!r || i < -1e-9) return $(t, n, e, l);
+		let [a, c] = vo(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3253,25 +3292,25 @@ function co(e, t) {
 		};
 	};
 }
-function lo(e, t, n, r) {
+function _o(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
-		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [X(n, o), Z(n, o)];
-		i = Math.min(i, (X(n, s) - c) * (t - l) - (Z(n, s) - l) * (e - c));
+		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Y(n, o), X(n, o)];
+		i = Math.min(i, (Y(n, s) - c) * (t - l) - (X(n, s) - l) * (e - c));
 	}
 	return i;
 }
-function uo(e, t, n, r) {
+function vo(e, t, n, r) {
 	let [i, a, o, s] = [
+		Y(n, r[0]),
 		X(n, r[0]),
-		Z(n, r[0]),
-		X(n, r[1]),
-		Z(n, r[1])
+		Y(n, r[1]),
+		X(n, r[1])
 	], [c, l, u, d] = [
+		Y(n, r[2]),
 		X(n, r[2]),
-		Z(n, r[2]),
-		X(n, r[3]),
-		Z(n, r[3])
+		Y(n, r[3]),
+		X(n, r[3])
 	], [f, p, m, h, g, _] = [
 		e - i,
 		t - a,
@@ -3279,24 +3318,24 @@ function uo(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = fo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [fo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = yo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [yo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function fo(e) {
+function yo(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var po = class {
+var bo = class {
 	parser;
 	options;
 	name = ae;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Rn(e.json);
+		this.parser = e, this.options = t, this.ours = Gn(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = zn(this.parser.json));
+		this.ours && (this.scene = Kn(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -3311,24 +3350,24 @@ var po = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = mo(e, this.parser), [r] = n;
+		let n = xo(e, this.parser), [r] = n;
 		if (!r) throw j("/meshes/0", "no node shows it");
-		Ba(r.geometry, t);
+		Ja(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = await Promise.all(t.planes.map(({ mean: e }) => i(e.view))), o = t.mesh && await Va(t.mesh, i);
+		}, a = await Promise.all(t.planes.map(({ mean: e }) => i(e.view))), o = t.mesh && await Ya(t.mesh, i);
 		if (o) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = o;
 		}
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(t.planes.map(({ mean: e, meanSize: t }, n) => kr(a[n] ?? /* @__PURE__ */ new ArrayBuffer(0), e, t))),
-			dt(t, i),
-			_t(t, i),
-			xt(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Xa(Float64Array.from(d.flatMap((e) => wt(t, e.centre))), u, t.extent[1] === 0), p = s.map(([e]) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = St(t, c, p, f.grid, this.fileBytes(), Ha(r.geometry)), h = {
+			Promise.all(t.planes.map(({ mean: e, meanSize: t }, n) => Lr(a[n] ?? /* @__PURE__ */ new ArrayBuffer(0), e, t))),
+			pt(t, i),
+			yt(t, i),
+			Ct(t, i)
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new io(Float64Array.from(d.flatMap((e) => Dt(t, e.centre))), u, t.extent[1] === 0), p = s.map(([e]) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = Tt(t, c, p, f.grid, this.fileBytes(), Xa(r.geometry)), h = {
 			scene: t,
 			info: m,
 			meshes: n,
@@ -3339,7 +3378,7 @@ var po = class {
 			weights: f,
 			bytes: i
 		};
-		e.userData.eigenfield = new $r(h, this.options);
+		e.userData.eigenfield = new si(h, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3347,43 +3386,43 @@ var po = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function mo(e, t) {
+function xo(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		ho(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		So(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function ho(e) {
+function So(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function go(e, t = {}) {
+async function Co(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new oi(), i = new AbortController(), a = () => {
+	let r = new mi(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = yo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Eo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await ui(r);
-		if (!Rn(e.json)) return {
-			gltf: await vo(r, e, o),
+		let e = await vi(r);
+		if (!Gn(e.json)) return {
+			gltf: await To(r, e, o),
 			field: null
 		};
-		let i = await _o(r, e, t);
+		let i = await wo(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof $r ? a : null
+			field: a instanceof si ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function _o(e, t, n) {
+async function wo(e, t, n) {
 	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3393,12 +3432,12 @@ async function _o(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new po(e, {
+	return r.register((e) => new bo(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function vo(e, t, n) {
+async function To(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3408,25 +3447,25 @@ async function vo(e, t, n) {
 		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function yo(e, t, n, r) {
+async function Eo(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? bo(e) : await xo(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Do(e) : await Oo(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : So(t.received, e);
+			throw n.aborted ? e : ko(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function bo(e) {
+function Do(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function xo(e, t) {
+async function Oo(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3437,7 +3476,7 @@ async function xo(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function So(e, t) {
+function ko(e, t) {
 	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { $r as EigenField, po as EigenfieldPlugin, A as SceneError, Ut as defaultMemory, go as loadEigenfield, Et as novelCamera, At as placeCamera };
+export { si as EigenField, bo as EigenfieldPlugin, A as SceneError, Kt as defaultMemory, Co as loadEigenfield, kt as novelCamera, Nt as placeCamera };

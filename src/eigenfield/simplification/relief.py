@@ -1,0 +1,129 @@
+"""A relief in as few bytes as its pictures are worth.
+
+Vertices are taken away while that costs the pictures less than their bytes cost elsewhere; depths are fitted to those
+of the given surface; then the steps of depth and of contours are tried, and the form is kept whose bytes and errors
+together are least.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import contextlib
+import logging
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, diags_array
+from scipy.sparse.linalg import cg
+
+from eigenfield.camera import Camera
+from eigenfield.format.geometry import UV_BITS
+from eigenfield.format.lattice import Lattice
+from eigenfield.format.mesh_coder import encode_mesh
+from eigenfield.mesh import Mesh
+from eigenfield.simplification.collapse_kernels import BORDER, INSIDE, KEPT, Sheet, collapse
+from eigenfield.simplification.effect import Effect, Grey, depth_effect, texel_weights
+from eigenfield.simplification.raster_kernels import draw_owners, sheet_cost
+
+log = logging.getLogger("eigenfield.encode")
+
+LEFT = 0.4  # of a loss, once means and eigen textures have made the best of it: found on Tarot
+VERTEX_BYTES = 1.6  # what one more takes: measured on Tarot, 2,000 to 4,500 vertices
+DEPTH_STEPS = (1.0, 1.5, 2.0, 3.0, 4.0)  # times that of the lattice
+STIFF = 1e-3  # of what a depth usually weighs, for those that nothing tells
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """A coded mesh. loss: squared error, of all pictures together, that the given surface would not have."""
+
+    stream: bytes
+    mesh: Mesh
+    loss: float
+
+
+def slim_relief(
+    mesh: Mesh, lattice: Lattice, fine: int, cameras: Sequence[Camera], grey: Grey, price: float, texels: float
+) -> Form:
+    """lattice, fine: of `format.relief_lattice`. grey: photographs of `cameras`, see `depth_effect`. price: squared
+    error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in, of which there are
+    `texels` to a pixel. Raises ValueError where no form can be coded."""
+    assert mesh.uv is not None
+    exact = lattice.coordinates(mesh.vertices)
+    effect = depth_effect(mesh, lattice, 2.0**fine, cameras, grey)
+    price *= effect.seen / texels / LEFT
+    sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
+    sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
+    gone = collapse(effect.ground, sheet, price * VERTEX_BYTES)
+    faces = np.ascontiguousarray(sheet.faces[sheet.faces[:, 0] >= 0])
+    exact[:, 2] = _fitted(effect, sheet.places, sheet.depth, faces)
+    slim = Mesh(lattice.points(exact).astype(np.float32), faces, mesh.uv)
+    forms = [*_forms(slim, lattice, fine, effect), *_forms(mesh, lattice, fine, effect)]  # all of a grid is cheap too
+    if not forms:
+        raise ValueError("the relief cannot be coded on its lattice")
+    best = min(forms, key=lambda form: form.loss + price * len(form.stream))
+    log.info(
+        "the relief keeps %d of %d triangles in %d bytes; %d vertices went", len(best.mesh.faces), len(mesh.faces),
+        len(best.stream), gone,
+    )  # fmt: skip
+    return best
+
+
+def _forms(mesh: Mesh, lattice: Lattice, fine: int, effect: Effect) -> Iterator[Form]:
+    """The mesh coded with depths and contours as coarse as may pay."""
+    for digits in range(fine + 1):  # fine digits less
+        for step in DEPTH_STEPS:
+            coarse = Lattice(lattice.matrix @ np.diag([2.0**digits, 2.0**digits, step, 1.0]), True)
+            with contextlib.suppress(ValueError):
+                stream, found = encode_mesh(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
+                if len(found.faces):
+                    assert found.uv is not None
+                    depth = lattice.coordinates(found.vertices)[:, 2]
+                    loss = sheet_cost(effect.ground, effect.places(found.uv), depth, found.faces)
+                    yield Form(stream, found, float(loss))
+
+
+def _sheet(places: NDArray[np.int64], exact: NDArray[np.float64], faces: NDArray[np.int32]) -> Sheet:
+    """What may fall: not where borders meet, nor where two charts do, which would come apart."""
+    n, corners = len(places), faces.reshape(-1)
+    order = np.argsort(corners, kind="stable").astype(np.int32)
+    last = np.flatnonzero(np.diff(corners[order])) if len(order) else np.zeros(0, np.int64)
+    head, after = np.full(n, -1, np.int32), np.full(len(corners), -1, np.int32)
+    head[corners[order[np.r_[0, last + 1]]]] = order[np.r_[0, last + 1]]
+    along = np.setdiff1d(np.arange(len(order) - 1), last)
+    after[order[along]] = order[along + 1]
+    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
+    ends, count = np.unique(edges, axis=0, return_counts=True)
+    borders = np.bincount(ends[count == 1].reshape(-1), minlength=n)
+    where = np.where(borders == 0, INSIDE, np.where(borders == 2, BORDER, KEPT)).astype(np.uint8)
+    where[ends[count > 2].reshape(-1)] = KEPT
+    _, same, many = np.unique(np.rint(exact), axis=0, return_inverse=True, return_counts=True)
+    where[many[same.reshape(-1)] > 1] = KEPT
+    return Sheet(places, exact[:, 2].copy(), faces.copy(), head, after, where)
+
+
+def _fitted(
+    effect: Effect, places: NDArray[np.int64], depth: NDArray[np.float64], faces: NDArray[np.int32]
+) -> NDArray[np.float64]:
+    """(n,) depths of the vertices by which the pictures lose least: least squares, texels that lose much count
+    less."""
+    ground = effect.ground
+    owners = np.zeros(ground.depth.shape, np.int32)
+    draw_owners(places, faces, owners)
+    owners[ground.given == 0] = -1
+    corners, weights = texel_weights(places, faces, owners)
+    there = owners >= 0
+    off = ground.depth[there] - np.einsum("tk,tk->t", weights, depth[corners])
+    curve, most = ground.curve[there].astype(np.float64), np.maximum(ground.most[there], 1e-12).astype(np.float64)
+    counts = curve * np.square(most / (most + curve * np.square(off)))
+    rows = np.repeat(np.arange(len(off)), 3)
+    A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(depth))).tocsr()
+    normal = A.T @ diags_array(counts) @ A
+    diagonal = normal.diagonal()
+    ridge = STIFF * float(np.median(diagonal[diagonal > 0])) if (diagonal > 0).any() else 1.0
+    normal = normal + ridge * diags_array(np.ones(len(depth)))
+    change, _ = cg(normal, A.T @ (counts * off), rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
+    return np.asarray(depth + change)
