@@ -179,7 +179,7 @@ def origin(shown: Sequence[Mapping[str, Any]], link: str) -> str:
     for run in shown:
         machine = run["machine"]
         lines.append(
-            f"[`{run['command']}`]({link}), commit {', '.join(run['commits'])}, {machine['processor']},"
+            f"[`{run['command']}`]({link}), commit {', '.join(run.get('commits') or [run['commit']])}, {machine['processor']},"
             f" {machine['cores']} cores, {run['date'][:10]}"
         )
     return ";\n".join(lines) + ".\n"

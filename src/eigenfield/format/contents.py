@@ -87,7 +87,7 @@ def without_residual(data: bytes) -> bytes:
         del views[-1], accessors[-1]
     made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
-    binary = bytes(glb.binary[:end]) + bytes(-end % 4)
+    binary = bytes(glb.binary[:end]).ljust(end + -end % 4, b"\0")  # cut off before the residual it may lack padding
     return front(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
 
 
