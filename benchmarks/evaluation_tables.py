@@ -177,9 +177,9 @@ def newest(history: Sequence[Mapping[str, Any]]) -> tuple[Captures, list[Mapping
 def origin(shown: Sequence[Mapping[str, Any]], link: str) -> str:
     lines = []
     for run in shown:
-        machine = run["machine"]
+        machine, commits = run["machine"], run.get("commits") or [run["commit"]]
         lines.append(
-            f"[`{run['command']}`]({link}), commit {', '.join(run.get('commits') or [run['commit']])}, {machine['processor']},"
+            f"[`{run['command']}`]({link}), commit {', '.join(commits)}, {machine['processor']},"
             f" {machine['cores']} cores, {run['date'][:10]}"
         )
     return ";\n".join(lines) + ".\n"
