@@ -18,7 +18,54 @@ def section() -> str:
         return ""
     captures, shown = newest(runs("rate"))
     source = origin(shown, "../benchmarks/results/rate.json")
-    return f"### Fitted files\n\n{_points(captures)}\n{_deltas(captures)}\n{source}\n"
+    return f"### Fitted files\n\n{_points(captures)}\n{_deltas(captures)}\n{source}\n{_studies()}"
+
+
+def _studies() -> str:
+    """What each part of a fit is worth, and held-out views against bytes (benchmarks/fit_studies.py)."""
+    if not (RESULTS / "fit-studies.json").exists():
+        return ""
+    captures, shown = newest(runs("fit-studies"))
+    levers = [_lever(name, key, one) for name, found in captures.items() for key, one in found["levers"].items()]
+    held = [
+        [f"`{name}`, {found['held_out']['rule']}", *_held(point)]
+        for name, found in captures.items()
+        for point in found["held_out"]["points"]
+    ]
+    parts = ["### What each part of a fit is worth\n"]
+    if levers:
+        head = ["every second row and column of", "without", "bytes at equal RGB", "luma", "dB luma at equal bytes"]
+        parts.append(table([*head, "luma uncoded"], levers))
+    parts.append(
+        table(["held out", "kB", "N", "captured views, RGB / luma", "held-out views", "outside circles"], held)
+    )
+    return "\n".join(parts) + f"\n{origin(shown, '../benchmarks/results/fit-studies.json')}\n"
+
+
+def _lever(name: str, key: str, lever: Mapping[str, Any]) -> list[str]:
+    rate, gain, uncoded = lever["rate"], lever["gain"]["psnr_luma"], lever["uncoded"].get("luma")
+    against = [percent(rate["psnr"]), percent(rate["psnr_luma"]), NONE if gain is None else f"{gain:+.2f}"]
+    return [
+        f"`{name}`", lever["words"], *(("", "", "") if key == "all" else against),
+        NONE if uncoded is None else f"{uncoded:.2f}",
+    ]  # fmt: skip
+
+
+def _held(point: Mapping[str, Any]) -> list[str]:
+    return [
+        f"{point['bytes'] / 1e3:.1f}", str(point["textures"]), _both(point["encoded"]), _both(point["held_out"]),
+        _outside(point["held_out"]),
+    ]  # fmt: skip
+
+
+def _both(figures: Mapping[str, Any]) -> str:
+    return f"{figures['psnr']:.2f} / {figures['psnr_luma']:.2f}"
+
+
+def _outside(figures: Mapping[str, Any]) -> str:
+    """The same without what the capture's circles leave out, where there are some."""
+    found = figures.get("outside")
+    return NONE if not found else _both(found)
 
 
 def _points(captures: Mapping[str, Any]) -> str:

@@ -1,0 +1,189 @@
+"""What each part of a fit is worth, and what its bytes buy between the cameras.
+
+    EIGENFIELD_DATA=captures python benchmarks/fit_studies.py [CAPTURE] [--levers planes,...] [--out studies] [--store]
+
+Levers: every second row and column of a dense capture, fitted and coded with one lever off at a time, everything else
+as it is; bytes at equal quality against all levers on (Bjøntegaard), and what is reached without coding. Held out: the
+capture's hold-out rule, one fit, quality against bytes in captured views and in those left out.
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import measure
+import numpy as np
+from evidence import captures, ours, prepared, rates
+from evidence.prepared import Prepared
+from numpy.typing import NDArray
+
+import eigenfield as ef
+from eigenfield import draft
+from eigenfield.fitting import fit, planes
+from eigenfield.format.geometry import coded_mesh
+from eigenfield.metrics import to_codes
+from eigenfield.parallel import parallel_map
+from eigenfield.pipeline import Options, open_fitted
+from eigenfield.rendering import Renderer, camera_weights
+
+QUALITIES = (80, 88, 94)
+NO_OPTIONS = Options()
+KEYS = ("psnr", "psnr_luma", "ssim")
+
+
+@dataclass(frozen=True)
+class Lever:
+    """A part of the fit that is taken away. change: what makes the fit without it; coding: what codes without it."""
+
+    words: str
+    change: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
+    coding: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
+    options: Options = NO_OPTIONS
+    filter: str = "bicubic"
+
+
+def _kinds(change: Callable[[planes.Kind], planes.Kind]) -> contextlib.AbstractContextManager[Any]:
+    return patch.dict(planes.KINDS, {"luma-chroma": tuple(map(change, planes.KINDS["luma-chroma"]))})
+
+
+def _open_loop() -> contextlib.AbstractContextManager[Any]:
+    """Weights and mean as they were before the textures were coded."""
+    stack = contextlib.ExitStack()
+    stack.enter_context(patch.object(fit, "fit_weights", lambda *_: None))
+    stack.enter_context(patch.object(fit, "CLOSING_STEPS", 0))
+    return stack
+
+
+def _whole(mesh: Any, cameras: Any, reference: int, *_: Any) -> Any:
+    return coded_mesh(mesh, cameras, reference)
+
+
+def _no_rounds() -> contextlib.AbstractContextManager[Any]:
+    few = {name: replace(one, rounds=0) for name, one in planes.PRESETS.items()}
+    return patch.dict(planes.PRESETS, few)
+
+
+LEVERS = {
+    "all": Lever("all on"),
+    "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
+    "loop": Lever("open loop: weights and mean not fitted to the coded textures", coding=_open_loop),
+    "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=Options(planes="rgb")),
+    "dense": Lever(
+        "the mean as coarse as the textures",
+        lambda: _kinds(lambda kind: replace(kind, mean_share=kind.texture_share)),
+    ),
+    "coarse": Lever(
+        "textures as dense as the mean", lambda: _kinds(lambda kind: replace(kind, texture_share=kind.mean_share))
+    ),
+    "rank": Lever("15 textures", options=Options(textures=15)),
+    "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
+    "worth": Lever("all components kept, worth their bytes or not", coding=lambda: patch.object(fit, "LAGRANGE", 0.0)),
+    "relief": Lever("the relief not simplified", lambda: patch.object(draft, "slim_mesh", _whole)),
+    "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
+}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("capture", nargs="?", default="tarot", metavar="CAPTURE")
+    parser.add_argument(
+        "--levers", default=",".join(list(LEVERS)[1:]), help="commas between; none: held-out views alone"
+    )
+    parser.add_argument("--out", type=Path, default=Path("studies"))
+    parser.add_argument("--store", action="store_true", help="append to benchmarks/results/fit-studies.json")
+    options = parser.parse_args()
+    data = os.environ.get("EIGENFIELD_DATA")
+    known = captures.shared(Path(data)) if data else {}
+    if options.capture not in known:
+        raise SystemExit(f"captures: {', '.join(known) or 'none, EIGENFIELD_DATA names no folder that holds them'}")
+    figures = of_capture(known[options.capture], options.out / options.capture, options.levers.split(","))
+    if options.store:
+        print(measure.store("fit-studies", {"captures": prepared.as_json({options.capture: figures})}))
+
+
+def of_capture(capture: captures.Capture, work: Path, levers: list[str]) -> dict[str, Any]:
+    """Both studies of one capture."""
+    prepared.estimate(capture, work)
+    ready = prepared.prepare(capture, work)
+    chosen = (
+        ["all", *(name for name in LEVERS if name in levers and name != "all")] if set(levers) & set(LEVERS) else []
+    )
+    return {"levers": of_levers(ready, chosen), "held_out": held_out(ready)}
+
+
+def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
+    """For each lever the curve without it, and Bjøntegaard's rates against all of them on."""
+    field = prepared.every(ready.light_field, 2)
+    photographs = parallel_map(lambda index: prepared.codes(field, index), range(len(field)))
+    covered: list[NDArray[np.bool_]] = []
+    found: dict[str, Any] = {}
+    for name in chosen:
+        lever = LEVERS[name]
+        points = []
+        with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as coded:
+            for quality in QUALITIES:
+                with lever.coding():
+                    scene = coded(quality)
+                path = ready.work / f"{name}-{quality}.glb"
+                scene.save(path, overwrite=True)
+                covered = covered or ours.covered_pixels(path, range(len(field)), field)
+                figures = drawn_figures(path, photographs, covered, field.names, lever.filter)
+                points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
+        uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
+        base = found["all"]["points"] if found else points
+        rate = {key: rates.bd_rate(base, points, key) for key in KEYS}
+        gain = {key: rates.bd_quality(base, points, key) for key in KEYS}
+        found[name] = {"words": lever.words, "points": points, "uncoded": uncoded, "rate": rate, "gain": gain}
+        said = "; ".join(f"{p['bytes'] / 1000:.1f} kB {p['psnr']:.2f} / {p['psnr_luma']:.2f} dB" for p in points)
+        print(f"{lever.words}: {said}; rate {rate}", flush=True)
+    return found
+
+
+def drawn_figures(
+    path: Path,
+    photographs: list[NDArray[np.uint8]],
+    covered: list[NDArray[np.bool_]],
+    names: Sequence[str],
+    filter: str,
+) -> dict[str, Any]:
+    """`rates.point` of a file's captured views, drawn with a filter."""
+    scene = ef.load(path)
+    renderer = Renderer(scene)
+
+    def pictures() -> Iterator[NDArray[np.uint8]]:
+        for index in range(len(photographs)):
+            picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter=filter)
+            yield to_codes(picture.image)
+
+    return rates.point(pictures(), photographs, covered, names)
+
+
+def held_out(ready: Prepared) -> dict[str, Any]:
+    """Quality of captured and of held-out views against bytes, all of a view and outside the capture's circles."""
+    points = []
+    with open_fitted(ready.light_field, ready.mesh, Options(hold_out=ready.hold_out), work=ready.work) as coded:
+        for quality in QUALITIES:
+            path = ready.work / f"held-{quality}.glb"
+            coded(quality).save(path, overwrite=True)
+            scene = ef.load(path)
+            figures = ef.evaluate(scene, ready.light_field, path=path, circles=ready.circles(), png_maps="none")
+            image = figures["image"]
+            point: dict[str, Any] = {
+                "parameter": quality, "bytes": path.stat().st_size, "textures": scene.textures,
+            }  # fmt: skip
+            for part in ("encoded", "held_out"):
+                point[part] = {key: value for key, value in image[part].items() if not isinstance(value, (list, str))}
+            points.append(point)
+            print(f"{ready.hold_out}, {point['bytes'] / 1000:.1f} kB: {point}", flush=True)
+    return {"rule": ready.hold_out, "points": points}
+
+
+if __name__ == "__main__":
+    main()
