@@ -46,6 +46,12 @@ def changed(data: bytes, change: Callable[[dict[str, Any], dict[str, Any], bytea
     return join(gltf, bytes(body))
 
 
+def view_end(gltf: dict[str, Any], index: int) -> int:
+    """The first byte behind a buffer view in the binary chunk."""
+    view = gltf["bufferViews"][index]
+    return view.get("byteOffset", 0) + view["byteLength"]
+
+
 def view_of(gltf: dict[str, Any], accessor: int) -> tuple[int, int]:
     """First and last byte of an accessor in the binary chunk."""
     view = gltf["bufferViews"][gltf["accessors"][accessor]["bufferView"]]
@@ -67,9 +73,9 @@ def outcome(path: Path, data: bytes) -> str | None:
         return error.code
     finally:
         path.unlink()
-    # what only other viewers need, and captured views
+    # what only other viewers need, and captured views; and of a file that ends within its textures the rest is drawn
     others = ("/images", "/materials", "/meshes", "/textures", "/accessors", f"/extensions/{EXTENSION}/residual")
-    assert all(finding.where.startswith(others) for finding in errors)
+    assert all(finding.where.startswith(others) or finding.code == "truncated" for finding in errors)
     return None
 
 

@@ -21,10 +21,22 @@ from eigenfield.format import limits, pictures
 
 
 @pytest.mark.parametrize("codec", CODECS)
-def test_every_length_is_refused(tmp_path, good, codec):
-    data = good[codec]
-    lengths = {*range(64), *range(64, len(data), 37), len(data) - 1}
-    assert all(outcome(tmp_path / "a.glb", data[:length]) in ("not-glb", "truncated") for length in lengths)
+def test_every_length_is_refused_or_drawn_of_the_textures_that_are_there(tmp_path, good, codec):
+    data, path = good[codec], tmp_path / "a.glb"
+    gltf, binary = glb_surgery.split(data)
+    (basis,) = gltf["extensions"][limits.EXTENSION]["planes"][0]["bases"]
+    ends = [glb_surgery.view_end(gltf, texture["bufferView"]) for texture in basis["textures"]]
+    assert ends == sorted(ends) and ends[-1] > len(binary) - 4  # the last things in the file, the strongest first
+    first = min(gltf["bufferViews"][texture["bufferView"]]["byteOffset"] for texture in basis["textures"])
+    for length in sorted({*range(64), *range(64, len(data), 37), len(data) - 1}):
+        found, kept = outcome(path, data[:length]), length - (len(data) - len(binary))
+        if kept < first - 3 or kept >= ends[-1]:
+            assert found in ("not-glb", "truncated")
+        elif kept >= first:
+            assert found is None
+            path.write_bytes(data[:length])
+            assert scene_format.load(path).textures == sum(end <= kept for end in ends)
+            assert [finding.code for finding in scene_format.validate(path)] == ["truncated"]
 
 
 @pytest.mark.parametrize("codec", CODECS)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,9 @@ from eigenfield.format import limits
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, front, json_bytes, parse_glb, read_file
 from eigenfield.format.document import Document
 from eigenfield.format.layout import Layout, find_extension
-from eigenfield.format.read import naming, open_layout
+from eigenfield.format.read import naming, open_layout, read_scene
 from eigenfield.format.strict_json import Value
+from eigenfield.format.write import encode_scene
 
 
 def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
@@ -44,6 +46,7 @@ def _parts(document: Document) -> dict[str, int]:
     pictures = [root["images"].at(0)["bufferView"]] if root.has("images") else []
     pictures += [plane["mean"]["bufferView"] for plane in planes if plane.has("mean")]
     textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
+    textures = [reference for reference in textures if not document.cut_off(reference)]
     weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]
     weights += [basis["codedWeights"] for basis in bases if basis.has("codedWeights")]
     attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
@@ -67,9 +70,11 @@ def _view_of(document: Document, accessor: Value) -> Value:
 
 
 def without_residual(data: bytes) -> bytes:
-    """A good file without its residual, of which viewers show nothing: the same bytes where it has none, or where it is
-    not the last thing in the binary chunk. FormatError `truncated` where that leaves a file that is cut off."""
+    """A file for viewers: without its residual, of which they show nothing (the same bytes where it has none, or where
+    it is not the last thing in the binary chunk), and closed behind what is left of it where it is cut off."""
     glb = parse_glb(data)
+    if glb.missing:
+        return encode_scene(replace(read_scene(data), residual=None))
     document = Document(glb)
     views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
     extension = dict(glb.json["extensions"][limits.EXTENSION])
@@ -78,8 +83,6 @@ def without_residual(data: bytes) -> bytes:
         return data
     end = document.view_range(len(views) - 1)[0]
     if residual["bufferView"] != len(views) - 1 or any(document.view_range(i)[1] > end for i in range(len(views) - 1)):
-        if glb.missing:
-            raise glb.cut_off()
         return data
     del views[-1]
     if residual.get("order") == len(accessors) - 1 and accessors[-1]["bufferView"] == len(views) - 1:
@@ -87,7 +90,7 @@ def without_residual(data: bytes) -> bytes:
         del views[-1], accessors[-1]
     made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
-    binary = bytes(glb.binary[:end]).ljust(end + -end % 4, b"\0")  # cut off before the residual it may lack padding
+    binary = bytes(glb.binary[:end]) + bytes(-end % 4)
     return front(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
 
 

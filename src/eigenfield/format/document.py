@@ -54,8 +54,15 @@ class Document:
             buffers[0].fail("buffer", f"{length} bytes, but the binary chunk has {self._length}")
 
     def check_end(self, extension: Value) -> None:
-        """A file may end within its residual, and nowhere else: `truncated`."""
-        if self.glb.missing and not (extension.has("residual") and self.cut_off(extension["residual"]["bufferView"])):
+        """A file may end within its eigen textures or its residual, and nowhere else: `truncated`. (What lies behind
+        the end otherwise is missed where it is read.)"""
+        if not self.glb.missing:
+            return
+        last = [extension["residual"]["bufferView"]] if extension.has("residual") else []
+        for plane in extension["planes"].items(limits.MAX_PLANES):
+            for basis in plane["bases"].items(limits.MAX_BASES):
+                last += [texture["bufferView"] for texture in basis["textures"].items(limits.MAX_COMPONENTS)]
+        if not any(map(self.cut_off, last)):
             raise self.glb.cut_off()
 
     def cut_off(self, reference: Value) -> bool:

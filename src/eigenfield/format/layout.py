@@ -56,6 +56,11 @@ class Layout:
     scores: Mapping[str, Any]
     generator: str
 
+    @property
+    def lost(self) -> int:
+        """Eigen textures behind the end of a file that is cut off."""
+        return sum(plane.lost for plane in self.planes or ())
+
 
 def read_layout(document: Document, findings: Findings) -> Layout | None:
     """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
@@ -106,6 +111,9 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     with findings.part():
         count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
         reference = extension["reference"].integer(0, count - 1)
+    with findings.part():
+        if not findings.strict and any(plane.lost for plane in planes or ()):
+            raise document.glb.cut_off()  # a fault, though what is left can be drawn
     with findings.part():
         residual = read_residual(document, extension, cameras, findings)
     with findings.part():

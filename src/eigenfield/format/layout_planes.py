@@ -47,7 +47,8 @@ class Picture:
 @dataclass(frozen=True, eq=False)
 class BasisLayout:
     """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
-    part, None: all of it. corner: row and column in it. stream: the weights' coded form, None where they are plain."""
+    part, None: all of it. corner: row and column in it. stream: the weights' coded form, None where they are plain.
+    lost: textures behind the end of a file that is cut off."""
 
     size: tuple[int, int]
     textures: tuple[Picture, ...]
@@ -55,6 +56,7 @@ class BasisLayout:
     grid: tuple[int, int] | None = None
     corner: tuple[int, int] = (0, 0)
     stream: bytes | None = None
+    lost: int = 0
 
     @property
     def count(self) -> int:
@@ -63,8 +65,11 @@ class BasisLayout:
 
 @dataclass(frozen=True, eq=False)
 class PlaneLayout:
+    """lost: textures of all bases, also of those of which nothing is left, behind the end of the file."""
+
     mean: Picture
     bases: tuple[BasisLayout, ...]
+    lost: int = 0
 
 
 def read_planes(
@@ -103,10 +108,11 @@ def _read_plane(
         mean = read_image(document, channels)
     else:
         raise FormatError("plane-mean", "the plane has no mean", where=f"{entry.where}/mean")
-    bases = tuple(
+    bases = [
         _read_basis(document, basis, channels, cameras, findings) for basis in entry["bases"].items(limits.MAX_BASES)
-    )
-    return PlaneLayout(mean, bases)
+    ]
+    kept = tuple(basis for basis in bases if basis.count or not basis.lost)
+    return PlaneLayout(mean, kept, sum(basis.lost for basis in bases))
 
 
 def read_image(document: Document, channels: int) -> Picture:
@@ -124,13 +130,16 @@ def _read_basis(
 ) -> BasisLayout:
     size = _size(entry["size"], channels)
     textures: list[Picture] = []
-    total = 0
+    total, lost = 0, 0
     common = entry["picture"].mapping() if entry.has("picture") else {}
     for own in entry["textures"].items(limits.MAX_COMPONENTS):
         with findings.part():
             texture = Value(dict(common) | own.mapping(), own.where)
             count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
             total += count  # also of a picture that is damaged: its weights are there
+            if lost or document.cut_off(texture["bufferView"]):
+                lost += count
+                continue
             textures.append(_picture(document, texture, size, channels, count, bare=False))
     rows = 0 if cameras is None else cameras.encoded
     weights = np.zeros((rows, 0), np.float32)
@@ -142,7 +151,9 @@ def _read_basis(
                 weights = _decode_weights(stream, entry["codedWeights"], rows, total)
             else:
                 weights = _read_weights(document, entry["weights"], rows, total)
-    return BasisLayout(size, tuple(textures), weights, *_region(entry, size), stream)
+    if lost:
+        weights, stream = np.ascontiguousarray(weights[:, : total - lost]), None
+    return BasisLayout(size, tuple(textures), weights, *_region(entry, size), stream, lost)
 
 
 def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None, tuple[int, int]]:

@@ -88,7 +88,14 @@ def _read(path: str | os.PathLike[str], pictures: bool) -> Scene:
 
 def _scene_of(data: bytes, pictures: bool) -> Scene:
     document, layout = _layout_of(data)
-    if document.glb.missing:
+    bases = [basis for plane in layout.planes or () for basis in plane.bases]
+    if layout.lost:
+        found = sum(basis.count for basis in bases)
+        log.warning(
+            "the file ends within its eigen textures: views are drawn of %d of %d (copy or download it again)",
+            found, found + layout.lost,
+        )  # fmt: skip
+    elif document.glb.missing:
         log.warning("the file ends within its residual: captured views go without (copy or download it again)")
     planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
     scene = _scene(layout, planes)

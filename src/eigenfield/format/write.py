@@ -156,10 +156,8 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
         "scores": dict(scene.scores),
         "generator": scene.generator or f"eigenfield {__version__}",
     }
-    for plane, made in zip(planes, coded.planes, strict=True):  # last: a file that is still arriving can be drawn
-        for basis, files in zip(plane["bases"], made.bases, strict=True):
-            for entry, file in zip(basis["textures"], files, strict=True):
-                entry["bufferView"] = buffer.view(file.data)
+    for entry, file in _by_worth(scene, coded, planes):  # last: a file that is still arriving can be drawn
+        entry["bufferView"] = buffer.view(file.data)
     if scene.residual is not None:  # behind all that any view is drawn of: a file that is cut off there loses it alone
         extension["residual"] = _residual(scene.residual, buffer)
     perspective, nodes = _nodes(scene)
@@ -191,6 +189,32 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
+
+
+def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[tuple[dict[str, Any], PictureFile]]:
+    """The entries of all pictures of eigen textures and their files, so that what takes most squared error off R, G and
+    B for its bytes comes first; those of one basis in their order."""
+    queues = []
+    first = 0
+    for plane, made, shown in zip(scene.planes, coded.planes, planes, strict=True):
+        depth = plane.mean.shape[2]
+        matrix = np.eye(depth) if scene.to_rgb is None else scene.to_rgb[:, first : first + depth]
+        first += depth
+        share = np.square(matrix, dtype=np.float64).sum(axis=0)
+        for basis, files, entry in zip(plane.bases, made.bases, shown["bases"], strict=True):
+            energy = np.square(basis.weights, dtype=np.float64).mean(axis=0) / float(np.prod(basis.size))
+            worth, at = [], 0
+            for file in files:
+                part = basis.values(at, at + file.count)
+                each = np.einsum("nhwc,nhwc,c->n", part, part, share.astype(np.float32))
+                worth.append(float(each @ energy[at : at + file.count]) / len(file.data))
+                at += file.count
+            queues.append(list(zip(worth, entry["textures"], files, strict=True)))
+    found = []
+    while any(queues):
+        _, entry, file = max((queue for queue in queues if queue), key=lambda queue: queue[0][0]).pop(0)
+        found.append((entry, file))
+    return found
 
 
 def _version(scene: Scene, needs: bool) -> str:
