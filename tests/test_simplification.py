@@ -17,6 +17,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.raster import rasterise_view
 from eigenfield.simplification import depth_effect, slim_mesh, slim_relief
 from eigenfield.simplification.collapse_kernels import collapse
+from eigenfield.simplification.effect import opened
 from eigenfield.simplification.raster_kernels import STEPS, Ground, sheet_cost
 from eigenfield.simplification.relief import _sheet
 from test_format_geometry import relief
@@ -213,3 +214,14 @@ def test_other_meshes_keep_their_triangles():
     assert relief_lattice(bent, cameras, DEPTH_ERROR) is None
     found = slim_mesh(bent, cameras, 4, lambda _: np.zeros((48, 64), np.float32), 1.0, 1.0)
     assert len(found.faces) == len(bent.faces) and stream_of(found) is not None
+
+
+def test_what_a_camera_sees_through_is_found():
+    mesh = bumpy_square(12)
+    cameras = row_grid(9, 72, 60)
+    whole, part = mesh, replace(mesh, faces=mesh.faces[: len(mesh.faces) // 2])
+    bright = np.full((cameras[0].height, cameras[0].width), 0.5, np.float32)
+    assert opened(whole, whole, cameras, lambda index: bright) == 0
+    assert opened(part, whole, cameras, lambda index: bright) == 0  # more is no hole
+    lost = [(rasterise_view(m, c).face >= 0).sum() for m in (whole, part) for c in cameras]
+    assert opened(whole, part, cameras, lambda index: bright) == pytest.approx(0.25 * (sum(lost[:9]) - sum(lost[9:])))

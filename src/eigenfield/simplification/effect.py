@@ -27,6 +27,7 @@ from eigenfield.simplification.raster_kernels import HALF, STEPS, Ground, draw_o
 Grey = Callable[[int], NDArray[np.float32]]  # (h, w) of the camera of that number
 
 CAMERAS = 25  # of the array, spread over it, are looked at
+OUTERMOST = 9  # of them for holes
 SIDE_MOST = 1536  # texels
 AROUND = 9  # pixels over which photographs vary
 SMOOTH = 3  # texels over which errors are averaged
@@ -122,6 +123,18 @@ def _looked(
     error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
     pixels = np.full(len(world), float((drawn.face >= 0).sum()))
     return np.stack([inside, error, np.square(error), np.where(inside, varies[row, column], 0), pixels])
+
+
+def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> float:
+    """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`:
+    judged by the OUTERMOST cameras of the array, which see the most of what lies behind."""
+    some = _spread(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+    error = 0.0
+    for index in some:
+        through = (rasterise_view(mesh, cameras[index]).face < 0) & (rasterise_view(given, cameras[index]).face >= 0)
+        if through.any():
+            error += float(np.square(grey(index)[through], dtype=np.float64).sum())
+    return error * len(cameras) / len(some)
 
 
 def _ground(
