@@ -70,6 +70,7 @@ def video() -> None:
     import numpy as np
 
     from eigenfield import open_capture
+    from eigenfield.parallel import ordinary_scheduling
 
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")
     order = [17 * row + (column if row % 2 == 0 else 16 - column) for row in range(17) for column in range(17)]
@@ -80,6 +81,8 @@ def video() -> None:
         with av.open(str(path), "w") as container:
             stream = container.add_stream("libsvtav1", rate=30, options={"preset": "6", "crf": "40", "g": "999"})
             stream.width, stream.height, stream.pix_fmt = 512, 512, "yuv420p10le"
+            with ordinary_scheduling():
+                stream.codec_context.open()
             for picture in pictures:
                 container.mux(stream.encode(av.VideoFrame.from_ndarray(picture, format="rgb24")))
             container.mux(stream.encode())

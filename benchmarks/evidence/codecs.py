@@ -25,6 +25,7 @@ from evidence.colour import Chroma, Picture, Planes, even, pad, to_planes, to_rg
 from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
+from eigenfield.parallel import ordinary_scheduling
 from eigenfield.viewplane import find_grid, fit_view_plane
 
 RATE = 25  # frames a second: means nothing here, but a film has one
@@ -176,6 +177,8 @@ def _encode_pyav(film: Sequence[Planes], codec: VideoCodec, crf: int, path: Path
         context.gop_size = FOREVER
         context.color_range, context.colorspace = 2, 1  # full range, BT.709
         context.thread_count = 0
+        with ordinary_scheduling():
+            context.open()
         for frame in frames:
             container.mux(stream.encode(frame))
         container.mux(stream.encode(None))

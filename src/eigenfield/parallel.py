@@ -6,10 +6,12 @@ No OpenMP, no `prange`: numba's default threading layer ends the process when tw
 
 from __future__ import annotations
 
+import contextlib
 import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
@@ -17,6 +19,7 @@ from eigenfield.errors import OptionError
 
 A = TypeVar("A")
 B = TypeVar("B")
+TASKS = Path("/proc/self/task")  # on Linux, this process's threads
 
 
 class _Pool:
@@ -128,6 +131,34 @@ def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[
         for future in pending:  # whoever uses the same buffers next must not meet a straggler
             if not future.cancelled():
                 future.exception()
+
+
+@contextlib.contextmanager
+def ordinary_scheduling() -> Iterator[None]:
+    """Threads that become real-time within, the calling one or new ones, are made ordinary again at the end (Linux).
+
+    For SVT-AV1: run by root, it gives its caller and its own threads the highest real-time priority. All else on the
+    machine then waits for them; so do other threads of this process, and where OpenBLAS spins until one of those has
+    done its part, for ever.
+    """
+    before = _real_time_threads()
+    try:
+        yield
+    finally:
+        if threading.get_native_id() not in before:  # else whoever started us wants it so
+            for thread in _real_time_threads() - before:
+                with contextlib.suppress(OSError):  # it has ended
+                    os.sched_setscheduler(thread, os.SCHED_OTHER, os.sched_param(0))
+
+
+def _real_time_threads() -> set[int]:
+    found: set[int] = set()
+    if TASKS.is_dir() and hasattr(os, "sched_getscheduler"):
+        for thread in (int(task.name) for task in TASKS.iterdir()):
+            with contextlib.suppress(OSError):
+                if os.sched_getscheduler(thread) in (os.SCHED_FIFO, os.SCHED_RR):
+                    found.add(thread)
+    return found
 
 
 def pieces(total: int, size: int) -> list[tuple[int, int]]:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from eigenfield.errors import FormatError
 from eigenfield.format import limits
+from eigenfield.parallel import ordinary_scheduling
 
 BITS = 10
 TOP = 2**BITS - 1
@@ -54,6 +55,8 @@ def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
         stream.options = {
             "crf": str(crf), "preset": str(preset), "svtav1-params": "tune=1:keyint=1:aq-mode=0:lp=1",
         }  # fmt: skip
+        with ordinary_scheduling():
+            stream.codec_context.open()
         frame = av.VideoFrame(width, height, _FORMAT)
         frame.pts = 0
         for number, plane in enumerate(frame.planes):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from eigenfield.errors import FormatError
 from eigenfield.format import limits
 from eigenfield.format.deep import BITS
+from eigenfield.parallel import ordinary_scheduling
 from eigenfield.scene import Residual
 
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
@@ -49,6 +50,8 @@ def encode_film(frames: Iterable[Planes], size: tuple[int, int], crf: int, prese
         stream.options = {
             "crf": str(crf), "preset": str(preset), "svtav1-params": f"keyint=-1:scd=0:tune=1:lp={PARALLEL}",
         }  # fmt: skip
+        with ordinary_scheduling():
+            context.open()
         for number, planes in enumerate(frames):
             container.mux(stream.encode(_frame(planes, number)))
         container.mux(stream.encode(None))

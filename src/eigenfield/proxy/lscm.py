@@ -77,7 +77,7 @@ def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
 def _start(vertices: NDArray[np.float64], rim: NDArray[np.bool_]) -> NDArray[np.float64]:
     """Two principal directions of the boundary, signs fixed: not orthogonal to the answer, and always the same."""
     centred = vertices - vertices[rim].mean(axis=0)
-    _, _, directions = np.linalg.svd(centred[rim], full_matrices=True)
+    _, _, directions = np.linalg.svd(centred[rim], full_matrices=False)
     directions = directions[:2]
     largest = np.argmax(np.abs(directions), axis=1)
     directions = directions * np.sign(directions[[0, 1], largest])[:, None]
