@@ -1,5 +1,5 @@
-"""Scenes whose mesh, cameras and weights are coded and whose pictures have 10 bits, with reference pictures for the
-tests of the web viewer."""
+"""Scenes whose mesh, cameras and weights are coded, whose pictures have 10 bits or whose means have a precision, with
+reference pictures for the tests of the web viewer."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from captures import write_capture
+from composed import keep_png, layered_scene
 from scenes import bumpy_square
 from viewer_scenes import PLACES, cameras, references, scene
 
@@ -51,6 +52,16 @@ def fitted_scene() -> Scene:
         return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
 
 
+def precise_scene() -> Scene:
+    """The layered scene with means of 10 bits, of which one precision says how finely both are coded."""
+    layered = layered_scene()
+    keep_png(layered)  # its textures
+    precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
+    precision[0, 0] = 1
+    planes = (coded_plane(plane.mean, plane.bases, STEP, 8, precision) for plane in layered.planes)
+    return replace(layered, planes=tuple(planes))
+
+
 def shallow(made: Scene) -> Scene:
     """The scene with a mean of 8 bits that is said to have 10."""
     (plane,) = made.planes
@@ -62,13 +73,16 @@ def shallow(made: Scene) -> Scene:
 
 
 def write(folder: Path) -> None:
-    """Write coded.glb, fitted.glb and shallow.glb; add pictures of the first two to references.json, which is there."""
+    """Write coded.glb, precise.glb, fitted.glb and shallow.glb; add pictures of the first three to references.json,
+    which is there."""
     listing = folder / "references.json"
     pictures = json.loads(listing.read_text(encoding="utf-8"))
     made = coded_scene()
     save(shallow(made), folder / "shallow.glb", overwrite=True)
     save(made, folder / "coded.glb", overwrite=True)
     pictures += references(folder, "coded.glb", PLACES[:2])
+    save(precise_scene(), folder / "precise.glb", overwrite=True)
+    pictures += references(folder, "precise.glb", PLACES[:2])
     # Fitted textures hold what their nine photographs ask for, up to the finest ripple that the atlas has: a vertex off
     # by a 32nd of a pixel is up to three grey levels there. So the vertices are where the browser has them.
     save(fitted_scene(), folder / "fitted.glb", overwrite=True)

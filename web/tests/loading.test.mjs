@@ -278,6 +278,21 @@ const CODED_CHANGES = {
   "no coarse mesh": (_e, json) => delete json.meshes[0].primitives[0].attributes.POSITION,
 };
 
+const PRECISE_CHANGES = {
+  "a precision in no view": (e) => delete e.planes[0].mean.precision.bufferView,
+  "a precision in a view that is not there": (e) => (e.planes[0].mean.precision.bufferView = 999),
+  "a precision of no picture": (e, json) => (e.planes[1].mean.precision.bufferView = json.accessors[0].bufferView),
+  "a precision that is no PNG": (e) => (e.planes[0].mean.precision.bufferView = e.planes[0].mean.bufferView),
+  "a precision of another size": (e) => (e.planes[1].mean.precision.size = [3, 5]),
+  "a precision without size": (e) => delete e.planes[0].mean.precision.size,
+  "a precision of no columns": (e) => (e.planes[0].mean.precision.size = [0, 3]),
+  "a precision of too many columns": (e) => (e.planes[0].mean.precision.size = [1025, 3]),
+  "a precision of 8 bits' codes": (_e, json) => {
+    const { mean } = find(json).planes[0];
+    Object.assign(mean, { bits: 8, bufferView: mean.precision.bufferView, mimeType: "image/png" });
+  },
+};
+
 /** First byte and length of each coded part within the binary chunk. */
 function streamsOf(json) {
   const { mesh, cameras, planes } = find(json);
@@ -328,6 +343,23 @@ test("coded parts with any byte changed load or are refused, and nothing else", 
   await close();
 });
 
+test("a damaged precision is refused by name", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("precise.glb"));
+  const { byteOffset } = json.bufferViews[find(json).planes[0].mean.precision.bufferView];
+  const cases = [["no picture", 0, 0], ["a picture of 261 x 3, not of 5 x 3", 18, 1], ["it cannot be decoded", 24, 3]];
+  for (const [what, byte, value] of cases) {
+    const data = Buffer.from(binary);
+    data[byteOffset + byte] = value;
+    routes["/precision.glb"] = { body: writeGlb({ json, binary: data }) };
+    const { code, where, message } = await tryLoad(page, "precision.glb");
+    assert.equal(code, "damaged", what);
+    assert.match(where, /\/planes\/[01]\/mean\/precision$/);
+    assert.ok(message.includes(what), message);
+  }
+  await close();
+});
+
 test("8 bits that are said to be 10 are refused", async () => {
   const { page, close } = await lab.open();
   const { code, message } = await tryLoad(page, "shallow.glb");
@@ -339,6 +371,7 @@ test("8 bits that are said to be 10 are refused", async () => {
 test("a document that cannot be is refused by name", async () => {
   const { page, close } = await lab.open();
   const all = { "avif.glb": CHANGES, "layered.glb": LAYERED_CHANGES, "coded.glb": CODED_CHANGES };
+  all["precise.glb"] = PRECISE_CHANGES;
   for (const [scene, changes] of Object.entries(all)) {
     const { json, binary } = readGlb(sceneBytes(scene));
     for (const [what, change] of Object.entries(changes)) {

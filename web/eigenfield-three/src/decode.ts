@@ -3,8 +3,9 @@
 import { decodeCodes, smallerCodes, type Codes } from "./deep.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
+import type { ViewBytes } from "./info.js";
 import * as limits from "./limits.js";
-import type { Picture } from "./planes.js";
+import type { Picture, PictureFile, Plane, Precision } from "./planes.js";
 
 const OPTIONS: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
 
@@ -19,7 +20,7 @@ const PROBES: Record<string, string> = {
 };
 
 /** The size that a picture's header states, checked against limits and, where there is one, the announced size. */
-export function checkPicture(bytes: ArrayBuffer, picture: Picture, size: [number, number] | null): [number, number] {
+export function checkPicture(bytes: ArrayBuffer, picture: PictureFile, size: [number, number] | null): [number, number] {
   const header = readHeader(bytes);
   if (!header) throw damaged(picture.where, "no picture");
   const { width, height, bits } = header;
@@ -37,7 +38,7 @@ export function checkPicture(bytes: ArrayBuffer, picture: Picture, size: [number
 /** Decodes a picture, `down` times smaller along each side. Raises SceneError: `damaged`, `codec`. */
 export async function decodePicture(
   bytes: ArrayBuffer,
-  picture: Picture,
+  picture: PictureFile,
   size: [number, number] | null,
   down = 1,
 ): Promise<ImageBitmap> {
@@ -61,6 +62,25 @@ export interface Piece<Kind extends ImageBitmap | Codes = ImageBitmap | Codes> {
   picture: Kind;
   row: number;
   rows: number;
+}
+
+/** A mean, and where it has one the picture of its precision. */
+export interface Mean {
+  pieces: Piece[];
+  precision: ImageBitmap | null;
+}
+
+/** Decodes the mean of a plane. Whoever takes it closes it. */
+export async function decodeMean(plane: Plane, bytes: ViewBytes, down = 1): Promise<Mean> {
+  const { mean, meanSize } = plane;
+  const precision = plane.precision && (await decodePrecision(await bytes(plane.precision.view), plane.precision));
+  return { pieces: await decodePieces(await bytes(mean.view), mean, meanSize, down), precision };
+}
+
+async function decodePrecision(bytes: ArrayBuffer, precision: Precision): Promise<ImageBitmap> {
+  const { type } = readHeader(bytes) ?? {};
+  if (type && type !== precision.mimeType) throw damaged(precision.where, `${type}, not ${precision.mimeType}`);
+  return decodePicture(bytes, precision, precision.size);
 }
 
 /** Decodes a mean or eigen textures into pieces in their order: a whole texture of R, G and B, or one channel of a
@@ -112,6 +132,11 @@ export function closePieces(pieces: Piece[]): void {
   for (const { picture } of pieces) if ("close" in picture) picture.close();
 }
 
+export function closeMean({ pieces, precision }: Mean): void {
+  closePieces(pieces);
+  precision?.close();
+}
+
 async function canDecode(type: string): Promise<boolean> {
   const probe = PROBES[type];
   if (!probe) return true;
@@ -124,7 +149,7 @@ async function canDecode(type: string): Promise<boolean> {
   }
 }
 
-function noCodec(type: string, picture: Picture, cause: unknown): SceneError {
+function noCodec(type: string, picture: PictureFile, cause: unknown): SceneError {
   const name = type.replace("image/", "").toUpperCase();
   const message = `This browser cannot decode ${name} pictures; use a newer one, or encode the scene with --codec png.`;
   return new SceneError("codec", message, picture.where, { cause });

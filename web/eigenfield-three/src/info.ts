@@ -277,7 +277,7 @@ function countBytes(scene: SceneDocument, total: number): SceneInfo["bytes"] {
     return scene.views[view]?.length ?? 0;
   };
   const sum = (views: number[]): number => views.reduce((bytes, view) => bytes + lengthOf(view), 0);
-  const means = scene.planes.map((plane) => plane.mean.view);
+  const means = scene.planes.flatMap(({ mean, precision }) => [mean.view, ...(precision ? [precision.view] : [])]);
   const mean = sum(scene.preview === null ? means : [scene.preview, ...means]);
   const textures = Array<number>(ranksOf(scene)).fill(0);
   for (const { pictures } of basesOf(scene)) {

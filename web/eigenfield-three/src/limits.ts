@@ -2,8 +2,8 @@
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
 export const KNOWN_NEEDS: ReadonlySet<string> = new Set([
-  "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "regions", "sharedPicture",
-  "stacks", "toRGB",
+  "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "precision", "regions",
+  "sharedPicture", "stacks", "toRGB",
 ]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes
@@ -12,6 +12,7 @@ export const MAX_CHUNKS = 64;
 export const MAX_VIEWS = 16_384;
 export const MAX_SIDE = 16_384;
 export const MAX_STACKED = 32_768; // rows of a picture of stacked channels or textures
+export const MAX_PRECISION_SIDE = 1_024;
 export const MAX_TEXELS = 2 ** 27;
 export const MAX_CHANNELS = 64;
 export const MAX_PLANES = 16;

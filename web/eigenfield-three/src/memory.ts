@@ -128,6 +128,11 @@ export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDo
     ...means.filter(({ pieces, deep }) => pieces > 1 || deep).map(({ size }) => smaller(size, meanDown)),
     ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
   ];
+  return covering(sizes);
+}
+
+/** Columns and rows in which each of some sizes fits. */
+export function covering(sizes: Size[]): Size {
   return [Math.max(1, ...sizes.map(([width]) => width)), Math.max(1, ...sizes.map(([, height]) => height))];
 }
 

@@ -1,11 +1,15 @@
 // Pictures come one at a time; on the GPU four eigen textures, or four channels of a mean, share a texel. Each is drawn
-// into its component of its layer, code by code, and what three.js and others have set is put back.
+// into its component of its layer, code by code, and what three.js and others have set is put back. Codes of a mean
+// with a precision p are stored as (code - zero) / p / FINE, so that who sums them knows nothing of it.
 
 import type { Piece } from "./decode.js";
 import type { Codes } from "./deep.js";
 import { bound } from "./gpu.js";
 
 type GL = WebGL2RenderingContext;
+
+/** Codes at p = 1 that a stored 1 stands for: 1023 at the smallest p, 1/256, is still a half-float. */
+export const FINE = 4;
 
 const VERTEX = `#version 300 es
 void main() {
@@ -16,9 +20,26 @@ const FRAGMENT = `#version 300 es
 precision highp float;
 uniform highp sampler2D picture;
 uniform vec4 factors;
-out vec4 code;
+uniform vec2 size; // of what is drawn
+uniform highp sampler2D precisions;
+uniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are
+uniform float zero;
+out vec4 stored;
+float nodeAt(ivec2 at) {
+  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;
+}
+float precisionAt(vec2 uv) {
+  vec2 at = uv * vec2(nodes) - 0.5;
+  ivec2 low = ivec2(floor(at));
+  vec2 part = at - vec2(low);
+  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);
+  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);
+  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;
+}
 void main() {
-  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));
+  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);
+  if (nodes.x == 0) stored = vec4(code);
+  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / ${FINE}.0, -65504.0, 65504.0));
 }
 `;
 
@@ -33,11 +54,18 @@ export interface Slot {
 export interface Rooms {
   picture: WebGLTexture;
   codes: WebGLTexture | null; // null: all pictures have 8 bits
+  precision: WebGLTexture;
+}
+
+/** How fine the codes of a channel are. */
+export interface Fineness {
+  precision: ImageBitmap;
+  zero: number;
 }
 
 export interface Packer {
-  /** `unit`: what is stored of a picture's 1. Codes are stored as they are. */
-  put(piece: Piece, array: WebGLTexture, slots: Slot[], unit: number): void;
+  /** `unit`: what is stored of a picture's 1. Codes are stored as they are, without `fine`. */
+  put(piece: Piece, array: WebGLTexture, slots: Slot[], unit: number, fine?: Fineness | null): void;
   free(): void;
 }
 
@@ -45,41 +73,51 @@ export interface Packer {
 export function makePacker(gl: GL, rooms: Rooms): Packer {
   const program = link(gl);
   const [frame, vertices] = [gl.createFramebuffer(), gl.createVertexArray()];
-  const factors = gl.getUniformLocation(program, "factors");
+  const [factors, size, precisions, nodes, zero] = ["factors", "size", "precisions", "nodes", "zero"].map((name) =>
+    gl.getUniformLocation(program, name),
+  );
 
-  const draw = ({ picture, rows }: Piece, array: WebGLTexture, slots: Slot[], unit: number): void => {
-    gl.useProgram(program); // its sampler reads unit 0
+  const draw: Packer["put"] = ({ picture, rows }, array, slots, unit, fine) => {
+    gl.useProgram(program); // its sampler `picture` reads unit 0
+    gl.uniform2f(size ?? null, picture.width, rows);
+    gl.uniform1i(precisions ?? null, fine ? 1 : 0); // on unit 1 may be anything
+    gl.uniform2i(nodes ?? null, fine?.precision.width ?? 0, fine?.precision.height ?? 0);
+    gl.uniform1f(zero ?? null, fine?.zero ?? 0);
     gl.bindVertexArray(vertices);
     gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, frame);
     gl.viewport(0, 0, picture.width, rows);
     for (const { channel, layer, component } of slots) {
       gl.colorMask(component === 0, component === 1, component === 2, component === 3);
       gl.framebufferTextureLayer(gl.DRAW_FRAMEBUFFER, gl.COLOR_ATTACHMENT0, array, 0, layer);
-      if (isCodes(picture)) gl.uniform4f(factors, 255, 255 * 256, 0, 0);
-      else gl.uniform4fv(factors, [0, 1, 2, 3].map((own) => (own === channel ? unit : 0)));
+      if (isCodes(picture)) gl.uniform4f(factors ?? null, 255, 255 * 256, 0, 0);
+      else gl.uniform4fv(factors ?? null, [0, 1, 2, 3].map((own) => (own === channel ? unit : 0)));
       gl.drawArrays(gl.TRIANGLES, 0, 3);
     }
   };
 
   return {
-    put(piece, array, slots, unit) {
+    put(piece, array, slots, unit, fine = null) {
       const { picture, row, rows } = piece;
       const room = isCodes(picture) ? rooms.codes : rooms.picture;
       if (!room) return;
-      onFirstUnit(gl, () =>
-        bound(gl, gl.TEXTURE_2D, room, () => {
+      const pack = (): void =>
+        onUnit(gl, 0, room, () => {
           if (isCodes(picture)) putCodes(gl, picture, row, rows);
-          else {
-            gl.pixelStorei(gl.UNPACK_SKIP_ROWS, row);
-            gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, picture.width, rows, gl.RGBA, gl.UNSIGNED_BYTE, picture);
-          }
-          untouched(gl, () => draw(piece, array, slots, unit));
-        }),
-      );
+          else putRows(gl, picture, row, rows);
+          untouched(gl, () => draw(piece, array, slots, unit, fine));
+        });
+      if (!fine) pack();
+      else {
+        onUnit(gl, 1, rooms.precision, () => {
+          putRows(gl, fine.precision, 0, fine.precision.height);
+          pack();
+        });
+      }
     },
     free() {
       gl.deleteTexture(rooms.picture);
       gl.deleteTexture(rooms.codes);
+      gl.deleteTexture(rooms.precision);
       gl.deleteVertexArray(vertices);
       gl.deleteFramebuffer(frame);
       gl.deleteProgram(program);
@@ -89,6 +127,11 @@ export function makePacker(gl: GL, rooms: Rooms): Packer {
 
 function isCodes(picture: ImageBitmap | Codes): picture is Codes {
   return "data" in picture;
+}
+
+function putRows(gl: GL, picture: ImageBitmap, row: number, rows: number): void {
+  gl.pixelStorei(gl.UNPACK_SKIP_ROWS, row);
+  gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, picture.width, rows, gl.RGBA, gl.UNSIGNED_BYTE, picture);
 }
 
 function putCodes(gl: GL, { data, width, stride }: Codes, row: number, rows: number): void {
@@ -111,14 +154,15 @@ function link(gl: GL): WebGLProgram {
   return program;
 }
 
-function onFirstUnit(gl: GL, work: () => void): void {
-  const unit = gl.getParameter(gl.ACTIVE_TEXTURE) as GLenum;
-  gl.activeTexture(gl.TEXTURE0);
+/** Calls `work` with the texture bound to a unit, read by no sampler of others. */
+function onUnit(gl: GL, unit: number, texture: WebGLTexture, work: () => void): void {
+  const active = gl.getParameter(gl.ACTIVE_TEXTURE) as GLenum;
+  gl.activeTexture(gl.TEXTURE0 + unit);
   const sampler = gl.getParameter(gl.SAMPLER_BINDING) as WebGLSampler | null;
-  gl.bindSampler(0, null);
-  work();
-  gl.bindSampler(0, sampler);
-  gl.activeTexture(unit);
+  gl.bindSampler(unit, null);
+  bound(gl, gl.TEXTURE_2D, texture, work);
+  gl.bindSampler(unit, sampler);
+  gl.activeTexture(active);
 }
 
 /** Calls `work`, which draws, with every test and blending off, and puts back what it sets. */

@@ -3,7 +3,8 @@
 import type { Texture } from "three";
 import type { SceneDocument } from "./document.js";
 import { groupsOf, type Plan } from "./memory.js";
-import { isDeep, type Picture } from "./planes.js";
+import { FINE } from "./packing.js";
+import { isDeep, type Picture, type Plane } from "./planes.js";
 import type { Textures } from "./textures.js";
 
 /** A mean, or the textures of a basis. */
@@ -12,8 +13,8 @@ export interface Part {
   grid: [number, number];
   rectangle: [number, number, number, number]; // of the grid: left, top, right, bottom in 0..1
   colours: [number, number, number][]; // of the value 1 of each channel
-  // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over 255, or
-  // where some of them have more than 8 bits the codes.
+  // Four numbers for each channel of each group of textures: value = stored * scale + bias. Stored are codes over 255,
+  // or where some of them have more than 8 bits the codes, or of a mean with a precision what packing.ts makes of them.
   scale: Float32Array;
   bias: Float32Array;
   basis: BasisPart | null; // null: a mean
@@ -29,12 +30,13 @@ interface BasisPart {
 export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): Part[] {
   const parts: Part[] = [];
   let [channel, number, column, group] = [0, 0, 0, 0];
-  scene.planes.forEach(({ channels, mean, bases }, i) => {
+  scene.planes.forEach((plane, i) => {
+    const { channels, bases } = plane;
     const colours = scene.colours.slice(channel, channel + channels);
     channel += channels;
     const grid = textures.needs.means[i]?.size ?? [1, 1];
     const stored = textures.means[i];
-    const numbers = meanNumbers(mean, channels);
+    const numbers = meanNumbers(plane);
     if (stored) parts.push({ stored, grid, rectangle: [0, 0, 1, 1], colours, ...numbers, basis: null });
     for (const { size, grid, corner, pictures, count } of bases) {
       const stored = textures.bases[number];
@@ -61,14 +63,14 @@ export function partsOf(scene: SceneDocument, textures: Textures, plan: Plan): P
 type Numbers = Pick<Part, "scale" | "bias">;
 
 /** Of a mean channel c is component c % 4, so that three of four scales are zero; grey pictures are the first. */
-function meanNumbers(mean: Picture, channels: number): Numbers {
+function meanNumbers({ mean, channels, precision }: Plane): Numbers {
   const { scale, zero } = mean;
-  const unit = unitOf([mean]);
+  const unit = precision ? FINE : unitOf([mean]);
   const numbers = { scale: new Float32Array(4 * channels), bias: new Float32Array(4 * channels) };
   for (let channel = 0; channel < channels; channel++) {
     const at = 4 * channel + (channel % 4);
     numbers.scale[at] = unit * (scale[channel] ?? 0);
-    numbers.bias[at] = -(zero[channel] ?? 0) * (scale[channel] ?? 0);
+    numbers.bias[at] = precision ? 0 : -(zero[channel] ?? 0) * (scale[channel] ?? 0);
   }
   return numbers;
 }

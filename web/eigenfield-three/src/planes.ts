@@ -9,15 +9,23 @@ export const FLOAT = 5126; // the component type of accessors
 
 const DEEP = 10; // bits of a code that may have more than 8
 
-export interface Picture {
+export interface PictureFile {
   view: number;
   mimeType: string;
   bits: number; // of its codes
+  where: string;
+}
+
+export interface Picture extends PictureFile {
   scale: number[]; // of each channel of each texture: value = (code - zero) * scale
   zero: number[];
   textures: number; // in this picture, one below the other
   pieces: number; // of each texture: one of R, G and B, or its channels, one below the other
-  where: string;
+}
+
+/** A small grey picture over all of a mean: value = (code - zero) * scale / p, p = (its own code + 1) / 256. */
+export interface Precision extends PictureFile {
+  size: [number, number];
 }
 
 /** Eigen textures of one plane and size, and the cameras' weights of them. */
@@ -35,6 +43,7 @@ export interface Plane {
   channels: number;
   mean: Picture;
   meanSize: [number, number] | null; // null: `images[0]`, whose header says it
+  precision: Precision | null; // of the mean; null: 1 everywhere
   bases: Basis[];
 }
 
@@ -43,8 +52,8 @@ function unsupported(what: string, where: string): SceneError {
   return new SceneError("unsupported", message, where);
 }
 
-function readSize(value: Value): [number, number] {
-  const [width = 0, height = 0] = value.items(2).map((item) => item.integer(1, limits.MAX_SIDE));
+function readSize(value: Value, most = limits.MAX_SIDE): [number, number] {
+  const [width = 0, height = 0] = value.items(2).map((item) => item.integer(1, most));
   if (!width || !height) throw value.wrong("two numbers are needed");
   if (width * height > limits.MAX_TEXELS) throw value.wrong(`more than ${limits.MAX_TEXELS} texels`);
   return [width, height];
@@ -146,15 +155,23 @@ function readMean(
   channels: number,
   preview: number | null,
   viewOf: ViewReader,
-): { mean: Picture; meanSize: [number, number] | null } {
+): Pick<Plane, "mean" | "meanSize" | "precision"> {
   const own = plane.key("mean");
   if (!own.exists) {
     if (preview === null || (channels !== 1 && channels !== 3)) throw own.wrong("no mean");
     const mean = { view: preview, mimeType: "image/png", bits: 8, textures: 1, pieces: 1, where: "/images/0" };
-    return { mean: { ...mean, ...asTheyAre(channels) }, meanSize: null };
+    return { mean: { ...mean, ...asTheyAre(channels) }, meanSize: null, precision: null };
   }
   const meanSize = readSize(own.key("size"));
-  return { mean: readPicture(own, channels, 1, meanSize, viewOf, true), meanSize };
+  const mean = readPicture(own, channels, 1, meanSize, viewOf, true);
+  return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
+}
+
+function readPrecision(value: Value, mean: Picture, viewOf: ViewReader): Precision | null {
+  if (!value.exists) return null;
+  if (mean.bits !== DEEP) throw value.wrong(`of a mean of ${mean.bits} bits`);
+  const size = readSize(value.key("size"), limits.MAX_PRECISION_SIDE);
+  return { view: viewOf(value.key("bufferView")), mimeType: "image/png", bits: 8, size, where: value.where };
 }
 
 function readBasis(

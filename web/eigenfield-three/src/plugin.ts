@@ -1,6 +1,6 @@
 import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
-import { decodePieces } from "./decode.js";
+import { decodeMean, type Mean } from "./decode.js";
 import { isScene, readDocument, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
@@ -61,18 +61,13 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
       if (data.byteLength < (scene.views[view]?.length ?? 0)) throw cutOff(`/bufferViews/${view}`);
       return data;
     };
-    const meanBytes = await Promise.all(scene.planes.map(({ mean }) => bytes(mean.view)));
     const proxy = scene.mesh && (await readCodedMesh(scene.mesh, bytes));
     if (proxy) {
       mesh.geometry.dispose();
       for (const each of meshes) each.geometry = proxy;
     }
     const [means, cameras, omega, triangles] = await Promise.all([
-      Promise.all(
-        scene.planes.map(({ mean, meanSize }, i) =>
-          decodePieces(meanBytes[i] ?? new ArrayBuffer(0), mean, meanSize),
-        ),
-      ),
+      Promise.all(scene.planes.map((plane) => decodeMean(plane, bytes))),
       readCameras(scene, bytes),
       readWeights(scene, bytes),
       readTriangles(scene, bytes),
@@ -80,7 +75,8 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
     const encoded = cameras.filter((_, i) => !scene.heldOut[i]);
     const places = Float64Array.from(encoded.flatMap((camera) => planeCoordinates(scene, camera.centre)));
     const weights = new ViewWeights(places, triangles, scene.extent[1] === 0);
-    const meanSizes = means.map(([first]): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1]);
+    const sizeOf = ({ pieces: [first] }: Mean): [number, number] => [first?.picture.width ?? 1, first?.rows ?? 1];
+    const meanSizes = means.map(sizeOf);
     const info = sceneInfo(scene, cameras, meanSizes, weights.grid, this.fileBytes(), countsOf(mesh.geometry));
     const rays = info.facesPlane;
     const parts = { scene, info, meshes, means, meanSizes, rays, omega, weights, bytes };

@@ -1,5 +1,5 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
-import { closePieces, decodePieces, type Piece } from "./decode.js";
+import { closeMean, closePieces, decodeMean, decodePieces, type Mean, type Piece } from "./decode.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
@@ -15,7 +15,7 @@ const AHEAD = 3; // pictures decoded at a time
 export interface TextureParts {
   scene: SceneDocument;
   bytes: ViewBytes;
-  means: Piece[][]; // of each plane
+  means: Mean[]; // of each plane
   meanSizes: [number, number][];
   rays: boolean; // weights may be looked up texel by texel
 }
@@ -50,7 +50,7 @@ export class Textures {
   private readonly entries: Entry[]; // by rank
   private renderer: WebGLRenderer | null = null;
   private packer: Packer | null = null; // while textures arrive
-  private decoded: Piece[][] | null; // the means, until they are on the GPU
+  private decoded: Mean[] | null; // the means, until they are on the GPU
   private turn = 0; // of loading: an older one stops
   private disposed = false;
 
@@ -115,7 +115,7 @@ export class Textures {
   dispose(): void {
     this.detach();
     this.disposed = true;
-    this.decoded?.forEach(closePieces);
+    this.decoded?.forEach(closeMean);
     this.decoded = null;
   }
 
@@ -202,6 +202,7 @@ export class Textures {
   /** Room for all textures, within the memory that may be used and that there is. */
   private makeRoom(gl: WebGL2RenderingContext): { packer: Packer; plan: memory.Plan } {
     const { means, bases } = this.needs;
+    const precisions = this.parts.scene.planes.flatMap(({ precision }) => (precision ? [precision.size] : []));
     for (let allowed = this.options.memory ?? memory.defaultMemory(); ; allowed /= 2) {
       const plan = memory.makePlan(this.needs, gpu.deviceLimits(gl, allowed));
       const { meanDown, scaleDown, usable } = plan;
@@ -225,11 +226,12 @@ export class Textures {
       const picture = gpu.makeRoom(gl, size);
       const wide = [...means, ...bases].some(({ deep }) => deep);
       const codes = wide ? gpu.makeRoom(gl, size, true) : null;
-      if (picture && (codes || !wide) && made.every((texture) => texture !== null)) {
+      const precision = gpu.makeRoom(gl, memory.covering(precisions));
+      if (picture && precision && (codes || !wide) && made.every((texture) => texture !== null)) {
         [...this.means, ...this.bases].forEach((texture, i) => (texture.sourceTexture = made[i] ?? null));
-        return { packer: makePacker(gl, { picture, codes }), plan };
+        return { packer: makePacker(gl, { picture, codes, precision }), plan };
       }
-      for (const texture of [...made, picture, codes]) gl.deleteTexture(texture);
+      for (const texture of [...made, picture, codes, precision]) gl.deleteTexture(texture);
       if (!usable) {
         throw new SceneError("unsupported", "The graphics memory is full; close other pages and try again.");
       }
@@ -238,29 +240,26 @@ export class Textures {
 
   /** At once if they are decoded and need no resizing: the first draw shows them. */
   private async loadMeans(gl: WebGL2RenderingContext, turn: number, down: number): Promise<void> {
-    const { scene, bytes, meanSizes } = this.parts;
+    const { scene, bytes } = this.parts;
     let { decoded } = this;
     this.decoded = null;
     if (!decoded || down > 1) {
-      decoded?.forEach(closePieces);
-      decoded = await Promise.all(
-        scene.planes.map(async ({ mean }, i) =>
-          decodePieces(await bytes(mean.view), mean, meanSizes[i] ?? null, down),
-        ),
-      );
+      decoded?.forEach(closeMean);
+      decoded = await Promise.all(scene.planes.map((plane) => decodeMean(plane, bytes, down)));
     }
-    decoded.forEach((pieces, i) => {
+    decoded.forEach((made, i) => {
       const array = this.means[i]?.sourceTexture;
       const mean = scene.planes[i]?.mean;
-      if (turn === this.turn && mean && array instanceof WebGLTexture) this.putMean(gl, pieces, mean, array);
-      closePieces(pieces);
+      if (turn === this.turn && mean && array instanceof WebGLTexture) this.putMean(gl, made, mean, array);
+      closeMean(made);
     });
     if (turn !== this.turn) return;
     this.hasMeans = true;
     this.version += 1;
   }
 
-  private putMean(gl: WebGL2RenderingContext, pieces: Piece[], mean: Picture, array: WebGLTexture): void {
+  private putMean(gl: WebGL2RenderingContext, made: Mean, mean: Picture, array: WebGLTexture): void {
+    const { pieces, precision } = made;
     const deep = isDeep([mean]);
     const [first] = pieces;
     if (first && pieces.length === 1 && !deep && "close" in first.picture) {
@@ -270,7 +269,7 @@ export class Textures {
     const unit = deep ? 255 * codeStep(mean) : 1;
     pieces.forEach((piece, channel) => {
       const slots = [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }];
-      this.packer?.put(piece, array, slots, unit);
+      this.packer?.put(piece, array, slots, unit, precision && { precision, zero: mean.zero[channel] ?? 0 });
     });
   }
 

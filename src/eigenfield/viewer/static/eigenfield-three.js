@@ -29,13 +29,14 @@ var ae = "EIGENFIELD_eigen_textures", oe = /* @__PURE__ */ new Set([
 	"codedTriangles",
 	"codedWeights",
 	"namePattern",
+	"precision",
 	"regions",
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-]), se = 64 * 2 ** 20, ce = 16384, le = 16384, ue = 2 ** 27, de = 4096, fe = 8 * 2 ** 30, pe = 1e5, me = 65535, he = 2 ** 29, M = 1024, ge = 2 ** 26, _e = 2 ** 27, ve = 2 ** 28, ye = 1e30, N = 65536, be = 126, P = 64, xe = 0, Se = 1, Ce = 2, we = 24, Te = 44, Ee = 21, De = 26214, Oe = 4, ke = Float64Array.from({ length: 4095 }, (e, t) => Math.round(N / (1 + Math.exp((2047 - t) / 256)))), Ae = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), je = Float64Array.from({ length: 127 }, (e, t) => Math.round(N / (t + 1.5)));
-function F(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + F(Math.floor(e / 4294967296));
+]), se = 64 * 2 ** 20, ce = 16384, le = 16384, ue = 1024, de = 2 ** 27, fe = 4096, pe = 8 * 2 ** 30, me = 1e5, he = 65535, ge = 2 ** 29, M = 1024, _e = 2 ** 26, ve = 2 ** 27, ye = 2 ** 28, N = 1e30, P = 65536, be = 126, F = 64, xe = 0, Se = 1, Ce = 2, we = 24, Te = 44, Ee = 21, De = 26214, Oe = 4, ke = Float64Array.from({ length: 4095 }, (e, t) => Math.round(P / (1 + Math.exp((2047 - t) / 256)))), Ae = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), je = Float64Array.from({ length: 127 }, (e, t) => Math.round(P / (t + 1.5)));
+function I(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + I(Math.floor(e / 4294967296));
 }
 var Me = class {
 	bytes;
@@ -47,7 +48,7 @@ var Me = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * P).fill(N / 2), this.seen = new Uint8Array(t * P), this.weights = new Float64Array(n * P * 3).fill(De);
+		this.bytes = e, this.probability = new Uint16Array(t * F).fill(P / 2), this.seen = new Uint8Array(t * F), this.weights = new Float64Array(n * F * 3).fill(De);
 		for (let e = 0; e < Oe; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
@@ -58,7 +59,7 @@ var Me = class {
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(N / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(P / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
@@ -73,23 +74,23 @@ var Me = class {
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, we + i) : o === i - 3 ? this.node(e, t, n, r, Te + 2 * Math.min(i, 9) + (a & 1)) : this.split(N / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, we + i) : o === i - 3 ? this.node(e, t, n, r, Te + 2 * Math.min(i, 9) + (a & 1)) : this.split(P / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * P + i, t * P + i, n * P + i, (r * P + i) * 3);
+		return this.bit(e * F + i, t * F + i, n * F + i, (r * F + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Ae[i[e] >> 4], s = Ae[i[t] >> 4], c = Ae[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / N), u = ke[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? N - u : -u;
+		let { probability: i, weights: a } = this, o = Ae[i[e] >> 4], s = Ae[i[t] >> 4], c = Ae[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / P), u = ke[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? P - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * je[r] / N), r < be && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * je[r] / P), r < be && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / N), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / P), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -97,7 +98,7 @@ var Me = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function I(e, t, n) {
+function L(e, t, n) {
 	if (e.length < t) throw re(n);
 	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
@@ -114,7 +115,7 @@ function Ke(e) {
 	return e.flag(Le, Le, Le, Fe) ? 2 : +!!e.flag(937, 937, 937, Fe);
 }
 function qe(e) {
-	return Math.min(F(e), 11);
+	return Math.min(I(e), 11);
 }
 function Je(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
@@ -135,7 +136,7 @@ function Ye(e, t, n, r) {
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(F(a[s]), 23), d = Math.min(F(t), 23), f = e.integer(Re + l * ze + u, Re + (Be + l) * ze + d, 1706 + l, We + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(I(a[s]), 23), d = Math.min(I(t), 23), f = e.integer(Re + l * ze + u, Re + (Be + l) * ze + d, 1706 + l, We + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
@@ -157,15 +158,15 @@ function Xe(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Ze = 130, L = 11, Qe = 1, $e = 2;
+var Ze = 130, R = 11, Qe = 1, $e = 2;
 function et(e, t = "cameras") {
-	let n = I(e, Ze, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Qe) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	let n = L(e, Ze, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Qe) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
-	Ne(e, Math.max(L * i, o * s), L * pe, t);
+	Ne(e, Math.max(R * i, o * s), R * me, t);
 	let l = Ze + (a ? 132 : 0);
-	I(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Ze + 4 * (e * L + t), !0) : 0, d = Ge(e.subarray(l)), f = a ? Xe(d, o * s, i, t) : null, p = Ye(d, i, L, (r & $e) !== 0);
+	L(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(Ze + 4 * (e * R + t), !0) : 0, d = Ge(e.subarray(l)), f = a ? Xe(d, o * s, i, t) : null, p = Ye(d, i, R, (r & $e) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -176,14 +177,14 @@ function et(e, t = "cameras") {
 		0,
 		0,
 		...c.subarray(12)
-	], g = nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(L), v = 0;
+	], g = nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(R), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < L; e++) {
+		for (let e = 0; e < R; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * L + e] * t + h[e] + i;
+			_[e] = p[v * R + e] * t + h[e] + i;
 		}
 		tt(_, g, m, t), v += 1;
 	}
@@ -229,8 +230,8 @@ function nt(e, t, n, r) {
 // eigenfield-three/src/triangle-decoder.ts
 var rt = 5;
 function it(e, t = "triangles") {
-	let n = I(e, rt, t).getUint32(1, !0);
-	Ne(e, 3 * n, 6 * pe, t);
+	let n = L(e, rt, t).getUint32(1, !0);
+	Ne(e, 3 * n, 6 * me, t);
 	let r = Ge(e.subarray(rt)), i = Ye(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
@@ -240,9 +241,9 @@ function it(e, t = "triangles") {
 // eigenfield-three/src/weight-decoder.ts
 var at = 14, ot = 2 ** 20;
 function st(e, t = "weights") {
-	let n = I(e, at, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	let n = L(e, at, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
-	Ne(e, o * s * Math.max(a, 1), ve, t), I(e, at + 4 * a, t);
+	Ne(e, o * s * Math.max(a, 1), ye, t), L(e, at + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw j(t, "a grid with too few cells");
 	let l = Ge(e.subarray(at + 4 * a)), u = r ? Xe(l, c, i, t) : null, d = u !== null && i === c, f = [
@@ -311,7 +312,7 @@ async function pt(e, t) {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = n.numbers.subarray(5 * o, 5 * o + 5);
 		if (!(s > ut && c > ut)) throw j(n.where, `focal lengths of "${t}"`);
 		let { R: f, t: p } = _t([...r.numbers.subarray(12 * o, 12 * o + 12)], r.where, t), [m = 0, h = 0] = i.numbers.subarray(2 * o, 2 * o + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > he) throw j(i.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > ge) throw j(i.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -391,10 +392,10 @@ function _t(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = z(i[e], i[r]) - +(e === r);
+		let a = B(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw j(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(z(B(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
+	if (!(B(V(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
@@ -406,7 +407,7 @@ function vt(e, t, n) {
 	return [r, i];
 }
 async function yt(e, t) {
-	let n = R(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => bt(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+	let n = z(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => bt(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -421,14 +422,14 @@ async function bt({ weights: e, count: t }, n, r, i) {
 	if (s === n && c === t) return ft(l, o);
 	throw j(o, `${s} x ${c} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function R(e) {
+function z(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
 function xt(e) {
-	return Math.max(0, ...R(e).map(({ count: e }) => e));
+	return Math.max(0, ...z(e).map(({ count: e }) => e));
 }
 function St(e, t) {
-	let n = [...t, ...R(e).map(({ grid: e }) => e)];
+	let n = [...t, ...z(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
 async function Ct(e, t) {
@@ -445,7 +446,7 @@ async function wt(e, t, n) {
 	return "type" in e ? Uint32Array.from(await dt(e, t, n)) : it(new Uint8Array(await n(e.view)), e.where).corners;
 }
 function Tt(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = B(o, s), l = [
+	let { right: o, up: s } = e, c = V(o, s), l = [
 		0,
 		0,
 		0
@@ -485,12 +486,12 @@ function Tt(e, t, n, r, i, a) {
 			}))
 		})),
 		...a,
-		facesPlane: Math.abs(z(l, c)) > .7
+		facesPlane: Math.abs(B(l, c)) > .7
 	};
 }
 function Et(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.map((e) => e.mean.view), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(xt(e)).fill(0);
-	for (let { pictures: t } of R(e)) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(xt(e)).fill(0);
+	for (let { pictures: t } of z(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -500,7 +501,7 @@ function Et(e, t) {
 			}
 		}
 	}
-	let c = i(R(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
+	let c = i(z(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
 		l,
 		u,
 		d,
@@ -521,7 +522,7 @@ function Dt(e, t) {
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? z(i, e.right) / r[0] : 0, r[1] > 0 ? z(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? B(i, e.right) / r[0] : 0, r[1] > 0 ? B(i, e.up) / r[1] : 0];
 }
 function Ot(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
@@ -531,10 +532,10 @@ function Ot(e, t) {
 		n(2)
 	];
 }
-function z(e, t) {
+function B(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function B(e, t) {
+function V(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -596,7 +597,7 @@ function kt(e, t, n) {
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -z(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -B(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -636,10 +637,10 @@ function Mt(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			B(t[1], t[2]),
-			B(t[2], t[0]),
-			B(t[0], t[1])
-		], n = z(t[0], e[0]);
+			V(t[1], t[2]),
+			V(t[2], t[0]),
+			V(t[0], t[1])
+		], n = B(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
@@ -716,23 +717,23 @@ function Kt() {
 function qt(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function V([e, t], n) {
+function H([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
 function Jt(e, t) {
-	let [n, r] = V(e, t);
+	let [n, r] = H(e, t);
 	return n * r;
 }
 function Yt(e) {
 	return Math.ceil(e / 4);
 }
 function Xt(e, t) {
-	return t * Zt(e);
+	return t * U(e);
 }
-function Zt(e) {
+function U(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Qt(e) {
+function Zt(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -740,14 +741,14 @@ function Qt(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function $t(e, t) {
+function Qt(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && en(e, n) <= t.memory / 2) ?? 16, o = en(e, a) + e.geometry, s = (t, n) => o + nn(e, t, n), c = (n, r) => s(n, r) + an(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && $t(e, n) <= t.memory / 2) ?? 16, o = $t(e, a) + e.geometry, s = (t, n) => o + tn(e, t, n), c = (n, r) => s(n, r) + an(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -764,30 +765,32 @@ function $t(e, t) {
 		limitation: on(p, n, e, t)
 	};
 }
-function en(e, t) {
-	let n = e.means.map((e) => tn(e) * Yt(e.channels) * Jt(e.size, t)), r = Qt(e).map((n) => {
+function $t(e, t) {
+	let n = e.means.map((e) => en(e) * Yt(e.channels) * Jt(e.size, t)), r = Zt(e).map((n) => {
 		let r = n.join() === e.atlas.join() ? Vt : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
 		return Ut * Jt(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function tn({ deep: e }) {
+function en({ deep: e }) {
 	return e ? Ut : Ht;
 }
-function nn({ bases: e, rays: t }, n, r) {
+function tn({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Zt(a) * 129 * 129 * Ut : 0;
-		return e + tn(i) * Xt(a, i.channels) * Jt(i.size, n) + o;
+		let o = t ? U(a) * 129 * 129 * Ut : 0;
+		return e + en(i) * Xt(a, i.channels) * Jt(i.size, n) + o;
 	}, 0);
 }
-function rn({ means: e, bases: t }, n, r) {
-	let i = [...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => V(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => V(e, r))];
-	return [Math.max(1, ...i.map(([e]) => e)), Math.max(1, ...i.map(([, e]) => e))];
+function nn({ means: e, bases: t }, n, r) {
+	return rn([...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => H(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => H(e, r))]);
+}
+function rn(e) {
+	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
 function an(e, t) {
-	let [n, r] = rn({
+	let [n, r] = nn({
 		means: [],
 		bases: e.bases
 	}, 1, t);
@@ -796,7 +799,7 @@ function an(e, t) {
 function on(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = en(n, 1) + nn(n, 1, t) + an(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${sn(a)} MB of graphics memory and ${sn(r.memory)} MB may be used` : "this device's graphics allow no more";
+	let a = $t(n, 1) + tn(n, 1, t) + an(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${sn(a)} MB of graphics memory and ${sn(r.memory)} MB may be used` : "this device's graphics allow no more";
 	return `${cn(i.join(", "))}: ${o}.`;
 }
 function sn(e) {
@@ -866,12 +869,12 @@ function yn([e, t], n) {
 	});
 }
 function bn(e, t) {
-	let n = B(e.right, e.up), r = [
+	let n = V(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...Dt(e, t), z(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Dt(e, t), B(r, n) / (Math.max(...e.extent) || 1)];
 }
 function xn(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
@@ -915,14 +918,14 @@ var Sn = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Qt({
+		let [a, ...o] = Zt({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
 			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Cn), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: yn(V(e, n), r),
+				target: yn(H(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -1033,7 +1036,7 @@ function An(e, t, n, i, a) {
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Zt(t) : 0;
+		u += e, d += t ? U(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -1114,8 +1117,121 @@ function In(e) {
 	});
 	return n.name = "eigen textures", n;
 }
+// eigenfield-three/src/gpu.ts
+function Ln(e, t) {
+	return {
+		side: e.getParameter(e.MAX_TEXTURE_SIZE),
+		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
+		memory: t
+	};
+}
+function Rn(e, [t, n], r, i, a) {
+	return Vn(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
+		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
+		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
+	});
+}
+function zn(e, t, n) {
+	let { width: r, height: i } = n;
+	Hn(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+}
+function Bn(e, [t, n], r = !1) {
+	return Vn(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
+	});
+}
+function Vn(e, t, n) {
+	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
+	let r = e.createTexture();
+	return Hn(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+}
+function Hn(e, t, n, r) {
+	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
+		[e.UNPACK_FLIP_Y_WEBGL, !1],
+		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
+		[e.UNPACK_COLORSPACE_CONVERSION_WEBGL, e.NONE],
+		[e.UNPACK_ALIGNMENT, 4],
+		[e.UNPACK_ROW_LENGTH, 0],
+		[e.UNPACK_IMAGE_HEIGHT, 0],
+		[e.UNPACK_SKIP_PIXELS, 0],
+		[e.UNPACK_SKIP_ROWS, 0],
+		[e.UNPACK_SKIP_IMAGES, 0]
+	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
+	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
+}
+var Un = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Wn = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function Gn(e, t) {
+	let n = Yn(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+		"factors",
+		"size",
+		"precisions",
+		"nodes",
+		"zero"
+	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
+		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Kn(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+			0,
+			1,
+			2,
+			3
+		].map((e) => e === n ? p : 0)), e.drawArrays(e.TRIANGLES, 0, 3);
+	};
+	return {
+		put(n, r, i, a, o = null) {
+			let { picture: s, row: c, rows: l } = n, d = Kn(s) ? t.codes : t.picture;
+			if (!d) return;
+			let f = () => Xn(e, 0, d, () => {
+				Kn(s) ? Jn(e, s, c, l) : qn(e, s, c, l), Zn(e, () => u(n, r, i, a, o));
+			});
+			o ? Xn(e, 1, t.precision, () => {
+				qn(e, o.precision, 0, o.precision.height), f();
+			}) : f();
+		},
+		free() {
+			e.deleteTexture(t.picture), e.deleteTexture(t.codes), e.deleteTexture(t.precision), e.deleteVertexArray(i), e.deleteFramebuffer(r), e.deleteProgram(n);
+		}
+	};
+}
+function Kn(e) {
+	return "data" in e;
+}
+function qn(e, t, n, r) {
+	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
+}
+function Jn(e, { data: t, width: n, stride: r }, i, a) {
+	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
+}
+function Yn(e) {
+	let t = e.createProgram();
+	for (let [n, r] of [[e.VERTEX_SHADER, Un], [e.FRAGMENT_SHADER, Wn]]) {
+		let i = e.createShader(n);
+		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
+	}
+	return e.linkProgram(t), t;
+}
+function Xn(e, t, n, r) {
+	let i = e.getParameter(e.ACTIVE_TEXTURE);
+	e.activeTexture(e.TEXTURE0 + t);
+	let a = e.getParameter(e.SAMPLER_BINDING);
+	e.bindSampler(t, null), Hn(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+}
+function Zn(e, t) {
+	let n = [
+		e.BLEND,
+		e.CULL_FACE,
+		e.DEPTH_TEST,
+		e.DITHER,
+		e.RASTERIZER_DISCARD,
+		e.SAMPLE_ALPHA_TO_COVERAGE,
+		e.SAMPLE_COVERAGE,
+		e.SCISSOR_TEST,
+		e.STENCIL_TEST
+	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
+	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
+}
 // eigenfield-three/src/json.ts
-var Ln = class e {
+var Qn = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1146,7 +1262,7 @@ var Ln = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -ye, t = ye) {
+	number(e = -N, t = N) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1156,7 +1272,7 @@ var Ln = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -ye, n = ye) {
+	numbers(e, t = -N, n = N) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1172,28 +1288,28 @@ var Ln = class e {
 	wrong(e) {
 		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, Rn = {
+}, $n = {
 	5121: 1,
 	5123: 2,
 	5125: 4,
 	5126: 4
-}, zn = {
+}, er = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
-}, Bn = 64, Vn = 9, Hn = 10 ** Vn, Un = 5123, Wn = 5125;
-function Gn(e) {
-	let t = new Ln(e, "");
+}, tr = 64, nr = 9, rr = 10 ** nr, ir = 5123, ar = 5125;
+function or(e) {
+	let t = new Qn(e, "");
 	try {
 		return t.key("extensions").key(ae).exists;
 	} catch {
 		return !1;
 	}
 }
-function Kn(e) {
-	let t = new Ln(e, ""), n = t.key("extensions").key(ae), r = qn(n), i = Jn(t), a = Xn(t, i), o = (e) => e.integer(0, i.length - 1);
-	Yn(t);
-	let s = er(t, o), c = n.key("cameras"), l = tr(c), u = rr(c, l.length), d = u.filter((e) => !e).length, f = dr(n, d, s, a, o), p = fr(n, f), m = l.length, h = c.key("colour");
+function sr(e) {
+	let t = new Qn(e, ""), n = t.key("extensions").key(ae), r = cr(n), i = lr(t), a = dr(t, i), o = (e) => e.integer(0, i.length - 1);
+	ur(t);
+	let s = hr(t, o), c = n.key("cameras"), l = gr(c), u = vr(c, l.length), d = u.filter((e) => !e).length, f = Er(n, d, s, a, o), p = Dr(n, f), m = l.length, h = c.key("colour");
 	if (h.exists && p.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
@@ -1206,26 +1322,26 @@ function Kn(e) {
 		names: l,
 		heldOut: u,
 		reference: n.key("reference").integer(0, m - 1),
-		calibration: ir(c, m, a, o),
-		sizes: ar(c, m, a),
-		colour: h.exists ? a(h, "SCALAR", [H], 6 * m) : null,
-		...or(g),
-		triangles: v.exists ? $n(v, v, o) : _.exists ? Qn(a(_, "SCALAR", [Un, Wn], null), 2 * pe) : null,
-		settings: sr(n.key("settings")),
-		scores: sr(n.key("scores")),
+		calibration: yr(c, m, a, o),
+		sizes: br(c, m, a),
+		colour: h.exists ? a(h, "SCALAR", [W], 6 * m) : null,
+		...xr(g),
+		triangles: v.exists ? mr(v, v, o) : _.exists ? pr(a(_, "SCALAR", [ir, ar], null), 2 * me) : null,
+		settings: Sr(n.key("settings")),
+		scores: Sr(n.key("scores")),
 		views: i,
-		mesh: w.exists ? $n(w, w.key("bufferView"), o) : null,
-		position: Zn(a(x.key("POSITION"), "VEC3", [H], null), ge),
-		uv: Zn(a(x.key("TEXCOORD_0"), "VEC2", [H], null), ge),
-		indices: Qn(a(S, "SCALAR", [
+		mesh: w.exists ? mr(w, w.key("bufferView"), o) : null,
+		position: fr(a(x.key("POSITION"), "VEC3", [W], null), _e),
+		uv: fr(a(x.key("TEXCOORD_0"), "VEC2", [W], null), _e),
+		indices: pr(a(S, "SCALAR", [
 			5121,
-			Un,
-			Wn
-		], null), _e),
+			ir,
+			ar
+		], null), ve),
 		preview: s
 	};
 }
-function qn(e) {
+function cr(e) {
 	let t = e.key("version").text(M);
 	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
@@ -1235,7 +1351,7 @@ function qn(e) {
 	}
 	return t;
 }
-function Jn(e) {
+function lr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1251,7 +1367,7 @@ function Jn(e) {
 		return i;
 	});
 }
-function Yn(e) {
+function ur(e) {
 	let t = e.key("nodes").items(ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1266,7 +1382,7 @@ function Yn(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Xn(e, t) {
+function dr(e, t) {
 	let n = e.key("accessors").items(ce);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
@@ -1277,14 +1393,14 @@ function Xn(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = zn[r] ?? 1, u = o.key("count").integer(1, ve);
+		let l = er[r] ?? 1, u = o.key("count").integer(1, ye);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Rn[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = $n[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % Rn[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % $n[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1295,37 +1411,37 @@ function Xn(e, t) {
 		};
 	};
 }
-function Zn(e, t) {
+function fr(e, t) {
 	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function Qn(e, t) {
+function pr(e, t) {
 	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Zn(e, 3 * t);
+	return fr(e, 3 * t);
 }
-function $n(e, t, n) {
+function mr(e, t, n) {
 	return {
 		view: n(t),
 		where: e.where
 	};
 }
-function er(e, t) {
+function hr(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function tr(e) {
-	let t = e.key("pattern"), n = t.exists ? t : e.key("names"), r = t.exists ? nr(t) : n.items(pe).map((e) => e.text(M));
+function gr(e) {
+	let t = e.key("pattern"), n = t.exists ? t : e.key("names"), r = t.exists ? _r(t) : n.items(me).map((e) => e.text(M));
 	if (!r.length) throw n.wrong("no cameras");
 	if (new Set(r).size !== r.length) throw n.wrong("a name stands twice");
 	if (r.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e))) throw n.wrong("control characters");
 	return r;
 }
-function nr(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, pe));
+function _r(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, me));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Bn).map((e) => {
+	let r = e.key("parts").items(tr).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(M))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -1333,7 +1449,7 @@ function nr(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Hn), e.key("step").integer(0, Hn)], c = e.key("digits").integer(1, Vn);
+		let [o, s] = [e.key("first").integer(0, rr), e.key("step").integer(0, rr)], c = e.key("digits").integer(1, nr);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -1342,7 +1458,7 @@ function nr(e) {
 		return o;
 	});
 }
-function rr(e, t) {
+function vr(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1353,21 +1469,21 @@ function rr(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function ir(e, t, n, r) {
+function yr(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? $n(i, i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [H], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [H], 12 * t)
+	return i.exists ? mr(i, i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [W], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [W], 12 * t)
 	};
 }
-function ar(e, t, n) {
+function br(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Wn], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, me);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ar], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, he);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function or(e) {
+function xr(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1382,25 +1498,25 @@ function or(e) {
 		extent: [i, a]
 	};
 }
-function sr(e) {
+function Sr(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/planes.ts
-var H = 5126, cr = 10;
-function lr(e, t) {
+var W = 5126, Cr = 10;
+function wr(e, t) {
 	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function ur(e) {
-	let [t = 0, n = 0] = e.items(2).map((e) => e.integer(1, le));
-	if (!t || !n) throw e.wrong("two numbers are needed");
-	if (t * n > ue) throw e.wrong(`more than ${ue} texels`);
-	return [t, n];
+function Tr(e, t = le) {
+	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
+	if (!n || !r) throw e.wrong("two numbers are needed");
+	if (n * r > de) throw e.wrong(`more than ${de} texels`);
+	return [n, r];
 }
-function dr(e, t, n, r, i) {
+function Er(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = vr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => yr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Nr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Fr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1414,11 +1530,11 @@ function dr(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${de} textures`);
-	if (s > fe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${fe} textures`);
+	if (s > pe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function fr(e, t) {
+function Dr(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1450,15 +1566,15 @@ function fr(e, t) {
 			1
 		]
 	];
-	throw lr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw wr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function pr(e, t, n, r, i, a = !1) {
+function Or(e, t, n, r, i, a = !1) {
 	let o = e.key("mimeType").text(M);
 	if (!/^image\/(png|jpeg|webp|avif)$/.test(o)) throw e.key("mimeType").wrong("an unknown type");
-	let s = e.key("bits"), c = s.exists ? s.integer(8, cr) : 8;
-	if (c !== 8 && (c !== cr || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
+	let s = e.key("bits"), c = s.exists ? s.integer(8, Cr) : 8;
+	if (c !== 8 && (c !== Cr || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
 	let l = t === 3 && c === 8 ? 1 : t;
-	r && br(e, l * n, r);
+	r && Ir(e, l * n, r);
 	let [u, d] = [e.key("scale"), e.key("zero")], f = {
 		view: i(e.key("bufferView")),
 		mimeType: o,
@@ -1469,32 +1585,32 @@ function pr(e, t, n, r, i, a = !1) {
 	};
 	return a && c === 8 && !u.exists && !d.exists ? {
 		...f,
-		...mr(t)
+		...kr(t)
 	} : {
 		...f,
-		scale: _r(u, t, n),
-		zero: _r(d, t, n)
+		scale: Mr(u, t, n),
+		zero: Mr(d, t, n)
 	};
 }
-function mr(e) {
+function kr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function hr(e) {
+function Ar(e) {
 	return e.some(({ bits: e }) => e > 8);
 }
-function gr({ bits: e }) {
+function jr({ bits: e }) {
 	return (2 ** e - 1) / 255;
 }
-function _r(e, t, n) {
+function Mr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function vr(e, t, n, r) {
+function Nr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1506,30 +1622,44 @@ function vr(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...mr(t)
+				...kr(t)
 			},
-			meanSize: null
+			meanSize: null,
+			precision: null
 		};
 	}
-	let a = ur(i.key("size"));
+	let a = Tr(i.key("size")), o = Or(i, t, 1, a, r, !0);
 	return {
-		mean: pr(i, t, 1, a, r, !0),
-		meanSize: a
+		mean: o,
+		meanSize: a,
+		precision: Pr(i.key("precision"), o, r)
 	};
 }
-function yr(e, t, n, r, i) {
-	let a = ur(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? ur(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, le) : [];
+function Pr(e, t, n) {
+	if (!e.exists) return null;
+	if (t.bits !== Cr) throw e.wrong(`of a mean of ${t.bits} bits`);
+	let r = Tr(e.key("size"), ue);
+	return {
+		view: n(e.key("bufferView")),
+		mimeType: "image/png",
+		bits: 8,
+		size: r,
+		where: e.where
+	};
+}
+function Fr(e, t, n, r, i) {
+	let a = Tr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Tr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, le) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(de).map((e) => {
-		let n = new Ln({
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(fe).map((e) => {
+		let n = new Qn({
 			...p,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, de) : 1;
-		return d += o, pr(n, t, o, a, i);
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, fe) : 1;
+		return d += o, Or(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${de} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? $n(h, h, i) : r(e.key("weights"), "SCALAR", [H], n * d) : null;
+	if (d > 4096) throw e.wrong(`more than ${fe} textures`);
+	let h = e.key("codedWeights"), g = d ? h.exists ? mr(h, h, i) : r(e.key("weights"), "SCALAR", [W], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1540,23 +1670,23 @@ function yr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function br(e, t, [n, r]) {
+function Ir(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > ue) throw e.wrong(`more than ${ue} texels`);
+	if (n * i > de) throw e.wrong(`more than ${de} texels`);
 }
 // eigenfield-three/src/parts.ts
-function xr(e, t, n) {
+function Lr(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
 		0,
 		0
 	];
-	return e.planes.forEach(({ channels: c, mean: l, bases: u }, d) => {
-		let f = e.colours.slice(i, i + c);
-		i += c;
-		let p = t.needs.means[d]?.size ?? [1, 1], m = t.means[d], h = Sr(l, c);
+	return e.planes.forEach((c, l) => {
+		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
+		i += u;
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Rr(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -1570,12 +1700,12 @@ function xr(e, t, n) {
 			...h,
 			basis: null
 		});
-		for (let { size: e, grid: i, corner: l, pictures: d, count: p } of u) {
-			let u = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
-			if (h && u) {
-				let [t, n] = [l[0] / i[0], l[1] / i[1]];
+		for (let { size: e, grid: i, corner: c, pictures: l, count: p } of d) {
+			let d = t.bases[a], m = t.ready[a++] ?? [], h = Math.min(p, n.usable);
+			if (h && d) {
+				let [t, n] = [c[0] / i[0], c[1] / i[1]];
 				r.push({
-					stored: u,
+					stored: d,
 					grid: i,
 					rectangle: [
 						t,
@@ -1584,7 +1714,7 @@ function xr(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...wr(d, c, h),
+					...Br(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -1592,26 +1722,26 @@ function xr(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Zt(h) : 0;
+			o += p, s += h ? U(h) : 0;
 		}
 	}), r;
 }
-function Sr(e, t) {
-	let { scale: n, zero: r } = e, i = Cr([e]), a = {
+function Rr({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : zr([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
 	for (let e = 0; e < t; e++) {
 		let t = 4 * e + e % 4;
-		a.scale[t] = i * (n[e] ?? 0), a.bias[t] = -(r[e] ?? 0) * (n[e] ?? 0);
+		o.scale[t] = a * (r[e] ?? 0), o.bias[t] = n ? 0 : -(i[e] ?? 0) * (r[e] ?? 0);
 	}
-	return a;
+	return o;
 }
-function Cr(e) {
-	return hr(e) ? 1 : 255;
+function zr(e) {
+	return Ar(e) ? 1 : 255;
 }
-function wr(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Cr(e), o = 4 * t * Zt(n), s = {
+function Br(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = zr(e), o = 4 * t * U(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -1622,12 +1752,12 @@ function wr(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/deep.ts
-var Tr = /* @__PURE__ */ new Set([
+var Vr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
 ]);
-async function Er(e, t, n) {
+async function Hr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1636,7 +1766,7 @@ async function Er(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Tr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Vr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1650,7 +1780,7 @@ async function Er(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function Dr(e, t, n, r) {
+function Ur(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1669,16 +1799,16 @@ function Dr(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/headers.ts
-function Or(e) {
+function Wr(e) {
 	let t = new DataView(e);
 	try {
-		return kr(t) ?? Ar(t) ?? jr(t) ?? Mr(t);
+		return Gr(t) ?? Kr(t) ?? qr(t) ?? Jr(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function U(e, t) {
+function G(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1686,15 +1816,15 @@ function U(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function kr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || U(e, 12) !== "IHDR" ? null : {
+function Gr(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || G(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Ar(e) {
+function Kr(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1717,12 +1847,12 @@ function Ar(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function jr(e) {
-	if (U(e, 0) !== "RIFF" || U(e, 8) !== "WEBP") return null;
+function qr(e) {
+	if (G(e, 0) !== "RIFF" || G(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = U(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = G(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1742,11 +1872,11 @@ function jr(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Mr(e) {
-	if (U(e, 4) !== "ftyp") return null;
+function Jr(e) {
+	if (G(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = U(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = G(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1769,44 +1899,56 @@ function Mr(e) {
 	};
 }
 // eigenfield-three/src/decode.ts
-var Nr = {
+var Yr = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Pr = {
+}, Xr = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Fr(e, t, n) {
-	let r = Or(e);
+function Zr(e, t, n) {
+	let r = Wr(e);
 	if (!r) throw j(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.bits !== 8 && t.bits !== o) throw j(t.where, `no picture of ${t.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > ue) throw j(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > de) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Ir(e, t, n, r = 1) {
-	let [i, a] = Fr(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Qr(e, t, n, r = 1) {
+	let [i, a] = Zr(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Or(e)?.type ?? t.mimeType, u;
+	}, l = Wr(e)?.type ?? t.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Nr,
+			...Yr,
 			...c
 		});
 	} catch (e) {
-		throw await zr(l) ? j(t.where, "it cannot be decoded") : Br(l, t, e);
+		throw await ai(l) ? j(t.where, "it cannot be decoded") : oi(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-async function Lr(e, t, n, r = 1) {
-	if (t.bits === 8) return Rr(e, t, n, r);
-	let i = t.pieces * t.textures, [a, o] = Fr(e, t, n && [n[0], i * n[1]]), s = await Er(e, a, o);
-	if (!s) return Rr(e, t, n, r);
+async function $r(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await ei(await t(e.precision.view), e.precision);
+	return {
+		pieces: await ti(await t(r.view), r, i, n),
+		precision: a
+	};
+}
+async function ei(e, t) {
+	let { type: n } = Wr(e) ?? {};
+	if (n && n !== t.mimeType) throw j(t.where, `${n}, not ${t.mimeType}`);
+	return Qr(e, t, t.size);
+}
+async function ti(e, t, n, r = 1) {
+	if (t.bits === 8) return ni(e, t, n, r);
+	let i = t.pieces * t.textures, [a, o] = Zr(e, t, n && [n[0], i * n[1]]), s = await Hr(e, a, o);
+	if (!s) return ni(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1814,7 +1956,7 @@ async function Lr(e, t, n, r = 1) {
 			row: t * c,
 			rows: c
 		};
-		let n = Dr(s, t * c, c, r);
+		let n = Ur(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1822,8 +1964,8 @@ async function Lr(e, t, n, r = 1) {
 		};
 	});
 }
-async function Rr(e, t, n, r = 1) {
-	let i = t.pieces * t.textures, [a, o] = Fr(e, t, n && [n[0], i * n[1]]), s = await Ir(e, t, [a, o], i === 1 ? r : 1);
+async function ni(e, t, n, r = 1) {
+	let i = t.pieces * t.textures, [a, o] = Zr(e, t, n && [n[0], i * n[1]]), s = await Qr(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1836,7 +1978,7 @@ async function Rr(e, t, n, r = 1) {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Nr,
+		...Yr,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1847,11 +1989,14 @@ async function Rr(e, t, n, r = 1) {
 		rows: d
 	}));
 }
-function W(e) {
+function ri(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
-async function zr(e) {
-	let t = Pr[e];
+function ii({ pieces: e, precision: t }) {
+	ri(e), t?.close();
+}
+async function ai(e) {
+	let t = Xr[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1860,21 +2005,21 @@ async function zr(e) {
 		return !1;
 	}
 }
-function Br(e, t, n) {
+function oi(e, t, n) {
 	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/strength.ts
-var G = 128, Vr = .98;
-async function Hr(e, t, n, r) {
+var K = 128, si = .98;
+async function ci(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = gr(o), l = o.pieces < i, u = await Rr(await r(o.view), o, e.size), d = new OffscreenCanvas(G, G).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = jr(o), l = o.pieces < i, u = await ni(await r(o.view), o, e.size), d = new OffscreenCanvas(K, K).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, G, G);
-		let { data: u } = d.getImageData(0, 0, G, G);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, K, K);
+		let { data: u } = d.getImageData(0, 0, K, K);
 		(l ? [
 			0,
 			1,
@@ -1883,113 +2028,12 @@ async function Hr(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), W(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Vr * f.length)] ?? 0;
+	}), ri(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(si * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
-// eigenfield-three/src/gpu.ts
-function Ur(e, t) {
-	return {
-		side: e.getParameter(e.MAX_TEXTURE_SIZE),
-		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
-		memory: t
-	};
-}
-function Wr(e, [t, n], r, i, a) {
-	return qr(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
-		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
-		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
-	});
-}
-function Gr(e, t, n) {
-	let { width: r, height: i } = n;
-	Jr(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
-}
-function Kr(e, [t, n], r = !1) {
-	return qr(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
-	});
-}
-function qr(e, t, n) {
-	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
-	let r = e.createTexture();
-	return Jr(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
-}
-function Jr(e, t, n, r) {
-	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
-		[e.UNPACK_FLIP_Y_WEBGL, !1],
-		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
-		[e.UNPACK_COLORSPACE_CONVERSION_WEBGL, e.NONE],
-		[e.UNPACK_ALIGNMENT, 4],
-		[e.UNPACK_ROW_LENGTH, 0],
-		[e.UNPACK_IMAGE_HEIGHT, 0],
-		[e.UNPACK_SKIP_PIXELS, 0],
-		[e.UNPACK_SKIP_ROWS, 0],
-		[e.UNPACK_SKIP_IMAGES, 0]
-	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
-	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
-}
-// eigenfield-three/src/packing.ts
-var Yr = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Xr = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nout vec4 code;\nvoid main() {\n  code = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors));\n}\n";
-function Zr(e, t) {
-	let n = ei(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], a = e.getUniformLocation(n, "factors"), o = ({ picture: t, rows: o }, s, c, l) => {
-		e.useProgram(n), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, o);
-		for (let { channel: n, layer: r, component: i } of c) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, s, 0, r), Qr(t) ? e.uniform4f(a, 255, 65280, 0, 0) : e.uniform4fv(a, [
-			0,
-			1,
-			2,
-			3
-		].map((e) => e === n ? l : 0)), e.drawArrays(e.TRIANGLES, 0, 3);
-	};
-	return {
-		put(n, r, i, a) {
-			let { picture: s, row: c, rows: l } = n, u = Qr(s) ? t.codes : t.picture;
-			u && ti(e, () => Jr(e, e.TEXTURE_2D, u, () => {
-				Qr(s) ? $r(e, s, c, l) : (e.pixelStorei(e.UNPACK_SKIP_ROWS, c), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, s.width, l, e.RGBA, e.UNSIGNED_BYTE, s)), ni(e, () => o(n, r, i, a));
-			}));
-		},
-		free() {
-			e.deleteTexture(t.picture), e.deleteTexture(t.codes), e.deleteVertexArray(i), e.deleteFramebuffer(r), e.deleteProgram(n);
-		}
-	};
-}
-function Qr(e) {
-	return "data" in e;
-}
-function $r(e, { data: t, width: n, stride: r }, i, a) {
-	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
-}
-function ei(e) {
-	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Yr], [e.FRAGMENT_SHADER, Xr]]) {
-		let i = e.createShader(n);
-		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
-	}
-	return e.linkProgram(t), t;
-}
-function ti(e, t) {
-	let n = e.getParameter(e.ACTIVE_TEXTURE);
-	e.activeTexture(e.TEXTURE0);
-	let r = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(0, null), t(), e.bindSampler(0, r), e.activeTexture(n);
-}
-function ni(e, t) {
-	let n = [
-		e.BLEND,
-		e.CULL_FACE,
-		e.DEPTH_TEST,
-		e.DITHER,
-		e.RASTERIZER_DISCARD,
-		e.SAMPLE_ALPHA_TO_COVERAGE,
-		e.SAMPLE_COVERAGE,
-		e.SCISSOR_TEST,
-		e.STENCIL_TEST
-	].filter((t) => e.isEnabled(t)), r = e.getParameter(e.CURRENT_PROGRAM), i = e.getParameter(e.VERTEX_ARRAY_BINDING), a = e.getParameter(e.DRAW_FRAMEBUFFER_BINDING), [o = 0, s = 0, c = 0, l = 0] = e.getParameter(e.VIEWPORT), [u, d, f, p] = e.getParameter(e.COLOR_WRITEMASK);
-	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
-}
 // eigenfield-three/src/textures.ts
-var ri = 3, ii = class {
+var li = 3, ui = class {
 	parts;
 	options;
 	means;
@@ -2016,12 +2060,12 @@ var ri = 3, ii = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			deep: hr(t.pictures)
+			deep: Ar(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			deep: hr([t])
+			deep: Ar([t])
 		}));
 		this.needs = {
 			atlas: St(r, i),
@@ -2061,7 +2105,7 @@ var ri = 3, ii = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(W), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(ii), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2084,20 +2128,20 @@ var ri = 3, ii = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < ri && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < li && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), W(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), ri(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(W).catch(() => void 0);
+			for (let e of a) e.then(ri).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.deep ? 255 * gr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.deep ? 255 * jr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2116,56 +2160,61 @@ var ri = 3, ii = class {
 		this.version += 1;
 	}
 	makeRoom(e) {
-		let { means: t, bases: n } = this.needs;
-		for (let r = this.options.memory ?? Kt();; r /= 2) {
-			let i = $t(this.needs, Ur(e, r)), { meanDown: a, scaleDown: o, usable: s } = i, c = a > 1 || o > 1, l = [...t.map(({ size: t, channels: n, deep: r }) => Wr(e, V(t, a), Yt(n), c, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
-				let a = Math.min(r, s);
-				return Wr(e, a ? V(t, o) : [1, 1], a ? Xt(a, n) : 1, c, i);
-			})], u = rn(this.needs, a, o), d = Kr(e, u), f = [...t, ...n].some(({ deep: e }) => e), p = f ? Kr(e, u, !0) : null;
-			if (d && (p || !f) && l.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = l[t] ?? null), {
-				packer: Zr(e, {
-					picture: d,
-					codes: p
+		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
+		for (let i = this.options.memory ?? Kt();; i /= 2) {
+			let a = Qt(this.needs, Ln(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, deep: r }) => Rn(e, H(t, o), Yt(n), l, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
+				let a = Math.min(r, c);
+				return Rn(e, a ? H(t, s) : [1, 1], a ? Xt(a, n) : 1, l, i);
+			})], d = nn(this.needs, o, s), f = Bn(e, d), p = [...t, ...n].some(({ deep: e }) => e), m = p ? Bn(e, d, !0) : null, h = Bn(e, rn(r));
+			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
+				packer: Gn(e, {
+					picture: f,
+					codes: m,
+					precision: h
 				}),
-				plan: i
+				plan: a
 			};
 			for (let t of [
-				...l,
-				d,
-				p
+				...u,
+				f,
+				m,
+				h
 			]) e.deleteTexture(t);
-			if (!s) throw new A("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new A("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 	async loadMeans(e, t, n) {
-		let { scene: r, bytes: i, meanSizes: a } = this.parts, { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(W), o = await Promise.all(r.planes.map(async ({ mean: e }, t) => Lr(await i(e.view), e, a[t] ?? null, n)))), o.forEach((n, i) => {
+		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
+		this.decoded = null, (!a || n > 1) && (a?.forEach(ii), a = await Promise.all(r.planes.map((e) => $r(e, i, n)))), a.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), W(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), ii(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let i = hr([n]), [a] = t;
-		if (a && t.length === 1 && !i && "close" in a.picture) {
-			Gr(e, r, a.picture);
+		let { pieces: i, precision: a } = t, o = Ar([n]), [s] = i;
+		if (s && i.length === 1 && !o && "close" in s.picture) {
+			zn(e, r, s.picture);
 			return;
 		}
-		let o = i ? 255 * gr(n) : 1;
-		t.forEach((e, t) => {
-			let n = [{
+		let c = o ? 255 * jr(n) : 1;
+		i.forEach((e, t) => {
+			let i = [{
 				channel: 0,
 				layer: Math.floor(t / 4),
 				component: t % 4
 			}];
-			this.packer?.put(e, r, n, o);
+			this.packer?.put(e, r, i, c, a && {
+				precision: a,
+				zero: n.zero[t] ?? 0
+			});
 		});
 	}
 	decode(e, t) {
 		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => Lr(e, r, n.size, t));
+		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => ti(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, ai = 1.5, oi = .001, si = class extends l {
+}, di = 1.5, fi = .001, pi = class extends l {
 	parts;
 	mesh;
 	info;
@@ -2196,9 +2245,9 @@ var ri = 3, ii = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = xt(n), this.counts = R(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = xt(n), this.counts = z(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new ii(e, di(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new ui(e, _i(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
 		this.material = In(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
@@ -2248,7 +2297,7 @@ var ri = 3, ii = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return ai * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return di * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -2265,7 +2314,7 @@ var ri = 3, ii = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = ui(t, n), [i, a] = Dt(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = gi(t, n), [i, a] = Dt(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
 		let l = Mn[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -2274,7 +2323,7 @@ var ri = 3, ii = class {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new Sn(i, xr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new Sn(i, Lr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
@@ -2308,7 +2357,7 @@ var ri = 3, ii = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !fi(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !vi(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -2319,7 +2368,7 @@ var ri = 3, ii = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Hr(s, e, o, r).then((t) => {
+				ci(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -2329,7 +2378,7 @@ var ri = 3, ii = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= oi * Math.max(...r);
+		return Math.abs(i) <= fi * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
@@ -2343,33 +2392,33 @@ var ri = 3, ii = class {
 		}, n;
 	}
 	fail(e) {
-		if (pi(e)) return;
+		if (yi(e)) return;
 		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, ci = new _(), li = new O();
-function ui(e, t) {
-	return li.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ci.copy(t.matrixWorld).invert()), [
-		li.x,
-		li.y,
-		li.z
+}, mi = new _(), hi = new O();
+function gi(e, t) {
+	return hi.setFromMatrixPosition(e.matrixWorld).applyMatrix4(mi.copy(t.matrixWorld).invert()), [
+		hi.x,
+		hi.y,
+		hi.z
 	];
 }
-function di(e) {
+function _i(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function fi(e) {
+function vi(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function pi(e) {
+function yi(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var mi = class {
+var bi = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -2412,53 +2461,53 @@ var mi = class {
 		}
 		return n.buffer;
 	}
-}, hi = 1179937895, gi = 1313821514, _i = 5130562;
-async function vi(e) {
+}, xi = 1179937895, Si = 1313821514, Ci = 5130562;
+async function wi(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? Ci(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? ki(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== hi) throw Ci(!1);
+	if (new DataView(t).getUint32(0, !0) !== xi) throw ki(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== gi) throw j("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Si) throw j("16", "it does not begin with JSON");
 	if (o > se) throw j("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = bi(await e.read(20, 20 + o));
+	let s = Ei(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: xi(s),
-		binary: () => yi(e, 20 + o, i)
+		json: Di(s),
+		binary: () => Ti(e, 20 + o, i)
 	};
 }
-async function yi(e, t, n) {
+async function Ti(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === _i) return r + 8;
+		if (t.getUint32(4, !0) === Ci) return r + 8;
 		r += 8 + i;
 	}
 	throw j(String(t), "no binary chunk");
 }
-function bi(e) {
+function Ei(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function xi(e) {
-	if (Si(e) > 64) throw j("20", "its JSON is nested too deep");
+function Di(e) {
+	if (Oi(e) > 64) throw j("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw j("20", "its JSON cannot be read");
 	}
 }
-function Si(e) {
+function Oi(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -2469,10 +2518,10 @@ function Si(e) {
 	}
 	return n;
 }
-function Ci(e) {
+function ki(e) {
 	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
-var wi = 2 ** 24, Ti = class {
+var Ai = 2 ** 24, ji = class {
 	points;
 	start;
 	end;
@@ -2539,7 +2588,7 @@ var wi = 2 ** 24, Ti = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * wi + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Ai + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -2547,57 +2596,57 @@ var wi = 2 ** 24, Ti = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, Ei = 2 ** 20, Di = .8, Oi = 44, ki = 385, Ai = 897, ji = 1086, Mi = 1095, [Ni, Pi, Fi, Ii, Li] = [
+}, Mi = 2 ** 20, Ni = .8, Pi = 44, Fi = 385, Ii = 897, Li = 1086, Ri = 1095, [zi, Bi, Vi, Hi, Ui] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Ri(e) {
-	return Math.floor(Math.min(Math.max(e, -Ei), Ei) + .5);
+function Wi(e) {
+	return Math.floor(Math.min(Math.max(e, -Mi), Mi) + .5);
 }
-function zi(e, t, n) {
+function Gi(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Bi(e, t, n, r, i) {
-	i.flat ? Vi(e, t, n, r, i.fine) : Hi(e, t, n, r);
+function Ki(e, t, n, r, i) {
+	i.flat ? qi(e, t, n, r, i.fine) : Ji(e, t, n, r);
 }
-function Vi(e, t, n, r, i) {
+function qi(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Di : -.8, _ = 1 << i >> 1, v = Ri((l + d) * .5 + g * m) + _ >> i, y = Ri((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(F(Math.floor((p * p + m * m) / b)), 23), S = Math.min(F(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Ni), T = Math.min(F(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(ki + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Pi);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Ni : -.8, _ = 1 << i >> 1, v = Wi((l + d) * .5 + g * m) + _ >> i, y = Wi((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(I(Math.floor((p * p + m * m) / b)), 23), S = Math.min(I(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, zi), T = Math.min(I(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(Fi + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Bi);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
-	let k = zi(t, a, i) + 4 * zi(t, o, i);
-	if (e.flag(Ai + k, 913 + zi(t, s, i), 917 + c, Li)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = Gi(t, a, i) + 4 * Gi(t, o, i);
+	if (e.flag(Ii + k, 913 + Gi(t, s, i), 917 + c, Ui)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Hi(e, t, n, { a: r, b: i, o: a }) {
+function Ji(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(F(o), 43), c = 0;
+	let s = Math.min(I(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Ri(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Oi + o * 24 + c, 116 + o * Oi + s, Fi);
-		t[3 * n + o] = l + u, c = Math.min(F(Math.abs(u)), 23);
+		let l = Wi(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Pi + o * 24 + c, 116 + o * Pi + s, Vi);
+		t[3 * n + o] = l + u, c = Math.min(I(Math.abs(u)), 23);
 	}
 }
-function Ui(e, t, n, r, i) {
+function Yi(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Ei), Ei) : 0, o = ji + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Ii);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Mi), Mi) : 0, o = Li + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Hi);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Wi = 13, Gi = 11, Ki = 12, K = 169, qi = 8, Ji = Mi, Yi = Ji + K + 104 + 26, Xi = Yi + K + 104 + Wi, Zi = Xi + 64 + 64 + K, Qi = Zi + K + 4 + 1, $i = Qi + 6, [ea, ta, na, ra, ia] = [
+var Xi = 13, Zi = 11, Qi = 12, q = 169, $i = 8, ea = Ri, ta = ea + q + 104 + 26, na = ta + q + 104 + Xi, ra = na + 64 + 64 + q, ia = ra + q + 4 + 1, aa = ia + 6, [oa, sa, ca, la, ua] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], aa = [
+], da = [
 	-1,
 	-.4,
 	0,
@@ -2608,12 +2657,12 @@ var Wi = 13, Gi = 11, Ki = 12, K = 169, qi = 8, Ji = Mi, Yi = Ji + K + 104 + 26,
 	2,
 	4
 ];
-function oa(e, t, n, r, i) {
+function fa(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Ti(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new ji(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -2628,7 +2677,7 @@ function oa(e, t, n, r, i) {
 		if (l >= t) throw j(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(F(l - 1));
+		let t = e.raw(I(l - 1));
 		if (t >= l) throw j(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -2637,44 +2686,44 @@ function oa(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Qi + n, Qi + 3 + n, Qi + n, ia)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(ia + n, ia + 3 + n, ia + n, ua)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Ui(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Yi(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? Ki : c.status[t] !== 1 || n === i || t === e ? Gi : sa(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Qi : c.status[t] !== 1 || n === i || t === e ? Zi : pa(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Wi + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Ji + K + 104 + 2 * y + +(_ === v);
-		if (y < Gi && e.flag(Ji + x, Ji + K + y * qi + S, w, ea)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Xi + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = ea + q + 104 + 2 * y + +(_ === v);
+		if (y < Zi && e.flag(ea + x, ea + q + y * $i + S, w, oa)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < Gi && (v !== _ || y >= Gi) && e.flag(Yi + x, Yi + K + b * qi + C, Yi + K + 104 + b, ta)) {
+		if (b < Zi && (v !== _ || y >= Zi) && e.flag(ta + x, ta + q + b * $i + C, ta + q + 104 + b, sa)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === Ki) + (b === Ki ? 2 : 0), E = zi(a, n, r.fine) + 4 * zi(a, l, r.fine), D = Xi + 64 + S * qi + C;
-		if (e.flag(Xi + T * 16 + E, D, Xi + 64 + 64 + x, na)) {
+		let T = +(y === Qi) + (b === Qi ? 2 : 0), E = Gi(a, n, r.fine) + 4 * Gi(a, l, r.fine), D = na + 64 + S * $i + C;
+		if (e.flag(na + T * 16 + E, D, na + 64 + 64 + x, ca)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let O;
-		if (e.flag(Zi + x, Zi + K + T, Zi + K + 4, ra)) {
+		if (e.flag(ra + x, ra + q + T, ra + q + 4, la)) {
 			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), Bi(e, a, O, {
+			], 3 * O), Ki(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
@@ -2686,7 +2735,7 @@ function oa(e, t, n, r, i) {
 	if (l !== t) throw j(i, "fewer places than announced");
 	return o;
 }
-function sa(e, t, n, r, i, a) {
+function pa(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -2709,21 +2758,21 @@ function sa(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = aa.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = da.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var ca = 32, la = 4, [ua, da, fa, pa] = [
+var ma = 32, ha = 4, [ga, _a, va, ya] = [
 	0,
 	1,
 	2,
 	3
-], ma = $i, ha = ma + 64 + 12 + 16, q = ha + la + 1, ga = q + 4, [_a, va, ya] = [
+], ba = aa, xa = ba + 64 + 12 + 16, J = xa + ha + 1, Sa = J + 4, [Ca, wa, Ta] = [
 	9,
 	10,
 	11
 ];
-function ba(e, t) {
+function Ea(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -2733,7 +2782,7 @@ function ba(e, t) {
 		corners: i
 	};
 }
-function xa(e, t, n, r, i, a) {
+function Da(e, t, n, r, i, a) {
 	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
 		faces: new Int32Array(3 * o),
 		place: new Int32Array(n),
@@ -2748,7 +2797,7 @@ function xa(e, t, n, r, i, a) {
 		0,
 		0,
 		0
-	], p = new Int32Array(la), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], p = new Int32Array(ha), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
 		0,
 		0,
 		-1
@@ -2757,7 +2806,7 @@ function xa(e, t, n, r, i, a) {
 		return -1;
 	}, y = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + ca); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + ma); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (v(n, o) >= 0) return n;
@@ -2766,41 +2815,41 @@ function xa(e, t, n, r, i, a) {
 	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
 		let i = t.faces[3 * n + r], o = l[i];
 		if (o < 0) return -1;
-		m.fill(pa);
+		m.fill(ya);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (d[e] < 0) continue;
 			let t = b(d[e], i);
 			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
 		}
-		for (let e = 0; e < ca && s < la && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		for (let e = 0; e < ma && s < ha && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
 		let g = -1;
 		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = ma + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(ma + t * 16 + n * 4 + i, ma + 64 + t * 3 + r, a, _a) && (g = p[t]);
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = ba + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(ba + t * 16 + n * 4 + i, ba + 64 + t * 3 + r, a, Ca) && (g = p[t]);
 		}
 		if (g < 0) {
-			if (e.flag(ha + s, ha + s, ha + la, va)) return -1;
-			if (g = e.raw(F(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
+			if (e.flag(xa + s, xa + s, xa + ha, wa)) return -1;
+			if (g = e.raw(I(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? da : fa);
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? _a : va);
 		return g;
 	}, S = () => {
 		let t = g++;
-		if (!e.flag(q, q, q, ya)) return c.kinds[t] = e.flag(q + 1, q + 1, q + 1, ya) ? 2 : 0, t;
+		if (!e.flag(J, J, J, Ta)) return c.kinds[t] = e.flag(J + 1, J + 1, J + 1, Ta) ? 2 : 0, t;
 		c.kinds[t] = 1;
 		let n = _;
-		if (_ = t, n >= 0 && e.flag(q + 2, q + 2, q + 2, ya)) {
-			let n = e.raw(F(t - 1));
+		if (_ = t, n >= 0 && e.flag(J + 2, J + 2, J + 2, Ta)) {
+			let n = e.raw(I(t - 1));
 			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
 			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(q + 3, q + 3, q + 3, ya);
+		let r = n >= 0 && e.flag(J + 3, J + 3, J + 3, Ta);
 		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
 		return t;
 	};
 	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = ua;
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = ga;
 		let r = -1, i = [];
 		for (let o = 0; o < 3; o++) {
 			let s = x(e, o);
@@ -2820,7 +2869,7 @@ function xa(e, t, n, r, i, a) {
 	return c;
 }
 // eigenfield-three/src/mesh-values.ts
-var Sa = 16, Ca = 6, wa = 13, Ta = 14, Ea = 20, Da = ga, Oa = Da + 169 + 280 + 182, ka = Oa + 144 + 576 + 48, [Aa, ja] = [12, 13], Ma = [
+var Oa = 16, ka = 6, Aa = 13, ja = 14, Ma = 20, Na = Sa, Pa = Na + 169 + 280 + 182, Fa = Pa + 144 + 576 + 48, [Ia, La] = [12, 13], Ra = [
 	.5,
 	1.5,
 	3,
@@ -2828,14 +2877,14 @@ var Sa = 16, Ca = 6, wa = 13, Ta = 14, Ea = 20, Da = ga, Oa = Da + 169 + 280 + 1
 	12,
 	30
 ];
-function Na(e, t) {
-	return Ri(Number.isNaN(e) ? t : e);
+function za(e, t) {
+	return Wi(Number.isNaN(e) ? t : e);
 }
-function Pa(e) {
-	let t = Ma.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? Ca - t : Ca + t;
+function Ba(e) {
+	let t = Ra.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? ka - t : ka + t;
 }
-function Fa(e, t, n, r) {
+function Va(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -2856,18 +2905,18 @@ function Fa(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Sa); e++) for (let i = 1; i < 3; i++) {
-			let o = Ia(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Oa); e++) for (let i = 1; i < 3; i++) {
+			let o = Ha(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Sa); e++) for (let n = 1; n < 3; n++) {
-				let i = Ia(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Oa); e++) for (let n = 1; n < 3; n++) {
+				let i = Ha(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(F(v - _), 12), b = h / g, x = Math.min(Math.max(La(s), p), m));
+		g > 0 && (y = Math.min(I(v - _), 12), b = h / g, x = Math.min(Math.max(Ua(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -2885,15 +2934,15 @@ function Fa(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Na(x, b), [D, O] = [Pa(S - E), Pa(b - E)], ee = e.integer(Da + D * wa + O, Da + 169 + y * Ea + f, Da + 169 + 280 + D * Ta + y, Aa), k = E + ee;
-		i[3 * t + 2] = k, f = Math.min(F(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = za(x, b), [D, O] = [Ba(S - E), Ba(b - E)], ee = e.integer(Na + D * Aa + O, Na + 169 + y * Ma + f, Na + 169 + 280 + D * ja + y, Ia), k = E + ee;
+		i[3 * t + 2] = k, f = Math.min(I(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Ia(e, t, n) {
+function Ha(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function La(e) {
+function Ua(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -2913,7 +2962,7 @@ function La(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Ra(e, t, n, r, i) {
+function Wa(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -2925,25 +2974,25 @@ function Ra(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Sa); e++) {
-			let [r, s] = [Ia(a, i[e], 1), Ia(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Oa); e++) {
+			let [r, s] = [Ha(a, i[e], 1), Ha(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = za(n, c, l, t, r, s, f === 2);
+			let [u, d] = Ga(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, F(v));
+			_ = Math.max(_, I(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Oa + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Pa + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Oa + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], ja + n);
-			l[2 * t + n] = Na(y[n], 0) + r, u[n] = Math.min(F(Math.abs(r)), 23);
+			let r = e.integer(Pa + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], La + n);
+			l[2 * t + n] = za(y[n], 0) + r, u[n] = Math.min(I(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function za(e, t, n, r, i, a, o) {
+function Ga(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -2957,9 +3006,9 @@ function za(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Ba = 144, Va = 18, Ha = 8;
-function Ua(e, t = "mesh") {
-	let n = I(e, Ba, t), [r, i, a] = [
+var Ka = 144, qa = 18, Ja = 8;
+function Ya(e, t = "mesh") {
+	let n = L(e, Ka, t), [r, i, a] = [
 		n.getUint8(1),
 		n.getUint8(2),
 		n.getUint8(3)
@@ -2968,19 +3017,19 @@ function Ua(e, t = "mesh") {
 		8,
 		12
 	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
-	if (o > ge || c > ge || s > _e) throw j(t, `${c} vertices and ${s} faces`);
-	if (Ne(e, Math.max(o, s, c), _e, t), r > 1 || a > Ha * r || i < 1 || i > Va || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
-	let u = new Me(e.subarray(Ba), ka, 16), d = oa(u, o, s, {
+	if (o > _e || c > _e || s > ve) throw j(t, `${c} vertices and ${s} faces`);
+	if (Ne(e, Math.max(o, s, c), ve, t), r > 1 || a > Ja * r || i < 1 || i > qa || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let u = new Me(e.subarray(Ka), Fa, 16), d = fa(u, o, s, {
 		flat: r === 1,
 		fine: a
 	}, t);
 	u.checkEnd(t);
-	let f = ba(d.faces, o);
-	r && Fa(u, d, f.first, f.corners);
-	let p = xa(u, d, c, f.first, f.corners, t), m = Wa(d.points, l), h = ba(p.faces, c), g = Ra(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), Ka(Ga(d, p, m, g, 2 ** i), t);
+	let f = Ea(d.faces, o);
+	r && Va(u, d, f.first, f.corners);
+	let p = Da(u, d, c, f.first, f.corners, t), m = Xa(d.points, l), h = Ea(p.faces, c), g = Wa(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), Qa(Za(d, p, m, g, 2 ** i), t);
 }
-function Wa(e, t) {
+function Xa(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -2988,7 +3037,7 @@ function Wa(e, t) {
 	}
 	return n;
 }
-function Ga(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+function Za(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -3003,14 +3052,14 @@ function Ga(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 		indices: new Uint32Array(t)
 	};
 }
-function Ka(e, t) {
-	let n = (e) => Math.abs(e) <= ye;
+function Qa(e, t) {
+	let n = (e) => Math.abs(e) <= N;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/proxy.ts
-var qa = 65535;
-function Ja(e, t) {
+var $a = 65535;
+function eo(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3020,46 +3069,46 @@ function Ja(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function Ya({ view: n, where: r }, i) {
-	let { positions: a, uv: o, indices: s } = Ua(new Uint8Array(await i(n)), r);
+async function to({ view: n, where: r }, i) {
+	let { positions: a, uv: o, indices: s } = Ya(new Uint8Array(await i(n)), r);
 	if (!s.length) throw j(r, "a mesh without faces");
 	let c = new t();
 	c.setAttribute("position", new e(a, 3)), c.setAttribute("uv", new e(o, 2));
-	let l = a.length / 3 <= qa;
+	let l = a.length / 3 <= $a;
 	return c.setIndex(new e(l ? Uint16Array.from(s) : s, 1)), c;
 }
-function Xa(e) {
+function no(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Za(e) {
+function ro(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Qa(e, n, r) ?? (n === r ? null : Qa(e, r, n));
+		let r = t / n, i = io(e, n, r) ?? (n === r ? null : io(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Qa(e, t, n) {
-	let [r, i] = [eo(e, 0), eo(e, 1)];
-	if (t === 1 && to(i) > 0 || n === 1 && to(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => J(i, e) - J(i, t));
+function io(e, t, n) {
+	let [r, i] = [oo(e, 0), oo(e, 1)];
+	if (t === 1 && so(i) > 0 || n === 1 && so(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Y(i, e) - Y(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => J(r, e) - J(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Y(r, e) - Y(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return $a(n, t, (e, t) => J(r, o(t, e))) && $a(t, n, (e, t) => J(i, o(e, t))) ? {
+	return ao(n, t, (e, t) => Y(r, o(t, e))) && ao(t, n, (e, t) => Y(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function $a(e, t, n) {
+function ao(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3069,33 +3118,33 @@ function $a(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function eo(e, t) {
+function oo(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function to(e) {
+function so(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var J = (e, t) => e[t] ?? 0, no = 1e-6, ro = 32, io = class {
+var Y = (e, t) => e[t] ?? 0, co = 1e-6, lo = 32, uo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Za(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = ro(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(ao(e), this.isLine ? 0 : ao(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(fo(e), this.isLine ? 0 : fo(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => mo(e, t, this.places) : e === "bilinear" && this.grid ? go(this.places, this.grid) : co(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => xo(e, t, this.places) : e === "bilinear" && this.grid ? Co(this.places, this.grid) : ho(this.places, this.triangles);
 	}
 };
-function ao(e) {
+function fo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function oo(e) {
+function po(e) {
 	let t = {
 		camera: [
 			0,
@@ -3114,58 +3163,58 @@ function oo(e) {
 		t.camera[r] = e, t.weight[r] = n;
 	}), t;
 }
-var Y = (e, t) => e[2 * t] ?? 0, X = (e, t) => e[2 * t + 1] ?? 0;
-function so(e, t, n, r, i, a) {
-	let [o, s] = [Y(n, r), X(n, r)], [c, l] = [Y(n, i) - o, X(n, i) - s], [u, d] = [Y(n, a) - o, X(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
+var X = (e, t) => e[2 * t] ?? 0, Z = (e, t) => e[2 * t + 1] ?? 0;
+function mo(e, t, n, r, i, a) {
+	let [o, s] = [X(n, r), Z(n, r)], [c, l] = [X(n, i) - o, Z(n, i) - s], [u, d] = [X(n, a) - o, Z(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
 		p,
 		m
 	];
 }
-function co(e, t) {
+function ho(e, t) {
 	if (!t.length) {
-		let t = po(e, fo(e));
-		return (n, r) => $(n, r, e, t);
+		let t = bo(e, yo(e));
+		return (n, r) => vo(n, r, e, t);
 	}
-	let n = lo(e, t, 3), r = uo(t);
+	let n = go(e, t, 3), r = _o(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[Q(a) * ro + Q(i)] ?? []) {
+		for (let r of n[$(a) * lo + $(i)] ?? []) {
 			let [n, l, u] = [
-				Z(t, r, 0),
-				Z(t, r, 1),
-				Z(t, r, 2)
-			], d = so(i, a, e, n, l, u), f = Math.min(...d);
+				Q(t, r, 0),
+				Q(t, r, 1),
+				Q(t, r, 2)
+			], d = mo(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? $(i, a, e, r) : oo(c.map((e, n) => [Z(t, o, n), e]));
+		return s < -1e-9 ? vo(i, a, e, r) : po(c.map((e, n) => [Q(t, o, n), e]));
 	};
 }
-var Z = (e, t, n) => e[3 * t + n] ?? 0;
-function Q(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * ro)));
+var Q = (e, t, n) => e[3 * t + n] ?? 0;
+function $(e) {
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * lo)));
 }
-function lo(e, t, n) {
+function go(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
-		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Y(e, t)), s = a.map((t) => X(e, t));
-		for (let e = Q(Math.min(...s)); e <= Q(Math.max(...s)); e++) for (let t = Q(Math.min(...o)); t <= Q(Math.max(...o)); t++) r[e * ro + t]?.push(i);
+		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => X(e, t)), s = a.map((t) => Z(e, t));
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * lo + t]?.push(i);
 	}
 	return r;
 }
-function uo(e) {
+function _o(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Z(e, n, r), Z(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Q(e, n, r), Q(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3174,14 +3223,14 @@ function uo(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function $(e, t, n, r) {
+function vo(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
 		0
 	];
 	for (let o = 0; o + 1 < r.length; o += 2) {
-		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [Y(n, s), X(n, s)], [d, f] = [Y(n, c) - l, X(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
+		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [X(n, s), Z(n, s)], [d, f] = [X(n, c) - l, Z(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
 		h < i && ([i, a] = [h, [
 			s,
 			c,
@@ -3189,33 +3238,33 @@ function $(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return oo([[o, 1 - c], [s, c]]);
+	return po([[o, 1 - c], [s, c]]);
 }
-function fo(e) {
+function yo(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function po(e, t) {
+function bo(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
-	for (let n of t) r[0] = (r[0] ?? 0) + Y(e, n) / t.length, r[1] = (r[1] ?? 0) + X(e, n) / t.length;
+	for (let n of t) r[0] = (r[0] ?? 0) + X(e, n) / t.length, r[1] = (r[1] ?? 0) + Z(e, n) / t.length;
 	let [i, a, o] = [
 		0,
 		0,
 		0
 	];
 	for (let n of t) {
-		let [t, s] = [Y(e, n) - (r[0] ?? 0), X(e, n) - (r[1] ?? 0)];
+		let [t, s] = [X(e, n) - (r[0] ?? 0), Z(e, n) - (r[1] ?? 0)];
 		[i, a, o] = [
 			i + t * t,
 			a + t * s,
 			o + s * s
 		];
 	}
-	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Y(e, t) * Math.cos(s) + X(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
+	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => X(e, t) * Math.cos(s) + Z(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function mo(e, t, n) {
+function xo(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3226,15 +3275,15 @@ function mo(e, t, n) {
 		Infinity
 	];
 	for (let l = 0; 2 * l < n.length; l++) {
-		let [u, d] = [Y(n, l) - e, X(n, l) - t], f = u * u + d * d;
+		let [u, d] = [X(n, l) - e, Z(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || ho(n, r, i, a) <= no) return $(e, t, n, po(n, [
+	if (a < 0 || So(n, r, i, a) <= co) return vo(e, t, n, bo(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = so(e, t, n, r, i, a);
+	let [l, u, d] = mo(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3250,15 +3299,15 @@ function mo(e, t, n) {
 		]
 	};
 }
-function ho(e, t, n, r) {
-	let [i, a] = [Y(e, n) - Y(e, t), X(e, n) - X(e, t)], [o, s] = [Y(e, r) - Y(e, t), X(e, r) - X(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
+function So(e, t, n, r) {
+	let [i, a] = [X(e, n) - X(e, t), Z(e, n) - Z(e, t)], [o, s] = [X(e, r) - X(e, t), Z(e, r) - Z(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function go(e, t) {
+function Co(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = po(e, fo(e));
-		return (n, r) => $(n, r, e, t);
+		let t = bo(e, yo(e));
+		return (n, r) => vo(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3267,7 +3316,7 @@ function go(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = lo(e, o.flat(), 4), c = [];
+	let s = go(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3275,12 +3324,12 @@ function go(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[Q(n) * ro + Q(t)] ?? []) {
-			let s = o[a], c = s ? _o(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * lo + $(t)] ?? []) {
+			let s = o[a], c = s ? wo(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return $(t, n, e, l);
-		let [a, c] = vo(t, n, e, r);
+		if (!r || i < -1e-9) return vo(t, n, e, l);
+		let [a, c] = To(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3292,25 +3341,25 @@ function go(e, t) {
 		};
 	};
 }
-function _o(e, t, n, r) {
+function wo(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
-		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Y(n, o), X(n, o)];
-		i = Math.min(i, (Y(n, s) - c) * (t - l) - (X(n, s) - l) * (e - c));
+		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [X(n, o), Z(n, o)];
+		i = Math.min(i, (X(n, s) - c) * (t - l) - (Z(n, s) - l) * (e - c));
 	}
 	return i;
 }
-function vo(e, t, n, r) {
+function To(e, t, n, r) {
 	let [i, a, o, s] = [
-		Y(n, r[0]),
 		X(n, r[0]),
-		Y(n, r[1]),
-		X(n, r[1])
+		Z(n, r[0]),
+		X(n, r[1]),
+		Z(n, r[1])
 	], [c, l, u, d] = [
-		Y(n, r[2]),
 		X(n, r[2]),
-		Y(n, r[3]),
-		X(n, r[3])
+		Z(n, r[2]),
+		X(n, r[3]),
+		Z(n, r[3])
 	], [f, p, m, h, g, _] = [
 		e - i,
 		t - a,
@@ -3318,24 +3367,24 @@ function vo(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = yo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [yo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Eo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Eo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function yo(e) {
+function Eo(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var bo = class {
+var Do = class {
 	parser;
 	options;
 	name = ae;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Gn(e.json);
+		this.parser = e, this.options = t, this.ours = or(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Kn(this.parser.json));
+		this.ours && (this.scene = sr(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -3350,35 +3399,35 @@ var bo = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = xo(e, this.parser), [r] = n;
+		let n = Oo(e, this.parser), [r] = n;
 		if (!r) throw j("/meshes/0", "no node shows it");
-		Ja(r.geometry, t);
+		eo(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = await Promise.all(t.planes.map(({ mean: e }) => i(e.view))), o = t.mesh && await Ya(t.mesh, i);
-		if (o) {
+		}, a = t.mesh && await to(t.mesh, i);
+		if (a) {
 			r.geometry.dispose();
-			for (let e of n) e.geometry = o;
+			for (let e of n) e.geometry = a;
 		}
-		let [s, c, l, u] = await Promise.all([
-			Promise.all(t.planes.map(({ mean: e, meanSize: t }, n) => Lr(a[n] ?? /* @__PURE__ */ new ArrayBuffer(0), e, t))),
+		let [o, s, c, l] = await Promise.all([
+			Promise.all(t.planes.map((e) => $r(e, i))),
 			pt(t, i),
 			yt(t, i),
 			Ct(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new io(Float64Array.from(d.flatMap((e) => Dt(t, e.centre))), u, t.extent[1] === 0), p = s.map(([e]) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = Tt(t, c, p, f.grid, this.fileBytes(), Xa(r.geometry)), h = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new uo(Float64Array.from(u.flatMap((e) => Dt(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Tt(t, s, f, d.grid, this.fileBytes(), no(r.geometry)), m = {
 			scene: t,
-			info: m,
+			info: p,
 			meshes: n,
-			means: s,
-			meanSizes: p,
-			rays: m.facesPlane,
-			omega: l,
-			weights: f,
+			means: o,
+			meanSizes: f,
+			rays: p.facesPlane,
+			omega: c,
+			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new si(h, this.options);
+		e.userData.eigenfield = new pi(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3386,43 +3435,43 @@ var bo = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function xo(e, t) {
+function Oo(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		So(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		ko(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function So(e) {
+function ko(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Co(e, t = {}) {
+async function Ao(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new mi(), i = new AbortController(), a = () => {
+	let r = new bi(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Eo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = No(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await vi(r);
-		if (!Gn(e.json)) return {
-			gltf: await To(r, e, o),
+		let e = await wi(r);
+		if (!or(e.json)) return {
+			gltf: await Mo(r, e, o),
 			field: null
 		};
-		let i = await wo(r, e, t);
+		let i = await jo(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof si ? a : null
+			field: a instanceof pi ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function wo(e, t, n) {
+async function jo(e, t, n) {
 	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3432,12 +3481,12 @@ async function wo(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new bo(e, {
+	return r.register((e) => new Do(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function To(e, t, n) {
+async function Mo(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3447,25 +3496,25 @@ async function To(e, t, n) {
 		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Eo(e, t, n, r) {
+async function No(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Do(e) : await Oo(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Po(e) : await Fo(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : ko(t.received, e);
+			throw n.aborted ? e : Io(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Do(e) {
+function Po(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Oo(e, t) {
+async function Fo(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3476,7 +3525,7 @@ async function Oo(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function ko(e, t) {
+function Io(e, t) {
 	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { si as EigenField, bo as EigenfieldPlugin, A as SceneError, Kt as defaultMemory, Co as loadEigenfield, kt as novelCamera, Nt as placeCamera };
+export { pi as EigenField, Do as EigenfieldPlugin, A as SceneError, Kt as defaultMemory, Ao as loadEigenfield, kt as novelCamera, Nt as placeCamera };
