@@ -280,7 +280,7 @@ def fitted(tmp_path_factory):
     output = folder.parent / "fitted.glb"
     words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q"]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "90"])
+        patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "92"])
         main()
     return folder, output
 
@@ -290,7 +290,7 @@ def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     scene, capture = ef.load(output), ef.open_capture(folder)
     assert validate(output) == []
     assert [plane.mean.shape[2] for plane in scene.planes] == [1, 2] and scene.to_rgb is not None
-    assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 90
+    assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 92
     ef.encode(capture, proxy=folder / "proxy.ply", textures=4, fit="none").save(output.parent / "plain.glb", quality=80)
     plain = ef.load(output.parent / "plain.glb")
     values = {"fit": [], "none": []}

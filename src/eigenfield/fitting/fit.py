@@ -21,6 +21,7 @@ from eigenfield.errors import CaptureError
 from eigenfield.fitting.model import Block, Composer, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
 from eigenfield.fitting.regions import find_regions
+from eigenfield.fitting.seen import fill_unseen
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.fitting.start import principal_block, residual_energy
@@ -143,6 +144,7 @@ def fit_plane(
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         whiten(model, scales)
         tick()
+    fill_unseen(model, scales)
     composer = make_composer(pixels.every.surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
@@ -160,13 +162,17 @@ def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work:
 
 
 def code_plane(
-    fit: OpenFit, rate: Rate, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
+    fit: OpenFit,
+    rate: Rate,
+    grid: NDArray[np.int64] | None = None,
+    precision: NDArray[np.float32] | None = None,
+    progress: Progress | None = None,
 ) -> Plane:
     """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
     As its files give it back.
 
     The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
-    -1 where none stands, None where they do not.
+    -1 where none stands, None where they do not. precision: of the mean, see `mean_precision`; None: alike everywhere.
     """
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
     tick = _ticker(progress, f"code {fit.name}", 3)
@@ -188,7 +194,8 @@ def code_plane(
     tick()
     left = residual(pixels.fitted, model, True, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
-    plane = coded_plane(np.ascontiguousarray(model.mean.transpose(1, 2, 0)), tuple(bases), rate.mean_step, rate.preset)
+    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
+    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.preset, precision)
     tick(last=True)
     return plane
 

@@ -44,7 +44,9 @@ def _parts(document: Document) -> dict[str, int]:
     planes = list(extension["planes"].items(limits.MAX_PLANES))
     bases = [basis for plane in planes for basis in plane["bases"].items(limits.MAX_BASES)]
     pictures = [root["images"].at(0)["bufferView"]] if root.has("images") else []
-    pictures += [plane["mean"]["bufferView"] for plane in planes if plane.has("mean")]
+    means = [plane["mean"] for plane in planes if plane.has("mean")]
+    pictures += [mean["bufferView"] for mean in means]
+    pictures += [mean["precision"]["bufferView"] for mean in means if mean.has("precision")]
     textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
     textures = [reference for reference in textures if not document.cut_off(reference)]
     weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]

@@ -13,6 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.format.deep import MIME, TOP, crf_of, decode_deep, encode_deep
+from eigenfield.format.pictures import decode
+from eigenfield.format.precision import MIME as PNG
+from eigenfield.format.precision import encode_precision, spread_precision
 from eigenfield.format.quantise import Affine
 from eigenfield.format.stored import PictureFile, files_of, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
@@ -25,9 +28,19 @@ ZERO = 341
 ROWS = 4096  # of a picture of several textures, at most
 
 
-def code_mean(mean: NDArray[np.float32], step: float, preset: int) -> tuple[NDArray[np.float32], PictureFile]:
+def code_mean(
+    mean: NDArray[np.float32], step: float, preset: int, precision: NDArray[np.float32] | None = None
+) -> tuple[NDArray[np.float32], PictureFile]:
     """(H, W, C) float32 as its file gives it back, and the file. One step for all channels; what lies in 0..1 has the
-    codes 0..TOP. step: of the quantiser, in the values' unit."""
+    codes 0..TOP. step: of the quantiser, in the values' unit, where the precision is 1. precision: (h, w) in 0..1, how
+    finely each place is coded; None: all alike."""
+    picture: bytes | None = None
+    share = np.ones((1, 1, 1), np.float32)
+    if precision is not None:
+        picture = encode_precision(precision)
+        kept = decode(memoryview(picture), PNG, precision.shape[1], precision.shape[0], 1, "precision")[..., 0]
+        share = spread_precision(kept, *mean.shape[:2])
+        mean = mean * share
     low, high = float(mean.min()), float(mean.max())
     if low >= -0.125 and high <= 1.125 and mean.shape[2] in (1, 3):  # a photograph's, but for what a filter overshoots
         affine = Affine(np.full(mean.shape[2], 1 / TOP), np.zeros(mean.shape[2]))
@@ -37,7 +50,8 @@ def code_mean(mean: NDArray[np.float32], step: float, preset: int) -> tuple[NDAr
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
     data = encode_deep(_stack(codes[None]), crf_of(step / float(affine.scale[0])), preset)
     stored = _unstack(decode_deep(data, "mean"), codes[None].shape)[0]
-    return ((stored - affine.zero) * affine.scale).astype(np.float32), PictureFile(data, MIME, 10, 1, affine)
+    values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
+    return values, PictureFile(data, MIME, 10, 1, affine, picture)
 
 
 def code_basis(basis: Basis, step: float, preset: int) -> Basis:
@@ -86,9 +100,15 @@ def with_weights(basis: Basis, weights: NDArray[np.float32], stream: bytes) -> B
     return made
 
 
-def coded_plane(mean: NDArray[np.float32], bases: tuple[Basis, ...], step: float, preset: int) -> Plane:
-    """A plane of coded bases with its mean coded, as its files give it back."""
-    values, file = code_mean(mean, step, preset)
+def coded_plane(
+    mean: NDArray[np.float32],
+    bases: tuple[Basis, ...],
+    step: float,
+    preset: int,
+    precision: NDArray[np.float32] | None = None,
+) -> Plane:
+    """A plane of coded bases with its mean coded, as its files give it back; see `code_mean`."""
+    values, file = code_mean(mean, step, preset, precision)
     made = Plane(values, bases)
     keep_files(made, [file])
     return made

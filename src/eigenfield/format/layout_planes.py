@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.errors import FormatError
-from eigenfield.format import deep, limits, pictures
+from eigenfield.format import deep, limits, pictures, precision
 from eigenfield.format.document import FLOAT, Document, all_finite
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout_geometry import CameraList
@@ -24,6 +24,7 @@ class Picture:
     width, height, channels: of the array that it decodes to.
     affine: the way back to numbers, per channel (of every texture in it); None: code / 255.
     bits: of the codes, 8 or 10. count: textures in it, one below the other.
+    precision: of a mean, the picture of how finely each place of it is coded; None: all of it alike.
     """
 
     data: memoryview
@@ -35,6 +36,7 @@ class Picture:
     where: str
     bits: int = 8
     count: int = 1
+    precision: Picture | None = None
 
     def decode(self) -> NDArray[Any]:
         """(count, height, width, channels) uint8, of 10 bits uint16. FormatError: see `pictures.decode`."""
@@ -104,6 +106,8 @@ def _read_plane(
     if entry.has("mean"):
         size = _size(entry["mean"]["size"], channels)
         mean = _picture(document, entry["mean"], size, channels, 1, bare=True)
+        if entry["mean"].has("precision"):
+            mean = replace(mean, precision=_precision(document, entry["mean"]["precision"], mean))
     elif index == 0 and channels in (1, 3):
         mean = read_image(document, channels)
     else:
@@ -213,6 +217,15 @@ def _picture(
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
     pictures.check_header(data, mime, *size, channels, entry.where, count, bits)
     return Picture(data, mime, *size, channels, affine, entry.where, bits, count)
+
+
+def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
+    if mean.bits == 8:
+        entry.fail("picture-type", "only pictures of 10 bits have a precision")
+    width, height = (item.integer(1, precision.SIDE) for item in entry["size"].items(2, 2))
+    data = document.data(entry["bufferView"])
+    pictures.check_header(data, precision.MIME, width, height, 1, entry.where)
+    return Picture(data, precision.MIME, width, height, 1, None, entry.where)
 
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.3"  # a reader takes any 1.x
+VERSION = "1.4"  # a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
-THIRD = "1.2"  # what "needs" may name
+THIRD = "1.2"  # what "needs" may name, but for `precision`
+FOURTH = "1.3"  # a residual
 FEATURES = frozenset(
     {
-        "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "regions",
-        "sharedPicture", "stacks", "toRGB",
+        "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "precision",
+        "regions", "sharedPicture", "stacks", "toRGB",
     }
 )  # fmt: skip  # what an entry of "needs" may be
 

@@ -21,6 +21,7 @@ from eigenfield.format.findings import Finding, Findings
 from eigenfield.format.layout import Layout, read_layout
 from eigenfield.format.layout_geometry import read_mesh
 from eigenfield.format.layout_planes import BasisLayout, Picture, PlaneLayout, read_image
+from eigenfield.format.precision import spread_precision
 from eigenfield.format.quantise import mean_values
 from eigenfield.format.stored import PictureFile, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
@@ -126,6 +127,8 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
 
 def _decode_plane(plane: PlaneLayout) -> Plane:
     mean = mean_values(plane.mean.decode()[0], plane.mean.affine)
+    if plane.mean.precision is not None:
+        mean /= spread_precision(plane.mean.precision.decode()[0, ..., 0], *mean.shape[:2])
     bases = tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases)
     made = Plane(mean, bases)
     keep_files(made, [_file(plane.mean)])
@@ -133,7 +136,8 @@ def _decode_plane(plane: PlaneLayout) -> Plane:
 
 
 def _file(picture: Picture) -> PictureFile:
-    return PictureFile(bytes(picture.data), picture.mime, picture.bits, picture.count, picture.affine)
+    precision = None if picture.precision is None else bytes(picture.precision.data)
+    return PictureFile(bytes(picture.data), picture.mime, picture.bits, picture.count, picture.affine, precision)
 
 
 def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
@@ -183,6 +187,8 @@ def _check_pictures(layout: Layout, findings: Findings) -> None:
         for picture in [plane.mean, *(texture for basis in plane.bases for texture in basis.textures)]:
             with findings.part():
                 picture.decode()
+                if picture.precision is not None:
+                    picture.precision.decode()
 
 
 def _check_residual(layout: Layout, findings: Findings) -> None:

@@ -18,13 +18,15 @@ from eigenfield.scene import Basis, Plane
 @dataclass(frozen=True, eq=False)
 class PictureFile:
     """data, mime: the file. bits: of its codes, 8 or 10. count: eigen textures in it, one below the other. affine: the
-    way back to numbers, for each channel of each texture; None: code / 255."""
+    way back to numbers, for each channel of each texture; None: code / 255. precision: of a mean, the picture of how
+    finely each place of it is coded (see `precision`); None: all of it alike."""
 
     data: bytes
     mime: str
     bits: int
     count: int
     affine: Affine | None
+    precision: bytes | None = None
 
 
 _files: weakref.WeakKeyDictionary[Basis | Plane, tuple[PictureFile, ...]] = weakref.WeakKeyDictionary()

@@ -24,6 +24,7 @@ from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
 from eigenfield.format.name_pattern import name_pattern
+from eigenfield.format.precision import MIME as PNG
 from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
 from eigenfield.mesh import Mesh
@@ -42,6 +43,7 @@ class _Buffer:
     length: int = 0
     views: list[dict[str, Any]] = field(default_factory=list)
     accessors: list[dict[str, Any]] = field(default_factory=list)
+    once: dict[bytes, int] = field(default_factory=dict)
 
     def view(self, data: bytes, target: int | None = None) -> int:
         """Append a buffer view at a multiple of 4; its index."""
@@ -52,6 +54,12 @@ class _Buffer:
         self.parts.append(data + bytes(-len(data) % 4))
         self.length += len(self.parts[-1])
         return len(self.views) - 1
+
+    def shared(self, data: bytes) -> int:
+        """As `view`; the same one for the same bytes."""
+        if data not in self.once:
+            self.once[data] = self.view(data)
+        return self.once[data]
 
     def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
         """Append an array as an accessor of its own buffer view; its index."""
@@ -144,7 +152,7 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     }
     needs = _needs(scene, coded, mesh is not None, poses is not None, used)
     extension: dict[str, Any] = {
-        "version": _version(scene, bool(needs)),
+        "version": _version(scene, coded, bool(needs)),
         "needs": needs,
         **proxy,
         "planes": planes,
@@ -217,10 +225,12 @@ def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[
     return found
 
 
-def _version(scene: Scene, needs: bool) -> str:
+def _version(scene: Scene, coded: Coded, needs: bool) -> str:
     """The first version that has all that the file uses."""
-    if scene.residual is not None:
+    if any(plane.mean.precision is not None for plane in coded.planes):
         return limits.VERSION
+    if scene.residual is not None:
+        return limits.FOURTH
     return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
 
 
@@ -247,6 +257,8 @@ def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) ->
     if inline:
         mean: dict[str, Any] = {"bufferView": buffer.view(coded.mean.data), "size": [width, height]}
         made["mean"] = mean | _picture(coded.mean)
+        if coded.mean.precision is not None:
+            made["mean"]["precision"] = _precision(coded.mean.precision, buffer)
     made["bases"] = []
     for basis, files in zip(plane.bases, coded.bases, strict=True):
         entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
@@ -260,6 +272,10 @@ def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) ->
         entry |= _textures([_picture(file) for file in files])
         made["bases"].append(entry)
     return made
+
+
+def _precision(data: bytes, buffer: _Buffer) -> dict[str, Any]:
+    return {"bufferView": buffer.shared(data), "size": list(pictures.dimensions(memoryview(data), PNG, "precision"))}
 
 
 def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
@@ -310,6 +326,7 @@ def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool, used: Mapping[
         "codedCameras": cameras,
         "codedMesh": mesh,
         "codedWeights": any(stream_of(basis) is not None for plane in scene.planes for basis in plane.bases),
+        "precision": any(plane.mean.precision is not None for plane in coded.planes),
         "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
         "stacks": any(file.count != 1 for file in files),
         "toRGB": scene.to_rgb is not None,

@@ -1,0 +1,60 @@
+"""Texels that few cameras see, and those that none sees: what they cost in bytes is to be as little as they matter."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.fitting.model import Block, Model
+from eigenfield.fitting.solve import Scales
+from eigenfield.parallel import parallel_map
+from eigenfield.texturing import push_pull
+
+CELL = 64  # texels of the mean for one number of its precision
+COARSEST = 2**-2.25  # precision; lower ones gain no bytes (Shop)
+PRECISIONS = 4  # to a factor of two: fewer numbers, fewer bytes
+WORTHWHILE = 0.97  # mean precision, above which the map is not worth its own bytes
+
+
+def fill_unseen(model: Model, scales: Scales) -> None:
+    """Mean and textures go on smoothly where no photograph sees them: a step beside a chart would be coded as one, and
+    ring into it."""
+    model.mean = _extended(model.mean, _known(scales.mean))
+    for block in model.blocks:
+        seen = _known(scales.coarse[block.window])
+
+        def fill(index: int, block: Block = block, seen: NDArray[np.float32] = seen) -> None:
+            block.textures[index] = _extended(block.textures[index], seen)
+
+        parallel_map(fill, range(block.count))
+
+
+def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
+    """(h, w) in COARSEST to 1: how finely each place of a mean is to be coded, None where all of it alike.
+
+    Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
+    pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
+    """
+    known = _known(scales.mean)
+    if not known.any():
+        return None
+    share = np.minimum(scales.mean / np.median(scales.mean[known > 0]), 1).astype(np.float32)
+    rows, columns = (max(1, round(side / CELL)) for side in share.shape)
+    covered = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA)
+    cells = cv2.resize(share * known, (columns, rows), interpolation=cv2.INTER_AREA) / np.maximum(covered, 1e-6)
+    level = np.rint(-PRECISIONS / 2 * np.log2(np.maximum(cells, COARSEST**2)))
+    precision = np.exp2(-level / PRECISIONS)
+    if np.average(precision, weights=covered) > WORTHWHILE:
+        return None
+    return np.asarray(precision, np.float32)
+
+
+def _known(share: NDArray[np.float32]) -> NDArray[np.float32]:
+    return (share > 0).astype(np.float32)
+
+
+def _extended(picture: NDArray[np.float32], seen: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(C, rows, columns) as it is where `seen` is 1, filled where it is 0."""
+    known = np.ascontiguousarray((picture * seen).transpose(1, 2, 0))
+    return np.ascontiguousarray(push_pull(known, seen).transpose(2, 0, 1))

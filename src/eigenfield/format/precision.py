@@ -1,0 +1,29 @@
+"""How finely each place of a mean is coded, as a small grey picture.
+
+A texel that few cameras see answers for few pixels, and is coded coarser: the mean is multiplied with its precision,
+0..1, before it is coded, and what its codes say is divided by it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.format.pictures import encode
+
+MIME = "image/png"
+SIDE = 1024  # at most
+
+
+def encode_precision(precision: NDArray[np.float32]) -> bytes:
+    """(h, w) numbers in 0..1 to the nearest of 1/256 to 1, as a grey PNG."""
+    codes = np.rint(256 * precision - 1).clip(0, 255).astype(np.uint8)
+    return encode(codes[..., None], "png", 0)
+
+
+def spread_precision(codes: NDArray[np.uint8], height: int, width: int) -> NDArray[np.float32]:
+    """(height, width, 1): the precision at each texel of a mean, between the middles of the (h, w) codes linearly."""
+    import cv2  # most files need none
+
+    values = (codes.astype(np.float32) + 1) / 256
+    return np.asarray(cv2.resize(values, (width, height), interpolation=cv2.INTER_LINEAR), np.float32)[..., None]
