@@ -4,16 +4,20 @@
 
 Levers: every second row and column of a dense capture, fitted and coded with one lever off at a time, everything else
 as it is; bytes at equal quality against all levers on (Bjøntegaard), and what is reached without coding. Held out: the
-capture's hold-out rule, one fit, quality against bytes in captured views and in those left out.
+capture's hold-out rule, one fit, quality against bytes in captured views and in those left out. What is done stays in
+OUT, and a run that was stopped goes on there while the code is the same.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
+import hashlib
+import json
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -21,11 +25,13 @@ from unittest.mock import patch
 import measure
 import numpy as np
 from evidence import captures, ours, prepared, rates
+from evidence.code import meaning
 from evidence.prepared import Prepared
+from evidence.runner import fingerprint
 from numpy.typing import NDArray
 
 import eigenfield as ef
-from eigenfield import draft
+from eigenfield import LightField, draft
 from eigenfield.fitting import fit, planes
 from eigenfield.format.geometry import coded_mesh
 from eigenfield.metrics import to_codes
@@ -85,6 +91,10 @@ LEVERS = {
     "rank": Lever("15 textures", options=Options(textures=15)),
     "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
     "worth": Lever("all components kept, worth their bytes or not", coding=lambda: patch.object(fit, "LAGRANGE", 0.0)),
+    "precision": Lever(
+        "the mean coded as finely everywhere", coding=lambda: patch.object(planes, "mean_precision", lambda *_: None)
+    ),
+    "unseen": Lever("texels that no photograph sees left as they are", lambda: patch.object(fit, "fill_unseen")),
     "relief": Lever("the relief not simplified", lambda: patch.object(draft, "slim_mesh", _whole)),
     "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
 }
@@ -115,35 +125,57 @@ def of_capture(capture: captures.Capture, work: Path, levers: list[str]) -> dict
     chosen = (
         ["all", *(name for name in LEVERS if name in levers and name != "all")] if set(levers) & set(LEVERS) else []
     )
-    return {"levers": of_levers(ready, chosen), "held_out": held_out(ready)}
+    return {
+        "levers": of_levers(ready, chosen),
+        "held_out": kept(ready.work / "held-out.json", lambda: held_out(ready)),
+    }
 
 
 def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
     """For each lever the curve without it, and Bjøntegaard's rates against all of them on."""
     field = prepared.every(ready.light_field, 2)
     photographs = parallel_map(lambda index: prepared.codes(field, index), range(len(field)))
-    covered: list[NDArray[np.bool_]] = []
     found: dict[str, Any] = {}
     for name in chosen:
-        lever = LEVERS[name]
-        points = []
-        with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as coded:
-            for quality in QUALITIES:
-                with lever.coding():
-                    scene = coded(quality)
-                path = ready.work / f"{name}-{quality}.glb"
-                scene.save(path, overwrite=True)
-                covered = covered or ours.covered_pixels(path, range(len(field)), field)
-                figures = drawn_figures(path, photographs, covered, field.names, lever.filter)
-                points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
-        uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
+        curve = kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs))
+        points = curve["points"]
         base = found["all"]["points"] if found else points
         rate = {key: rates.bd_rate(base, points, key) for key in KEYS}
         gain = {key: rates.bd_quality(base, points, key) for key in KEYS}
-        found[name] = {"words": lever.words, "points": points, "uncoded": uncoded, "rate": rate, "gain": gain}
+        found[name] = {"words": LEVERS[name].words, **curve, "rate": rate, "gain": gain}
         said = "; ".join(f"{p['bytes'] / 1000:.1f} kB {p['psnr']:.2f} / {p['psnr_luma']:.2f} dB" for p in points)
-        print(f"{lever.words}: {said}; rate {rate}", flush=True)
+        print(f"{LEVERS[name].words}: {said}; rate {rate}", flush=True)
     return found
+
+
+def of_lever(ready: Prepared, name: str, field: LightField, photographs: list[NDArray[np.uint8]]) -> dict[str, Any]:
+    """The curve without a lever, and what is reached without coding. Needs the files of all levers on, but for those
+    themselves: what they cover is what counts."""
+    lever, points = LEVERS[name], []
+    first = ready.work / f"all-{QUALITIES[0]}.glb"
+    with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as coded:
+        for quality in QUALITIES:
+            with lever.coding():
+                scene = coded(quality)
+            path = ready.work / f"{name}-{quality}.glb"
+            scene.save(path, overwrite=True)
+            covered = ours.covered_pixels(first, range(len(field)), field)
+            figures = drawn_figures(path, photographs, covered, field.names, lever.filter)
+            points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
+    uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
+    return {"points": points, "uncoded": uncoded}
+
+
+def kept(place: Path, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    """What `make` left at `place`, if the code was the same; else what it makes now, left there."""
+    code = f"{fingerprint()} {hashlib.sha256(meaning(Path(__file__))).hexdigest()} {QUALITIES}"
+    with contextlib.suppress(OSError, ValueError):  # not there, or cut off: it is made again
+        before: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
+        if before["code"] == code:
+            return dict(before["figures"])
+    figures = dict(prepared.as_json(make()))
+    place.write_text(json.dumps({"code": code, "figures": figures}), encoding="utf-8")
+    return figures
 
 
 def drawn_figures(

@@ -29,11 +29,16 @@ def test_levers_are_put_back():
         fit.fit_weights,
         fit.LAGRANGE,
         draft.slim_mesh,
+        planes.mean_precision,
+        fit.fill_unseen,
     )
     for lever in fit_studies.LEVERS.values():
         with lever.change(), lever.coding():
             pass
-    after = (planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, fit.LAGRANGE, draft.slim_mesh)
+    after = (
+        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, fit.LAGRANGE, draft.slim_mesh,
+        planes.mean_precision, fit.fill_unseen,
+    )  # fmt: skip
     assert before == after
 
 
@@ -43,6 +48,8 @@ def test_each_lever_changes_the_files_or_the_pictures(ready, monkeypatch):
     chosen = ["all", "rounds", "loop", "planes", "dense", "coarse", "bilinear"]
     found = fit_studies.of_levers(ready, chosen)
     assert list(found) == chosen
+    monkeypatch.setattr(fit_studies, "open_fitted", None)  # all of it is there now
+    assert fit_studies.of_levers(ready, chosen) == found
     base = found["all"]
     assert base["rate"]["psnr"] == pytest.approx(0, abs=1e-9) and base["uncoded"]["luma"] > 35
     for name in chosen[1:]:
