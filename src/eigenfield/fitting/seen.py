@@ -12,7 +12,7 @@ from eigenfield.parallel import parallel_map
 from eigenfield.texturing import push_pull
 
 CELL = 64  # texels of the mean for one number of its precision
-COARSEST = 2**-2.25  # precision; lower ones gain no bytes (Shop)
+COARSEST = 2**-1.5  # precision; lower ones gain nothing (Tarot, Shop), and show where few cameras look
 PRECISIONS = 4  # to a factor of two: fewer numbers, fewer bytes
 WORTHWHILE = 0.97  # mean precision, above which the map is not worth its own bytes
 
