@@ -13,11 +13,10 @@ from __future__ import annotations
 import argparse
 import contextlib
 import hashlib
-import json
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -27,7 +26,7 @@ import numpy as np
 from evidence import captures, ours, prepared, rates
 from evidence.code import meaning
 from evidence.prepared import Prepared
-from evidence.runner import fingerprint
+from evidence.runner import fingerprint, read_record, write_record
 from numpy.typing import NDArray
 
 import eigenfield as ef
@@ -135,9 +134,15 @@ def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
     """For each lever the curve without it, and Bjøntegaard's rates against all of them on."""
     field = prepared.every(ready.light_field, 2)
     photographs = parallel_map(lambda index: prepared.codes(field, index), range(len(field)))
+
+    @cache
+    def covered() -> list[NDArray[np.bool_]]:
+        """By the files of all levers on, which come first: the same pixels count for all."""
+        return ours.covered_pixels(ready.work / f"all-{QUALITIES[0]}.glb", range(len(field)), field)
+
     found: dict[str, Any] = {}
     for name in chosen:
-        curve = kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs))
+        curve = kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs, covered))
         points = curve["points"]
         base = found["all"]["points"] if found else points
         rate = {key: rates.bd_rate(base, points, key) for key in KEYS}
@@ -148,19 +153,22 @@ def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
     return found
 
 
-def of_lever(ready: Prepared, name: str, field: LightField, photographs: list[NDArray[np.uint8]]) -> dict[str, Any]:
-    """The curve without a lever, and what is reached without coding. Needs the files of all levers on, but for those
-    themselves: what they cover is what counts."""
+def of_lever(
+    ready: Prepared,
+    name: str,
+    field: LightField,
+    photographs: list[NDArray[np.uint8]],
+    covered: Callable[[], list[NDArray[np.bool_]]],
+) -> dict[str, Any]:
+    """The curve without a lever, and what is reached without coding. covered: asked for once there is a file."""
     lever, points = LEVERS[name], []
-    first = ready.work / f"all-{QUALITIES[0]}.glb"
     with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as coded:
         for quality in QUALITIES:
             with lever.coding():
                 scene = coded(quality)
             path = ready.work / f"{name}-{quality}.glb"
             scene.save(path, overwrite=True)
-            covered = ours.covered_pixels(first, range(len(field)), field)
-            figures = drawn_figures(path, photographs, covered, field.names, lever.filter)
+            figures = drawn_figures(path, photographs, covered(), field.names, lever.filter)
             points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
     uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
     return {"points": points, "uncoded": uncoded}
@@ -169,13 +177,11 @@ def of_lever(ready: Prepared, name: str, field: LightField, photographs: list[ND
 def kept(place: Path, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     """What `make` left at `place`, if the code was the same; else what it makes now, left there."""
     code = f"{fingerprint()} {hashlib.sha256(meaning(Path(__file__))).hexdigest()} {QUALITIES}"
-    with contextlib.suppress(OSError, ValueError):  # not there, or cut off: it is made again
-        before: dict[str, Any] = json.loads(place.read_text(encoding="utf-8"))
-        if before["code"] == code:
-            return dict(before["figures"])
-    figures = dict(prepared.as_json(make()))
-    place.write_text(json.dumps({"code": code, "figures": figures}), encoding="utf-8")
-    return figures
+    record = read_record(place)
+    if record is None or record["code"] != code:
+        record = {"code": code, "figures": prepared.as_json(make())}
+        write_record(place, record)
+    return dict(record["figures"])
 
 
 def drawn_figures(

@@ -15,20 +15,15 @@ from scenes import smooth_pictures
 
 import eigenfield as ef
 from eigenfield.errors import FormatError
-from eigenfield.format import parts, pictures, validate
+from eigenfield.format import parts, validate
 from eigenfield.format.deep_code import code_mean
-from eigenfield.format.precision import MIME, encode_precision, spread_precision
+from eigenfield.format.precision import precision_codes, spread_precision
 from eigenfield.format.stored import files_of
 
 
-def codes_of(picture):
-    width, height = pictures.dimensions(memoryview(picture), MIME, "here")
-    return pictures.decode(memoryview(picture), MIME, width, height, 1, "here")[..., 0]
-
-
 @given(arrays(np.float32, (3, 4), elements=st.floats(0, 1, width=32)))
-def test_the_picture_keeps_precisions_to_half_a_code(precision):
-    back = (codes_of(encode_precision(precision)).astype(float) + 1) / 256
+def test_precisions_are_kept_to_half_a_code(precision):
+    back = (precision_codes(precision).astype(float) + 1) / 256
     assert back.min() > 0
     assert np.abs(back - np.maximum(precision, 1 / 256)).max() <= 0.5 / 256 + 1e-6
 

@@ -74,8 +74,8 @@ def _step(
     keep it. An error that its user can mend, or a bug, becomes the step's record and does not end the run."""
     path = kept / f"{name}.json"
     print_of_code = fingerprint()
-    before = _kept(path)
-    current = before is not None and before["quick"] == run.quick and (run.keep or before["code"] == print_of_code)
+    before = read_record(path)
+    current = before is not None and before.get("quick") == run.quick and (run.keep or before["code"] == print_of_code)
     if before is not None and current and all(file.exists() for file in made):
         return before
     started = time.perf_counter()
@@ -96,7 +96,7 @@ def _step(
     record["seconds"] = round(time.perf_counter() - started, 1)
     say(f"{capture.name:>12}  {name:<9} {record['seconds']:7.1f} s  {record.get('error', '')}")
     if "error" not in record:
-        _write(path, record)
+        write_record(path, record)
     return record
 
 
@@ -105,15 +105,17 @@ def _asked(capture: Capture) -> str:
     return capture.name if capture.licence or capture.name == "demo" else str(capture.folder)
 
 
-def _kept(path: Path) -> dict[str, Any] | None:
+def read_record(path: Path) -> dict[str, Any] | None:
+    """What `write_record` left; None where nothing whole is there."""
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):  # not there, or cut off: it is measured again
         return None
-    return record if isinstance(record, dict) and {"figures", "code", "quick"} <= set(record) else None
+    return record if isinstance(record, dict) and {"figures", "code"} <= set(record) else None
 
 
-def _write(path: Path, record: Mapping[str, Any]) -> None:
+def write_record(path: Path, record: Mapping[str, Any]) -> None:
+    """Figures and the code that they came of, whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_suffix(".part")
     part.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")

@@ -79,7 +79,7 @@ class Preset:
     rounds: int
 
 
-PRESETS = {"small": Preset(78, 2), "balanced": Preset(88, 2), "best": Preset(95, 4)}
+PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4)}
 
 
 def fitted_textures(cameras: int) -> int:

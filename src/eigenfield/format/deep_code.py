@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.format.deep import MIME, TOP, crf_of, decode_deep, encode_deep
-from eigenfield.format.pictures import decode
-from eigenfield.format.precision import MIME as PNG
-from eigenfield.format.precision import encode_precision, spread_precision
+from eigenfield.format.pictures import encode
+from eigenfield.format.precision import precision_codes, spread_precision
 from eigenfield.format.quantise import Affine
 from eigenfield.format.stored import PictureFile, files_of, keep_files, keep_stream
 from eigenfield.parallel import parallel_map
@@ -37,9 +36,9 @@ def code_mean(
     picture: bytes | None = None
     share = np.ones((1, 1, 1), np.float32)
     if precision is not None:
-        picture = encode_precision(precision)
-        kept = decode(memoryview(picture), PNG, precision.shape[1], precision.shape[0], 1, "precision")[..., 0]
-        share = spread_precision(kept, *mean.shape[:2])
+        fineness = precision_codes(precision)
+        picture = encode(fineness[..., None], "png", 0)
+        share = spread_precision(fineness, *mean.shape[:2])
         mean = mean * share
     low, high = float(mean.min()), float(mean.max())
     if low >= -0.125 and high <= 1.125 and mean.shape[2] in (1, 3):  # a photograph's, but for what a filter overshoots

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.errors import FormatError
-from eigenfield.format import deep, limits, pictures, precision
+from eigenfield.format import deep, limits, pictures
 from eigenfield.format.document import FLOAT, Document, all_finite
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout_geometry import CameraList
@@ -222,10 +222,10 @@ def _picture(
 def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
     if mean.bits == 8:
         entry.fail("picture-type", "only pictures of 10 bits have a precision")
-    width, height = (item.integer(1, precision.SIDE) for item in entry["size"].items(2, 2))
-    data = document.data(entry["bufferView"])
-    pictures.check_header(data, precision.MIME, width, height, 1, entry.where)
-    return Picture(data, precision.MIME, width, height, 1, None, entry.where)
+    width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
+    data, mime = document.data(entry["bufferView"]), pictures.MIME_TYPES["png"]
+    pictures.check_header(data, mime, width, height, 1, entry.where)
+    return Picture(data, mime, width, height, 1, None, entry.where)
 
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:

@@ -23,6 +23,7 @@ MAX_VIEWS = 16_384  # buffer views, and accessors
 
 MAX_SIDE = 16_384  # texels of an atlas along one axis
 MAX_STACKED = 32_768  # rows of a picture whose channels are stacked
+MAX_PRECISION_SIDE = 1_024  # of the picture of a mean's precision
 MAX_TEXELS = 2**27  # of one picture, stacked channels counted
 MAX_CHANNELS = 64
 MAX_PLANES = 16

@@ -9,16 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.format.pictures import encode
 
-MIME = "image/png"
-SIDE = 1024  # at most
-
-
-def encode_precision(precision: NDArray[np.float32]) -> bytes:
-    """(h, w) numbers in 0..1 to the nearest of 1/256 to 1, as a grey PNG."""
-    codes = np.rint(256 * precision - 1).clip(0, 255).astype(np.uint8)
-    return encode(codes[..., None], "png", 0)
+def precision_codes(precision: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """(h, w) numbers in 0..1 as the codes of a grey picture, each the nearest of 1/256 to 1."""
+    return np.rint(256 * precision - 1).clip(0, 255).astype(np.uint8)
 
 
 def spread_precision(codes: NDArray[np.uint8], height: int, width: int) -> NDArray[np.float32]:

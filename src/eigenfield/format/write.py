@@ -24,7 +24,6 @@ from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
 from eigenfield.format.name_pattern import name_pattern
-from eigenfield.format.precision import MIME as PNG
 from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
 from eigenfield.mesh import Mesh
@@ -275,7 +274,8 @@ def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) ->
 
 
 def _precision(data: bytes, buffer: _Buffer) -> dict[str, Any]:
-    return {"bufferView": buffer.shared(data), "size": list(pictures.dimensions(memoryview(data), PNG, "precision"))}
+    size = pictures.dimensions(memoryview(data), pictures.MIME_TYPES["png"], "precision")
+    return {"bufferView": buffer.shared(data), "size": list(size)}
 
 
 def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
