@@ -2,9 +2,9 @@
 
     EIGENFIELD_DATA=captures python benchmarks/rate.py [CAPTURE...] [--out rate] [--peers svt-av1-2,...] [--store]
 
-CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: one fit by
-the defaults, coded at QUALITIES, each point a real .glb that is read and drawn again. SVT-AV1 walks the views row by
-row, to and fro or in a spiral, whichever is best at its middle rate. Crops at about equal bytes go to
+CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: a fit for
+each preset, coded at QUALITIES near its own, each point a real .glb that is read and drawn again. SVT-AV1 walks the
+views row by row, to and fro or in a spiral, whichever is best at its middle rate. Crops at about equal bytes go to
 OUT/NAME/crops.png. The loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
 """
 
@@ -32,7 +32,7 @@ from eigenfield.rendering import Renderer
 
 CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
 PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
-QUALITIES = (60, 70, 78, 84, 88, 91, 94, 97)
+QUALITIES = {"best": (94, 97), "balanced": (84, 88, 91), "small": (60, 70, 78)}  # the finest mesh says what is covered
 CRF = (32, 40, 48, 56, 63)
 DOUBLING = 2.0  # dB of luma for twice the bytes, by which the orders are compared: they differ in both
 KEYS = ("psnr", "psnr_luma", "ssim")

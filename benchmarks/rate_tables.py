@@ -97,12 +97,13 @@ def _deltas(captures: Mapping[str, Any]) -> str:
     rows = []
     for name, one in captures.items():
         mine = one["curves"][0]
-        open_loop = " / ".join(f"{mine['uncoded'][plane]:.2f}" for plane in ("luma", "chroma"))
+        fit = mine["fits"]["balanced"]
+        open_loop = " / ".join(f"{fit['uncoded'][plane]:.2f}" for plane in ("luma", "chroma"))
         for other in one["curves"][1:]:
             of = one["bd"][other["name"]]
             rows.append([
                 f"`{name}`", f"{other['name']}, {other['order']}", percent(of["psnr"]), percent(of["psnr_luma"]),
-                percent(of["ssim"]), open_loop, f"{mine['fit_seconds']:.0f}",
+                percent(of["ssim"]), open_loop, f"{fit['seconds']:.0f}",
             ])  # fmt: skip
-    head = ["capture", "against", "BD-rate RGB", "luma", "SSIM", "ours uncoded, luma / chroma dB", "fit s"]
+    head = ["capture", "against", "BD-rate RGB", "luma", "SSIM", "ours uncoded (balanced), luma / chroma dB", "fit s"]
     return table(head, rows)

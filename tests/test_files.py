@@ -81,6 +81,12 @@ def test_a_missing_folder_and_a_folder_as_output_are_said(tmp_path):
         pass
 
 
+def test_an_error_inside_a_scratch_arrays_block_stays_what_it_is(tmp_path):
+    with pytest.raises(FileNotFoundError), scratch_array((3,), np.float32, tmp_path):
+        (tmp_path / "nothing").read_bytes()
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_scratch_arrays_leave_nothing(tmp_path):
     with scratch_array((4, 5), np.float32, tmp_path) as array:
         array[2] = 7

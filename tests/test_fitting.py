@@ -43,6 +43,7 @@ from eigenfield.pipeline import Options
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.rendering.drawing import make_surface
 from eigenfield.scene import Plane
+from test_format_geometry import relief
 
 SIDE, GRID = 64, (40, 36)
 RGB = np.eye(3, dtype=np.float32)
@@ -425,3 +426,20 @@ def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fit
     best = ef.encode(capture, **options, target=Target(psnr=80))
     assert best.settings["fitted"]["quality"] == 99
     assert "80 cannot be reached" in caplog.text
+
+
+def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, monkeypatch):
+    cameras = row_grid(9, 64, 56)
+    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
+    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "fit": "photographs"}
+    asked = Target(psnr=24)
+    with caplog.at_level("INFO", "eigenfield.encode"):
+        once = ef.encode(capture, **options, target=asked)
+        assert "fitted again for quality" not in caplog.text  # the meshes differ by some bytes, not worth a second fit
+        monkeypatch.setattr("eigenfield.pipeline.MESH_SHARE", 1e-3)
+        found = ef.encode(capture, **options, target=asked)
+    assert "fitted again for quality" in caplog.text
+    assert len(found.mesh.faces) < len(once.mesh.faces)
+    sizes = [len(encode_scene(scene)) for scene in (found, once)]
+    assert sizes[0] < sizes[1]
+    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 24

@@ -36,11 +36,11 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     fast = dataclasses.replace(
         codecs.VIDEO[0], options=tuple((k, "10" if k == "preset" else v) for k, v in codecs.VIDEO[0].options)
     )
-    monkeypatch.setattr(rate, "QUALITIES", (50, 90))
+    monkeypatch.setattr(rate, "QUALITIES", {"balanced": (90,), "small": (50,)})
     monkeypatch.setattr(rate, "CRF", (30, 50, 60))
     found = rate.of_capture(Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work", [fast])
     mine, film = found["curves"]
-    assert [point["parameter"] for point in mine["points"]] == [50, 90]
+    assert [(point["parameter"], point["preset"]) for point in mine["points"]] == [(50, "small"), (90, "balanced")]
     assert mine["points"][0]["bytes"] < mine["points"][1]["bytes"]
     assert mine["points"][0]["psnr"] < mine["points"][1]["psnr"]
     assert mine["points"][1]["bytes"] == (tmp_path / "work" / "quality-90.glb").stat().st_size

@@ -5,7 +5,7 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -159,12 +159,14 @@ def check_options(capture: LightField | PhotoSet, options: Options) -> None:
 class Draft:
     """A scene without its textures.
 
-    cameras: all, as the file keeps them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index
-    of the reference camera. atlas: width and height.
+    whole: the proxy before it was simplified for a quality, None where it was not. cameras: all, as the file keeps
+    them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index of the reference camera. atlas:
+    width and height.
     """
 
     capture: LightField
     options: Options
+    whole: Mesh | None
     mesh: Mesh
     cameras: tuple[Camera, ...]
     view_plane: ViewPlane
@@ -194,6 +196,13 @@ class Draft:
     @cached_property
     def _shown(self) -> LightField:
         return self.capture.subset(self.encoded.tolist())
+
+    def at_quality(self, quality: int) -> Draft:
+        """The same with the mesh that it has at another quality."""
+        if self.whole is None:
+            return self
+        options = replace(self.options, quality=quality, target=None)
+        return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.atlas, True)
 
     def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """Pixels and mask of an encoded camera, counted among those."""
@@ -251,27 +260,45 @@ def make_draft(
     `encode`."""
     names = [view.name for view in capture.views]
     cameras = [view.camera.rounded() for view in capture.views]
-    plane = fit_view_plane(cameras)
-    coordinates = plane.coordinates([camera.centre for camera in cameras])
+    coordinates = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
     held = held_out_cameras(options.hold_out, names, coordinates)
     encoded = np.flatnonzero(~held)
     centre = _reference(options.reference, names, coordinates, encoded)
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
+    return _draft(capture, mesh, options, held, centre, size, triangles is None)
+
+
+def _draft(
+    capture: LightField,
+    whole: Mesh,
+    options: Options,
+    held: NDArray[np.bool_],
+    centre: int,
+    size: tuple[int, int],
+    simplify: bool,
+) -> Draft:
+    """The draft with a proxy that is prepared; simplify: for the quality, where it is for a fit."""
+    mesh, cameras = whole, [view.camera.rounded() for view in capture.views]
+    slim = simplify and options.fit != "none"
     if options.fit != "none":
-        if triangles is None:
+        if slim:
             texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
+            encoded = np.flatnonzero(~held)
             mesh = _slim(
                 capture.subset(encoded.tolist()), mesh, [cameras[i] for i in encoded],
                 int(np.searchsorted(encoded, centre)), options, texels,
             )  # fmt: skip
         else:
             mesh = coded_mesh(mesh, cameras, centre)
-        cameras = list(coded_cameras(cameras, mesh, _grid_of(coordinates)))
-        plane = fit_view_plane(cameras)
-        coordinates = plane.coordinates([camera.centre for camera in cameras])
-    return Draft(capture, options, mesh, tuple(cameras), plane, coordinates, held, centre, size)
+        grid = _grid_of(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
+        cameras = list(coded_cameras(cameras, mesh, grid))
+    plane = fit_view_plane(cameras)
+    coordinates = plane.coordinates([camera.centre for camera in cameras])
+    return Draft(
+        capture, options, whole if slim else None, mesh, tuple(cameras), plane, coordinates, held, centre, size
+    )  # fmt: skip
 
 
 def _slim(

@@ -169,9 +169,12 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None 
     if size == 0:
         yield np.zeros(shape, dtype)
         return
-    with mended(place), tempfile.TemporaryFile(prefix=".eigenfield-", dir=place) as file:
-        if hasattr(os, "posix_fallocate"):
-            os.posix_fallocate(file.fileno(), 0, size)
-        else:
-            file.truncate(size)
-        yield np.memmap(file, dtype=dtype, mode="r+", shape=shape)
+    with contextlib.ExitStack() as opened:
+        with mended(place):  # what goes wrong in the caller's block is not about this folder
+            file = opened.enter_context(tempfile.TemporaryFile(prefix=".eigenfield-", dir=place))
+            if hasattr(os, "posix_fallocate"):
+                os.posix_fallocate(file.fileno(), 0, size)
+            else:
+                file.truncate(size)
+            array = np.memmap(file, dtype=dtype, mode="r+", shape=shape)
+        yield array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -45,6 +46,7 @@ from eigenfield.fitting import (
     reach,
     to_rgb,
 )
+from eigenfield.format.stored import stream_of
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
 from eigenfield.scene import Basis, Plane, Scene
@@ -59,6 +61,10 @@ from eigenfield.texturing import (
 )
 
 __all__ = ["DEFAULT_DENSITY", "Options", "Target", "check_options", "encode", "open_fitted"]
+
+log = logging.getLogger("eigenfield.encode")
+
+MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
 
 
 def encode(
@@ -116,10 +122,10 @@ def encode(
     )  # fmt: skip
     place = None if work is None else Path(work)
     draft = make_draft(capture, proxy, options, triangles, progress)
+    if target is not None:
+        return _reached(target, draft, place, progress)
     if options.fit != "none":
-        with _fitted(draft, place, progress) as (coded, measured, shots):
-            if target is not None:
-                return measured(reach(target, coded, shots))
+        with _fitted(draft, place, progress) as (coded, measured, _):
             return measured(coded(options.fit_quality))
     layout = make_atlas(draft.mesh, *draft.atlas)
     resampling = DEFAULT_RESAMPLING if resampling is None else resampling
@@ -157,7 +163,7 @@ def open_fitted(
 
 @contextlib.contextmanager
 def _fitted(
-    draft: Draft, work: Path | None, progress: Progress | None
+    draft: Draft, work: Path | None, progress: Progress | None, warn: bool = True
 ) -> Iterator[tuple[Callable[[int], Scene], Callable[[Scene], Scene], Shots]]:
     """Planes fitted to the draft's photographs, as scenes coded at a quality; such a scene with the figures that it has
     room for; and those photographs."""
@@ -170,8 +176,9 @@ def _fitted(
             shots, component_count(asked, len(used)), options.fit_preset, KINDS[options.fit_planes], work, progress
         ) as fits,
     ):
-        apart = fits.planes[0][1].mean_alone
-        warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names)
+        if warn:
+            apart = fits.planes[0][1].mean_alone
+            warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names)
 
         def coded(quality: int) -> Scene:
             own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": fits.reached()}}
@@ -186,6 +193,21 @@ def _fitted(
             return replace(scene, settings={**scene.settings, "fitted": fitted})
 
         yield coded, measured, shots
+
+
+def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress | None) -> Scene:
+    """The scene that reaches a target. A relief has the triangles that the preset's quality pays for; where the target
+    is met at a quality that pays for others, there is a second fit, on those."""
+    with _fitted(draft, work, progress) as (coded, measured, shots):
+        found, size = reach(target, coded, shots)
+        quality = found.settings["fitted"]["quality"]
+        other = draft.at_quality(quality)
+        before, after = (len(stream_of(one.mesh) or b"") for one in (draft, other))
+        if abs(after - before) < MESH_SHARE * size:
+            return measured(found)
+    log.info("fitted again for quality %d: a mesh of %d bytes instead of %d", quality, after, before)
+    with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
+        return measured(reach(target, coded, shots, quality)[0])
 
 
 def _decompose(

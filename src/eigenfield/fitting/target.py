@@ -73,12 +73,12 @@ class Tried(Generic[T]):
     result: T
 
 
-def search(target: Target, code: Callable[[int], Tried[T]]) -> tuple[Tried[T], bool]:
+def search(target: Target, code: Callable[[int], Tried[T]], first: int = FIRST) -> tuple[Tried[T], bool]:
     """The largest file within a size, or the smallest that reaches a PSNR or SSIM, and whether there is one; else the
-    nearest to it. At most TRIES codings; size and measures are taken to rise with quality."""
+    nearest to it. At most TRIES codings, from quality `first`; size and measures are taken to rise with quality."""
     tried: dict[int, Tried[T]] = {}
     low, high = LOWEST - 1, HIGHEST + 1  # the answer lies between, both excluded: low is too little or unknown
-    quality = FIRST
+    quality = first
     while len(tried) < TRIES and low + 1 < high:
         one = tried[quality] = code(quality)
         log.info("quality %d: %d bytes, %.4f", quality, one.size, one.measured)
@@ -114,15 +114,15 @@ def _next(target: Target, tried: list[Tried[T]], low: int, high: int) -> int:
     return min(max(rounded, low + 1), high - 1)
 
 
-def reach(target: Target, coded: Callable[[int], Scene], shots: Shots) -> Scene:
-    """The scene whose file reaches the target, by `coded`, which makes one at a quality; where none does, the nearest,
-    with a warning that says why."""
+def reach(target: Target, coded: Callable[[int], Scene], shots: Shots, first: int = FIRST) -> tuple[Scene, int]:
+    """The scene whose file reaches the target, by `coded`, which makes one at a quality, and the file's bytes; where
+    none does, the nearest, with a warning that says why. first: as `search`."""
 
     def code(quality: int) -> Tried[Scene]:
         scene = coded(quality)
         return Tried(quality, len(encode_scene(scene)), 0.0 if target.size else _measured(target, scene, shots), scene)
 
-    found, met = search(target, code)
+    found, met = search(target, code, first)
     if not met and target.size is not None:
         log.warning(
             "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
@@ -134,7 +134,7 @@ def reach(target: Target, coded: Callable[[int], Scene], shots: Shots) -> Scene:
             "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.wanted,
             found.measured,
         )  # fmt: skip
-    return found.result
+    return found.result, found.size
 
 
 def _measured(target: Target, scene: Scene, shots: Shots) -> float:
