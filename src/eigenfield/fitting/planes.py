@@ -15,7 +15,6 @@ from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_pl
 from eigenfield.fitting.seen import mean_precision
 from eigenfield.fitting.shots import Shots, thinned
 from eigenfield.format.deep import SMALLEST, encoder_step
-from eigenfield.format.deep_code import STEP
 from eigenfield.progress import Progress
 from eigenfield.scene import Plane
 
@@ -31,9 +30,9 @@ class Kind:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
     matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis.
-    textures: of the number asked for. mean_step, texture_step: of the quantiser, beside that of luma's components at
-    the atlas's density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the
-    pictures are steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras.
+    textures: of the number asked for. mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's
+    density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the pictures are
+    steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras.
     """
 
     name: str
@@ -53,18 +52,19 @@ class Kind:
         )  # fmt: skip
 
     def rate(self, step: float) -> Rate:
-        """step: of luma's components, see `step_of`."""
+        """step: see `step_of`."""
         return Rate(self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step, ENCODER)
 
 
 _LUMA, _CHROMA = split_matrix()
 KINDS = {
     "luma-chroma": (
-        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 1.0, False),
-        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 1.1, True),
+        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False),
+        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True),
     ),
-    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 1.0, False),),
+    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False),),
 }
+HALF_LEVEL = 0.002  # grey level, in the photographs' range
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
@@ -133,9 +133,9 @@ def open_fits(
 
 
 def step_of(quality: int) -> float:
-    """Quantiser step of luma's components, were they as dense as the atlas, in the photographs' range: quality 0 to 100
-    is SVT-AV1's crf 63 to 0 at half a grey level a code."""
-    return encoder_step(0.63 * (100 - quality)) * STEP / TEXTURE_SHARE
+    """Quantiser step by which those of all planes are counted, in the photographs' range: quality 0 to 100 is SVT-AV1's
+    crf 63 to 0 at half a grey level a code and TEXTURE_SHARE of the atlas's density."""
+    return encoder_step(0.63 * (100 - quality)) * HALF_LEVEL / TEXTURE_SHARE
 
 
 def byte_price(quality: int) -> float:
