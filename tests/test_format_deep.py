@@ -83,6 +83,20 @@ def test_textures_are_stacked_and_share_one_step():
     )
 
 
+def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatch):
+    monkeypatch.setattr("eigenfield.format.deep_code.ROWS", 128)  # two textures a file
+    basis = float_basis(5, 4, 64, 80, 1)
+    strength = np.array([1, 1, 0.5, 0.5], np.float32)[:, None, None, None]
+    basis = replace(basis, textures=basis.textures * strength)
+    coded = code_basis(basis, 1e-3, 8)
+    scale = coded.scale[:, 0]
+    assert scale[0] == scale[1] > 3 * scale[2] and scale[2] == scale[3]
+    eight = np.rint(np.rint(coded.textures * (255 / 1023)) * (1023 / 255))
+    lost = np.abs((eight - coded.textures) * scale[:, None, None, None]).max(axis=(1, 2, 3))
+    for files in (slice(0, 2), slice(2, 4)):
+        assert lost[files].max() < np.abs(coded.values()[files]).max() / 150
+
+
 @pytest.mark.parametrize("channels", [1, 2])
 def test_means_of_any_range(channels):
     mean = smooth_pictures(1, 64, 64, channels)[0] * (3 if channels == 2 else 0.5) + (0 if channels == 2 else 0.5)
