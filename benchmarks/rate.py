@@ -5,7 +5,8 @@
 CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: a fit for
 each preset, coded at QUALITIES near its own, each point a real .glb that is read and drawn again. SVT-AV1 walks the
 views row by row, to and fro or in a spiral, whichever is best at its middle rate. Crops at about equal bytes go to
-OUT/NAME/crops.png. The loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
+OUT/NAME/crops.png; what is done stays there too, and a run that was stopped goes on while the code is the same. The
+loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import argparse
 import os
 import tempfile
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +25,7 @@ import numpy as np
 from evidence import captures, codecs, colour, ours, pictures, prepared, rates
 from evidence.codecs import VideoCodec
 from evidence.prepared import Prepared
+from evidence.runner import kept
 from numpy.typing import NDArray
 
 import eigenfield as ef
@@ -51,9 +54,12 @@ def main() -> None:
     if not names or any(name not in known for name in names):
         raise SystemExit(f"captures: {', '.join(known) or 'none, EIGENFIELD_DATA names no folder that holds them'}")
     chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
-    figures = {name: of_capture(known[name], options.out / name, chosen) for name in names}
-    for name, found in figures.items():
-        print(f"\n{name}\n{table(found)}")
+    figures = {}
+    for name in names:
+        work = options.out / name
+        make = partial(of_capture, known[name], work, chosen)
+        figures[name] = kept(work / "figures.json", Path(__file__), make, options.peers)
+        print(f"\n{name}\n{table(figures[name])}", flush=True)
     if options.store:
         print(measure.store("rate", {"captures": prepared.as_json(figures)}))
 

@@ -114,6 +114,17 @@ def read_record(path: Path) -> dict[str, Any] | None:
     return record if isinstance(record, dict) and {"figures", "code"} <= set(record) else None
 
 
+def kept(place: Path, program: Path, make: Callable[[], dict[str, Any]], more: str = "") -> dict[str, Any]:
+    """What `make` left at `place`, if the code, `program`'s too, and `more` were the same; else what it makes now, left
+    there."""
+    code = f"{fingerprint()} {hashlib.sha256(meaning(program)).hexdigest()} {more}"
+    record = read_record(place)
+    if record is None or record["code"] != code:
+        record = {"code": code, "figures": as_json(make())}
+        write_record(place, record)
+    return dict(record["figures"])
+
+
 def write_record(path: Path, record: Mapping[str, Any]) -> None:
     """Figures and the code that they came of, whole or not at all."""
     path.parent.mkdir(parents=True, exist_ok=True)
