@@ -18,6 +18,7 @@ from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import OptionError
 from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, split_matrix
 from eigenfield.format.geometry import coded_cameras, coded_mesh
+from eigenfield.format.stored import stream_of
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
@@ -196,6 +197,11 @@ class Draft:
     @cached_property
     def _shown(self) -> LightField:
         return self.capture.subset(self.encoded.tolist())
+
+    @property
+    def mesh_bytes(self) -> int:
+        """Of the coded mesh in the file; 0 where it is not coded."""
+        return len(stream_of(self.mesh) or b"")
 
     def at_quality(self, quality: int) -> Draft:
         """The same with the mesh that it has at another quality."""

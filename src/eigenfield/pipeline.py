@@ -46,7 +46,6 @@ from eigenfield.fitting import (
     reach,
     to_rgb,
 )
-from eigenfield.format.stored import stream_of
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
 from eigenfield.scene import Basis, Plane, Scene
@@ -202,10 +201,9 @@ def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress
         found, size = reach(target, coded, shots)
         quality = found.settings["fitted"]["quality"]
         other = draft.at_quality(quality)
-        before, after = (len(stream_of(one.mesh) or b"") for one in (draft, other))
-        if abs(after - before) < MESH_SHARE * size:
+        if abs(other.mesh_bytes - draft.mesh_bytes) < MESH_SHARE * size:
             return measured(found)
-    log.info("fitted again for quality %d: a mesh of %d bytes instead of %d", quality, after, before)
+    log.info("fitted again for quality %d: mesh %d bytes instead of %d", quality, other.mesh_bytes, draft.mesh_bytes)
     with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
         return measured(reach(target, coded, shots, quality)[0])
 
