@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import hashlib
 import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -24,9 +23,8 @@ from unittest.mock import patch
 import measure
 import numpy as np
 from evidence import captures, ours, prepared, rates
-from evidence.code import meaning
 from evidence.prepared import Prepared
-from evidence.runner import fingerprint, read_record, write_record
+from evidence.runner import kept
 from numpy.typing import NDArray
 
 import eigenfield as ef
@@ -126,7 +124,7 @@ def of_capture(capture: captures.Capture, work: Path, levers: list[str]) -> dict
     )
     return {
         "levers": of_levers(ready, chosen),
-        "held_out": kept(ready.work / "held-out.json", lambda: held_out(ready)),
+        "held_out": _kept(ready.work / "held-out.json", partial(held_out, ready)),
     }
 
 
@@ -142,7 +140,7 @@ def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
 
     found: dict[str, Any] = {}
     for name in chosen:
-        curve = kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs, covered))
+        curve = _kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs, covered))
         points = curve["points"]
         base = found["all"]["points"] if found else points
         rate = {key: rates.bd_rate(base, points, key) for key in KEYS}
@@ -174,14 +172,8 @@ def of_lever(
     return {"points": points, "uncoded": uncoded}
 
 
-def kept(place: Path, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-    """What `make` left at `place`, if the code was the same; else what it makes now, left there."""
-    code = f"{fingerprint()} {hashlib.sha256(meaning(Path(__file__))).hexdigest()} {QUALITIES}"
-    record = read_record(place)
-    if record is None or record["code"] != code:
-        record = {"code": code, "figures": prepared.as_json(make())}
-        write_record(place, record)
-    return dict(record["figures"])
+def _kept(place: Path, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
+    return kept(place, Path(__file__), make, str(QUALITIES))
 
 
 def drawn_figures(
