@@ -205,7 +205,7 @@ class Draft:
 
     def at_quality(self, quality: int) -> Draft:
         """The same with the mesh that it has at another quality."""
-        if self.whole is None:
+        if self.whole is None or quality == self.options.fit_quality:
             return self
         options = replace(self.options, quality=quality, target=None)
         return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.atlas, True)
@@ -273,7 +273,7 @@ def make_draft(
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
-    return _draft(capture, mesh, options, held, centre, size, triangles is None)
+    return _draft(capture, mesh, options, held, centre, size, options.fit != "none" and triangles is None)
 
 
 def _draft(
@@ -285,11 +285,10 @@ def _draft(
     size: tuple[int, int],
     simplify: bool,
 ) -> Draft:
-    """The draft with a proxy that is prepared; simplify: for the quality, where it is for a fit."""
+    """The draft with a proxy that is prepared. simplify: a fit's, for its quality."""
     mesh, cameras = whole, [view.camera.rounded() for view in capture.views]
-    slim = simplify and options.fit != "none"
     if options.fit != "none":
-        if slim:
+        if simplify:
             texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
             encoded = np.flatnonzero(~held)
             mesh = _slim(
@@ -303,7 +302,7 @@ def _draft(
     plane = fit_view_plane(cameras)
     coordinates = plane.coordinates([camera.centre for camera in cameras])
     return Draft(
-        capture, options, whole if slim else None, mesh, tuple(cameras), plane, coordinates, held, centre, size
+        capture, options, whole if simplify else None, mesh, tuple(cameras), plane, coordinates, held, centre, size
     )  # fmt: skip
 
 

@@ -45,6 +45,7 @@ from eigenfield.fitting import (
     open_shots,
     reach,
     to_rgb,
+    warn_of_miss,
 )
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
@@ -109,7 +110,8 @@ def encode(
     and `keep_maps` are about texture maps, which a fit does not make; None: "none" if one of them is asked for, with a
     warning, else "photographs". preset: "small", "balanced" (None) or "best", how finely and with how much patience a
     fit is made and coded. quality: of a fit, 0 to 100 instead of the preset's. target: the quality is searched for,
-    until the file reaches it; where none does, the nearest, with a warning. planes: "luma-chroma" (None), or "rgb", one
+    until the file reaches it, with a second fit where another mesh belongs to it; where none does, the nearest, with a
+    warning. planes: "luma-chroma" (None), or "rgb", one
     plane for all of a fit, as the paper has it. keep_maps: folder for the filled maps and visibility as pictures. work:
     folder for scratch files (11 bytes a pixel; 4 bytes x channels x cameras x texels).
 
@@ -195,17 +197,23 @@ def _fitted(
 
 
 def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress | None) -> Scene:
-    """The scene that reaches a target. A relief has the triangles that the preset's quality pays for; where the target
-    is met at a quality that pays for others, there is a second fit, on those."""
+    """The scene that reaches a target, or with a warning the nearest. A relief has the triangles that the preset's
+    quality pays for; where the target is met at a quality that pays for others, there is a second fit, on those."""
     with _fitted(draft, work, progress) as (coded, measured, shots):
-        found, size = reach(target, coded, shots)
-        quality = found.settings["fitted"]["quality"]
-        other = draft.at_quality(quality)
-        if abs(other.mesh_bytes - draft.mesh_bytes) < MESH_SHARE * size:
-            return measured(found)
-    log.info("fitted again for quality %d: mesh %d bytes instead of %d", quality, other.mesh_bytes, draft.mesh_bytes)
-    with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
-        return measured(reach(target, coded, shots, quality)[0])
+        found, met = reach(target, coded, shots)
+        other = draft.at_quality(found.quality)
+        again = abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
+        if not again:
+            scene = measured(found.result)
+    if again:
+        words = "fitted again for quality %d: mesh %d bytes instead of %d"
+        log.info(words, found.quality, other.mesh_bytes, draft.mesh_bytes)
+        with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
+            found, met = reach(target, coded, shots, found.quality)
+            scene = measured(found.result)
+    if not met:
+        warn_of_miss(target, found)
+    return scene
 
 
 def _decompose(

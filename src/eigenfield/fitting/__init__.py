@@ -6,7 +6,7 @@ from eigenfield.fitting.colour import split_matrix, to_rgb
 from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
 from eigenfield.fitting.planes import KINDS, PRESETS, Fits, Preset, byte_price, fitted_textures, open_fits
 from eigenfield.fitting.shots import Shots, open_shots, thinned
-from eigenfield.fitting.target import Target, reach
+from eigenfield.fitting.target import Target, reach, warn_of_miss
 
 __all__ = [
     "KINDS",
@@ -29,4 +29,5 @@ __all__ = [
     "split_matrix",
     "thinned",
     "to_rgb",
+    "warn_of_miss",
 ]

@@ -114,27 +114,28 @@ def _next(target: Target, tried: list[Tried[T]], low: int, high: int) -> int:
     return min(max(rounded, low + 1), high - 1)
 
 
-def reach(target: Target, coded: Callable[[int], Scene], shots: Shots, first: int = FIRST) -> tuple[Scene, int]:
-    """The scene whose file reaches the target, by `coded`, which makes one at a quality, and the file's bytes; where
-    none does, the nearest, with a warning that says why. first: as `search`."""
+def reach(target: Target, coded: Callable[[int], Scene], shots: Shots, first: int = FIRST) -> tuple[Tried[Scene], bool]:
+    """As `search`: the scene whose file reaches the target, by `coded`, which makes one at a quality."""
 
     def code(quality: int) -> Tried[Scene]:
         scene = coded(quality)
         return Tried(quality, len(encode_scene(scene)), 0.0 if target.size else _measured(target, scene, shots), scene)
 
-    found, met = search(target, code, first)
-    if not met and target.size is not None:
+    return search(target, code, first)
+
+
+def warn_of_miss(target: Target, nearest: Tried[Scene]) -> None:
+    """Say that no file reaches the target, and why."""
+    if target.size is not None:
         log.warning(
             "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
-            target.size,
-            found.size,
-        )
-    elif not met:
+            target.size, nearest.size,
+        )  # fmt: skip
+    else:
         log.warning(
             "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.wanted,
-            found.measured,
+            nearest.measured,
         )  # fmt: skip
-    return found.result, found.size
 
 
 def _measured(target: Target, scene: Scene, shots: Shots) -> float:

@@ -62,23 +62,22 @@ def code_basis(basis: Basis, step: float, preset: int) -> Basis:
     """
     count, height, _, channels = basis.textures.shape
     values = basis.values()
+    stored, scale = np.empty(values.shape, np.uint16), np.empty((count, channels), np.float32)
     each = max(1, min(ROWS // (height * channels), count))
 
-    def code(first: int) -> tuple[PictureFile, NDArray[np.uint16]]:
-        part = values[first : first + each]
-        unit = _unit(float(part.min()), float(part.max()))
-        codes = np.rint(part / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
+    def code(first: int) -> PictureFile:
+        part = slice(first, first + each)
+        unit = _unit(float(values[part].min()), float(values[part].max()))
+        codes = np.rint(values[part] / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
         data = encode_deep(_stack(codes), crf_of(step / unit), preset)
-        numbers = len(part) * channels
+        stored[part], scale[part] = _unstack(decode_deep(data, "textures"), codes.shape), unit
+        numbers = len(codes) * channels
         affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO)))
-        return PictureFile(data, MIME, 10, len(part), affine), _unstack(decode_deep(data, "textures"), part.shape)
+        return PictureFile(data, MIME, 10, len(codes), affine)
 
-    done = parallel_map(code, range(0, count, each))
-    stored = np.concatenate([part for _, part in done]) if done else np.zeros(values.shape, np.uint16)
-    units = [file.affine.scale for file, _ in done if file.affine is not None]
-    scale = np.concatenate([np.zeros(0), *units]).reshape(count, channels).astype(np.float32)
+    files = parallel_map(code, range(0, count, each))
     made = Basis(stored, scale, np.full_like(scale, ZERO), basis.weights, basis.grid, basis.corner)
-    keep_files(made, [file for file, _ in done])
+    keep_files(made, files)
     return made
 
 
