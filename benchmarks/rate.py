@@ -1,10 +1,12 @@
 """Bytes against quality: our fitted files beside video codecs on the same photographs, in one run, every byte counted.
 
-    EIGENFIELD_DATA=captures python benchmarks/rate.py [CAPTURE...] [--out rate] [--peers svt-av1-2,...] [--store]
+    EIGENFIELD_DATA=captures python benchmarks/rate.py [CAPTURE...] [--out rate] [--peers svt-av1-2,...] [--best]
+        [--store]
 
 CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: a fit for
-each preset, coded at QUALITIES near its own, each point a real .glb that is read and drawn again. SVT-AV1 walks the
-views row by row, to and fro or in a spiral, whichever is best at its middle rate. Crops at about equal bytes go to
+each preset, coded at qualities near its own, each point a real .glb that is read and drawn again; --best adds a curve
+of that preset alone, which takes its time. SVT-AV1 walks the views row by row, to and fro or in a spiral, whichever is
+best at its middle rate. Crops at about equal bytes go to
 OUT/NAME/crops.png; what is done stays there too, and a run that was stopped goes on while the code is the same. The
 loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
 """
@@ -31,11 +33,19 @@ from numpy.typing import NDArray
 import eigenfield as ef
 from eigenfield.evaluation.session import evenly
 from eigenfield.parallel import parallel_map
+from eigenfield.pipeline import Options
 from eigenfield.rendering import Renderer
 
 CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
 PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
-QUALITIES = {"best": (94, 97), "balanced": (84, 88, 91), "small": (60, 70, 78)}  # the finest mesh says what is covered
+# a fit for each preset, and one with the mesh that the lowest quality has; the finest mesh says what is covered
+FITS: tuple[ours.Fit, ...] = (
+    (Options(preset="best"), (94, 97)),
+    (Options(), (84, 88, 91)),
+    (Options(preset="small"), (70, 78)),
+    (Options(preset="small", quality=60), (60,)),
+)
+BEST: tuple[ours.Fit, ...] = ((Options(preset="best", quality=88), (78, 84, 88, 91)),)
 CRF = (32, 40, 48, 56, 63)
 DOUBLING = 2.0  # dB of luma for twice the bytes, by which the orders are compared: they differ in both
 KEYS = ("psnr", "psnr_luma", "ssim")
@@ -46,6 +56,7 @@ def main() -> None:
     parser.add_argument("captures", nargs="*", metavar="CAPTURE")
     parser.add_argument("--out", type=Path, default=Path("rate"))
     parser.add_argument("--peers", default=",".join(PEERS), help="names of codecs, commas between; none: ours alone")
+    parser.add_argument("--best", action="store_true", help="also a curve of the preset best")
     parser.add_argument("--store", action="store_true", help="append to benchmarks/results/rate.json")
     options = parser.parse_args()
     data = os.environ.get("EIGENFIELD_DATA")
@@ -57,22 +68,26 @@ def main() -> None:
     figures = {}
     for name in names:
         work = options.out / name
-        make = partial(of_capture, known[name], work, chosen)
-        figures[name] = kept(work / "figures.json", Path(__file__), make, options.peers)
+        make = partial(of_capture, known[name], work, chosen, options.best)
+        asked = f"{options.peers}{' best' * options.best}"
+        figures[name] = kept(work / "figures.json", Path(__file__), make, asked)
         print(f"\n{name}\n{table(figures[name])}", flush=True)
     if options.store:
         print(measure.store("rate", {"captures": prepared.as_json(figures)}))
 
 
-def of_capture(capture: captures.Capture, work: Path, chosen: Sequence[VideoCodec]) -> dict[str, Any]:
+def of_capture(
+    capture: captures.Capture, work: Path, chosen: Sequence[VideoCodec], best: bool = False
+) -> dict[str, Any]:
     """All curves of one capture, and Bjøntegaard's rates of ours against each peer."""
     prepared.estimate(capture, work)
     ready = prepared.prepare(capture, work)
     views = range(len(ready.light_field))
     photographs = parallel_map(lambda index: prepared.codes(ready.light_field, index), views)
-    mine, covered = ours.fitted(ready, ready.light_field, views, photographs, qualities=QUALITIES)
-    for one in mine["points"]:
-        print(f"{capture.name}: quality {one['parameter']}: {line(one)}", flush=True)
+    mine, covered = ours.fitted(ready, ready.light_field, views, photographs, asked=FITS)
+    patient = ours.fitted(ready, ready.light_field, views, photographs, covered, BEST, "best")[0] if best else None
+    for one in [*mine["points"], *(patient["points"] if patient else [])]:
+        print(f"{capture.name}: {one['preset']}, quality {one['parameter']}: {line(one)}", flush=True)
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
     if others:
         contact_sheet(ready, mine["points"], others[0], photographs)
@@ -84,6 +99,7 @@ def of_capture(capture: captures.Capture, work: Path, chosen: Sequence[VideoCode
         "views": len(views),
         "ceiling_420": {key: ceiling[key] for key in KEYS},
         "curves": [mine, *others],
+        "best": patient,
         "bd": {one["name"]: {key: rates.bd_rate(one["points"], mine["points"], key) for key in KEYS} for one in others},
         "left_out": [f"{codec.label}: {codecs.missing(codec)}" for codec in chosen if codecs.missing(codec)],
     }

@@ -74,14 +74,16 @@ def _points(captures: Mapping[str, Any]) -> str:
     for name, one in captures.items():
         mine, *others = one["curves"]
         anchor = next((other for other in others if other["name"] == ANCHOR), None)
-        rows += [_row(name, point, anchor) for point in mine["points"]]
+        rows += [_row(f"`{name}`", point, anchor) for point in mine["points"]]
+        patient = one.get("best") or {"points": []}
+        rows += [_row(f"`{name}`, `best`", point, anchor) for point in patient["points"]]
     head = ["capture", "quality", "N", "kB", "RGB / luma dB", "SSIM", f"against {ANCHOR} at equal RGB / luma / SSIM"]
     return table(head, rows)
 
 
 def _row(name: str, point: Mapping[str, Any], anchor: Mapping[str, Any] | None) -> list[str]:
     return [
-        f"`{name}`", str(point["parameter"]), str(point["textures"]), f"{point['bytes'] / 1e3:.1f}",
+        name, str(point["parameter"]), str(point["textures"]), f"{point['bytes'] / 1e3:.1f}",
         f"{point['psnr']:.2f} / {point['psnr_luma']:.2f}", f"{point['ssim']:.4f}",
         " / ".join(_saved(point, anchor, key) for key in ("psnr", "psnr_luma", "ssim")),
     ]  # fmt: skip

@@ -16,6 +16,7 @@ from viewer_scenes import PLACES, cameras, references, scene
 
 import eigenfield as ef
 from eigenfield.format import save
+from eigenfield.format.deep import svt
 from eigenfield.format.deep_code import code_basis, coded_plane, with_weights
 from eigenfield.format.geometry import coded_cameras, coded_mesh
 from eigenfield.format.pictures import encode
@@ -39,9 +40,9 @@ def coded(plain: Scene, grid: np.ndarray) -> Scene:
     (plane,) = plain.planes
     (basis,) = plane.bases
     stream, weights = code_weights(basis.weights, 0.01, grid)
-    textures = with_weights(code_basis(basis, STEP, 8), weights, stream)
+    textures = with_weights(code_basis(basis, STEP, svt(8)), weights, stream)
     mesh = coded_mesh(plain.mesh, views, plain.reference)
-    return replace(plain, mesh=mesh, cameras=views, planes=(coded_plane(plane.mean, (textures,), STEP, 8),))
+    return replace(plain, mesh=mesh, cameras=views, planes=(coded_plane(plane.mean, (textures,), STEP, svt(8)),))
 
 
 def fitted_scene() -> Scene:
@@ -58,7 +59,7 @@ def precise_scene() -> Scene:
     keep_png(layered)  # its textures
     precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
     precision[0, 0] = 1
-    planes = (coded_plane(plane.mean, plane.bases, STEP, 8, precision) for plane in layered.planes)
+    planes = (coded_plane(plane.mean, plane.bases, STEP, svt(8), precision) for plane in layered.planes)
     return replace(layered, planes=tuple(planes))
 
 

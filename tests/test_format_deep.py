@@ -13,7 +13,7 @@ from scenes import float_basis, smooth_pictures, tiny_scene
 import eigenfield as ef
 from eigenfield.errors import FormatError
 from eigenfield.format import validate
-from eigenfield.format.deep import FLAT, TOP, crf_of, decode_deep, encode_deep, encoder_step
+from eigenfield.format.deep import FLAT, TOP, crf_of, decode_deep, encode_deep, encoder_step, svt
 from eigenfield.format.deep_code import code_basis, code_mean, coded_plane, with_weights
 from eigenfield.format.stored import files_of, stream_of
 from eigenfield.scene import Plane
@@ -70,7 +70,7 @@ def test_a_damaged_picture_is_refused(data):
 
 def test_textures_are_stacked_and_share_one_step():
     basis = float_basis(5, 7, 64, 80, 2)
-    coded = code_basis(basis, 1e-3, 8)
+    coded = code_basis(basis, 1e-3, svt(8))
     files = files_of(coded)
     assert files is not None and sum(file.count for file in files) == 7
     assert coded.textures.dtype == np.uint16 and len(np.unique(coded.scale)) == 1
@@ -88,7 +88,7 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
     basis = float_basis(5, 4, 64, 80, 1)
     strength = np.array([1, 1, 0.5, 0.5], np.float32)[:, None, None, None]
     basis = replace(basis, textures=basis.textures * strength)
-    coded = code_basis(basis, 1e-3, 8)
+    coded = code_basis(basis, 1e-3, svt(8))
     scale = coded.scale[:, 0]
     assert scale[0] == scale[1] > 3 * scale[2] and scale[2] == scale[3]
     eight = np.rint(np.rint(coded.textures * (255 / 1023)) * (1023 / 255))
@@ -100,16 +100,16 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
 @pytest.mark.parametrize("channels", [1, 2])
 def test_means_of_any_range(channels):
     mean = smooth_pictures(1, 64, 64, channels)[0] * (3 if channels == 2 else 0.5) + (0 if channels == 2 else 0.5)
-    back, file = code_mean(mean, 1e-3, 8)
+    back, file = code_mean(mean, 1e-3, svt(8))
     assert file.bits == 10 and np.abs(back - mean).mean() < 0.01
 
 
 def scene_of_planes():
     scene = tiny_scene(3, 0)
-    bases = (code_basis(float_basis(5, 3, 64, 64, 1), 1e-3, 8),)
-    luma = coded_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, 8)
-    local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, 8)
-    chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, 8)
+    bases = (code_basis(float_basis(5, 3, 64, 64, 1), 1e-3, svt(8)),)
+    luma = coded_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, svt(8))
+    local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, svt(8))
+    chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, svt(8))
     matrix = np.array([[1, 0.5, 0.25], [1, -0.5, 0.5], [1, 0.125, -1]], np.float32)
     return replace(scene, planes=(luma, chroma), to_rgb=matrix)
 

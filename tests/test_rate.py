@@ -12,6 +12,7 @@ from evidence.captures import Capture
 
 import rate
 import rate_tables
+from eigenfield.pipeline import Options
 
 
 def test_what_a_peer_needs_at_equal_quality():
@@ -36,9 +37,12 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     fast = dataclasses.replace(
         codecs.VIDEO[0], options=tuple((k, "10" if k == "preset" else v) for k, v in codecs.VIDEO[0].options)
     )
-    monkeypatch.setattr(rate, "QUALITIES", {"balanced": (90,), "small": (50,)})
+    monkeypatch.setattr(rate, "FITS", ((Options(), (90,)), (Options(preset="small", quality=50), (50,))))
+    monkeypatch.setattr(rate, "BEST", ((Options(preset="best"), (70,)),))
     monkeypatch.setattr(rate, "CRF", (30, 50, 60))
-    found = rate.of_capture(Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work", [fast])
+    found = rate.of_capture(
+        Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work", [fast], True
+    )
     mine, film = found["curves"]
     assert [(point["parameter"], point["preset"]) for point in mine["points"]] == [(50, "small"), (90, "balanced")]
     assert mine["points"][0]["bytes"] < mine["points"][1]["bytes"]
@@ -59,4 +63,6 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
         patch.setattr(rate_tables, "RESULTS", tmp_path)
         (tmp_path / "rate.json").touch()
         text = rate_tables.section()
+    assert [point["preset"] for point in found["best"]["points"]] == ["best"]
+    assert (tmp_path / "work" / "best-70.glb").exists() and "| `nine`, `best` | 70 |" in text
     assert "| `nine` | 90 |" in text and film["order"] in text

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +20,10 @@ from eigenfield.parallel import parallel_stream
 from eigenfield.pipeline import Options, open_fitted
 from eigenfield.rendering import Renderer
 
-QUALITIES = {"balanced": (70, 84, 91, 95)}  # of a preset's fit, the same for all captures
-QUICK_QUALITIES = {"balanced": (84, 91)}
+Fit = tuple[Options, Sequence[int]]  # and the qualities at which it is coded, the same for all captures
+
+QUALITIES: tuple[Fit, ...] = ((Options(), (70, 84, 91, 95)),)
+QUICK_QUALITIES: tuple[Fit, ...] = ((Options(), (84, 91)),)
 
 Setting = tuple[float, int | None, int, int]
 
@@ -40,24 +42,27 @@ def fitted(
     order: Sequence[int],
     photographs: Sequence[NDArray[np.uint8]],
     covered: Covered | None = None,
-    qualities: Mapping[str, Sequence[int]] = QUALITIES,
+    asked: Sequence[Fit] = QUALITIES,
+    stem: str = "quality",
 ) -> tuple[dict[str, Any], Covered]:
-    """The curve of what `encode` makes: for each preset one fit, coded at some qualities, every byte of the real .glb
-    counted, each camera drawn with its own weights; and the pixels that count.
+    """The curve of what `encode` makes: fits coded at some qualities, every byte of the real .glb counted, each camera
+    drawn with its own weights; and the pixels that count.
 
     order: views of the light field; photographs, covered: theirs; None: what the proxy covers as it is first coded.
+    stem: of the files' names.
     """
     points: list[dict[str, Any]] = []
     names = [light_field.names[index] for index in order]
     fits: dict[str, dict[str, Any]] = {}
-    for preset, some in qualities.items():
+    for options, some in asked:
+        preset = options.preset or "balanced"
         started = time.perf_counter()
-        with open_fitted(light_field, ready.mesh, Options(preset=preset), work=ready.work) as coded:
+        with open_fitted(light_field, ready.mesh, options, work=ready.work) as coded:
             fit = time.perf_counter() - started
             for quality in some:
                 started = time.perf_counter()
                 scene = coded(quality)
-                path = ready.work / f"quality-{quality}.glb"
+                path = ready.work / f"{stem}-{quality}.glb"
                 scene.save(path, overwrite=True)
                 seconds = time.perf_counter() - started
                 covered = covered or covered_pixels(path, order, light_field)
@@ -75,7 +80,8 @@ def fitted(
                     }
                 )
         uncoded = {name: one["uncoded"] for name, one in scene.settings["fitted"]["psnr"].items()}
-        fits[preset] = {"seconds": round(fit, 1), "uncoded": uncoded}
+        key = preset if options.quality is None else f"{preset}, quality {options.quality}"
+        fits[key] = {"seconds": round(fit, 1), "uncoded": uncoded}
     assert covered is not None
     points.sort(key=lambda point: point["parameter"])
     return {"name": "eigenfield", "kind": "ours", "points": points, "fits": fits}, covered

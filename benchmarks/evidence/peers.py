@@ -56,7 +56,7 @@ def peers(prepared: Prepared, folder: Path) -> dict[str, Any]:
         parallel_map(lambda index: codes(light_field, index), order), ours.surfaces(prepared, light_field, order),
     )  # fmt: skip
     part = (prepared, light_field, order, views.photographs, views.covered)
-    mine, _ = ours.fitted(*part, qualities=ours.QUICK_QUALITIES if prepared.quick else ours.QUALITIES)
+    mine, _ = ours.fitted(*part, asked=ours.QUICK_QUALITIES if prepared.quick else ours.QUALITIES)
     others, left_out = [ours.paper(*part)], []
     key = _key(views, prepared.quick)
     for codec in (*codecs.VIDEO, *stills.STILLS):

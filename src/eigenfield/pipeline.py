@@ -182,7 +182,8 @@ def _fitted(
             warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names)
 
         def coded(quality: int) -> Scene:
-            own = {"fit": options.fit, "fitted": {"quality": quality, "psnr": fits.reached()}}
+            coder = {"coder": "libaom"} if fits.patient else {}
+            own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": fits.reached()}}
             planes, matrix = (
                 fits.coded(quality, draft.grid, progress),
                 None if options.fit_planes == "rgb" else to_rgb(),

@@ -151,7 +151,8 @@ Examples:
 @click.option(
     "--preset",
     type=click.Choice(["small", "balanced", "best"]),
-    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first.  "
+    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first. best "
+    "codes with libaom, in about 10 % fewer bytes and far more time, where there is an ffmpeg program that has it.  "
     "[default: balanced]",
 )
 @click.option(

@@ -25,6 +25,7 @@ from eigenfield.fitting.seen import fill_unseen
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.fitting.start import principal_block, residual_energy
+from eigenfield.format.deep import Coder
 from eigenfield.format.deep_code import code_basis, coded_plane, first_pictures, with_weights
 from eigenfield.format.stored import files_of
 from eigenfield.format.weight_coder import code_weights
@@ -61,12 +62,13 @@ class PlaneSettings:
 
 @dataclass(frozen=True)
 class Rate:
-    """How finely a plane is coded. mean_step, texture_step: of the quantiser, in the photographs' range. preset: of the
-    encoder."""
+    """How finely a plane is coded. mean_step, texture_step: of the quantiser, in the photographs' range. coder: of the
+    pictures. trial: one that is faster, by which components are chosen; None: the same."""
 
     mean_step: float
     texture_step: float
-    preset: int
+    coder: Coder
+    trial: Coder | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +197,7 @@ def code_plane(
     left = residual(pixels.fitted, model, True, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.preset, precision)
+    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.coder, precision)
     tick(last=True)
     return plane
 
@@ -214,14 +216,14 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
 
 def _code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:
     """A block's components coded, those that are worth it."""
-    coded = code_basis(_basis(block, grid), rate.texture_step, rate.preset)
+    coded = code_basis(_basis(block, grid), rate.texture_step, rate.trial or rate.coder)
     count = _worthwhile(coded, block, scales, rate)
     files = files_of(coded) or ()
     ends = list(accumulate((file.count for file in files), initial=0))
-    if count in ends:
+    if count == 0 or (count in ends and rate.trial is None):
         return first_pictures(coded, ends.index(count))
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
-    return code_basis(_basis(few, grid), rate.texture_step, rate.preset)
+    return code_basis(_basis(few, grid), rate.texture_step, rate.coder)
 
 
 def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,15 +15,18 @@ from eigenfield.fitting.colour import split_matrix
 from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane, price_of
 from eigenfield.fitting.seen import mean_precision
 from eigenfield.fitting.shots import Shots, thinned
-from eigenfield.format.deep import SMALLEST, encoder_step
+from eigenfield.format.aom import aom_program, encode_aom
+from eigenfield.format.deep import SMALLEST, encoder_step, svt
 from eigenfield.progress import Progress
 from eigenfield.scene import Plane
+
+log = logging.getLogger("eigenfield.fit")
 
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
 SIDE_STEP = 16  # atlas sides are multiples of this
 # SVT-AV1's preset. 2 takes longer, and needs about 8 % more bytes for the same textures, for the same means 1 % fewer
 # (Tarot) to 3 % more (Shop); 5 needs 3 % more for means, 6 needs 7 % more
-ENCODER = 4
+ENCODER = svt(4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,9 +55,12 @@ class Kind:
             self.matrix, scaled(size, self.mean_share), scaled(size, self.texture_share), count, count
         )  # fmt: skip
 
-    def rate(self, step: float) -> Rate:
-        """step: see `step_of`."""
-        return Rate(self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step, ENCODER)
+    def rate(self, step: float, patient: bool = False) -> Rate:
+        """step: see `step_of`. patient: coded by libaom, which the machine must have."""
+        mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
+        if patient:
+            return Rate(mean_step, texture_step, encode_aom, ENCODER)
+        return Rate(mean_step, texture_step, ENCODER)
 
 
 _LUMA, _CHROMA = split_matrix()
@@ -73,13 +80,14 @@ THINNED_FROM = 50  # cameras, from which every second pixel each way is enough f
 
 @dataclass(frozen=True)
 class Preset:
-    """What a fit aims at. quality: 0 to 100. rounds: at most."""
+    """What a fit aims at. quality: 0 to 100. rounds: at most. patient: coded by libaom where the machine has it."""
 
     quality: int
     rounds: int
+    patient: bool = False
 
 
-PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4)}
+PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4, patient=True)}
 
 
 def fitted_textures(cameras: int) -> int:
@@ -89,9 +97,10 @@ def fitted_textures(cameras: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """Planes fitted, not coded yet."""
+    """Planes fitted, not coded yet. patient: see `Kind.rate`."""
 
     planes: tuple[tuple[Kind, OpenFit], ...]
+    patient: bool
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
@@ -99,7 +108,10 @@ class Fits:
         """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
-        return {kind.name: code_plane(fit, kind.rate(step), grid, precision, progress) for kind, fit in self.planes}
+        return {
+            kind.name: code_plane(fit, kind.rate(step, self.patient), grid, precision, progress)
+            for kind, fit in self.planes
+        }
 
     def reached(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
         """dB of each plane's channels before and after coding to `planes`, for a scene's settings. None: not measured
@@ -129,7 +141,10 @@ def open_fits(
             pixels = Pixels(shots, some if kind.thinned else shots, some)
             return fit_plane(pixels, kind.settings(size, textures), kind.name, preset.rounds, work, progress)
 
-        yield Fits(tuple((kind, fit(kind)) for kind in kinds))
+        patient = preset.patient and aom_program() is not None
+        if preset.patient:
+            log.info("coded by %s", "libaom" if patient else "SVT-AV1: an ffmpeg program with libaom saves 8 to 10 %")
+        yield Fits(tuple((kind, fit(kind)) for kind in kinds), patient)
 
 
 def step_of(quality: int) -> float:

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import io
 import os
+from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +17,8 @@ from numpy.typing import NDArray
 from eigenfield.errors import FormatError
 from eigenfield.format import limits
 from eigenfield.parallel import ordinary_scheduling
+
+Coder = Callable[[NDArray[np.uint16], int], bytes]  # as `encode_deep`, from codes and crf
 
 BITS = 10
 TOP = 2**BITS - 1
@@ -24,7 +28,7 @@ MIME = "image/avif"
 # Quantiser steps of AV1 at 10 bits, in codes, at every fourth crf from 0 (its table of AC steps over 8, rounded)
 _STEPS = (0.5, 7, 14, 21, 28, 36, 43, 50, 58, 67, 79, 95, 116, 150, 206, 312, 668)
 CRFS = (*range(0, 61, 4), 63)
-_FORMAT = "yuv420p10le"
+PIXELS = "yuv420p10le"  # chroma is flat
 
 
 def encoder_step(crf: float) -> float:
@@ -35,6 +39,11 @@ def encoder_step(crf: float) -> float:
 def crf_of(step: float) -> int:
     """The crf, 1..63, whose quantiser step is nearest `step` codes."""
     return int(np.clip(np.rint(np.interp(step, _STEPS, CRFS)), 1, 63))
+
+
+def svt(preset: int) -> Coder:
+    """SVT-AV1 at a preset, 0 the slowest."""
+    return partial(encode_deep, preset=preset)
 
 
 def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
@@ -49,7 +58,7 @@ def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
     buffer = io.BytesIO()
     with av.open(buffer, "w", format="avif") as container:
         stream = container.add_stream("libsvtav1", rate=1)
-        stream.width, stream.height, stream.pix_fmt = width, height, _FORMAT
+        stream.width, stream.height, stream.pix_fmt = width, height, PIXELS
         stream.codec_context.color_range = 2  # full
         stream.codec_context.thread_count = 1
         stream.options = {
@@ -57,7 +66,7 @@ def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
         }  # fmt: skip
         with ordinary_scheduling():
             stream.codec_context.open()
-        frame = av.VideoFrame(width, height, _FORMAT)
+        frame = av.VideoFrame(width, height, PIXELS)
         frame.pts = 0
         for number, plane in enumerate(frame.planes):
             values = np.full((plane.height, plane.line_size // 2), FLAT, "<u2")

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.format.deep import MIME, TOP, crf_of, decode_deep, encode_deep
+from eigenfield.format.deep import MIME, TOP, Coder, crf_of, decode_deep
 from eigenfield.format.pictures import encode
 from eigenfield.format.precision import precision_codes, spread_precision
 from eigenfield.format.quantise import Affine
@@ -30,7 +30,7 @@ ROWS = 4096  # of a picture of several textures, at most
 
 
 def code_mean(
-    mean: NDArray[np.float32], step: float, preset: int, precision: NDArray[np.float32] | None = None
+    mean: NDArray[np.float32], step: float, coder: Coder, precision: NDArray[np.float32] | None = None
 ) -> tuple[NDArray[np.float32], PictureFile]:
     """(H, W, C) float32 as its file gives it back, and the file. One step for all channels. A photograph's means have
     the codes 0..TOP for 0..1; what a filter overshoots is cut off, for codes twice as coarse need 2 to 3 % more bytes.
@@ -49,13 +49,13 @@ def code_mean(
         unit = _unit(float(mean.min()), float(mean.max()))
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO)))
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
-    data = encode_deep(_stack(codes[None]), crf_of(step / float(affine.scale[0])), preset)
+    data = coder(_stack(codes[None]), crf_of(step / float(affine.scale[0])))
     stored = _unstack(decode_deep(data, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
     return values, PictureFile(data, MIME, 10, 1, affine, picture)
 
 
-def code_basis(basis: Basis, step: float, preset: int) -> Basis:
+def code_basis(basis: Basis, step: float, coder: Coder) -> Basis:
     """A basis of float textures (N, H, W, C) as its files give it back, uint16, with the files kept beside it.
 
     step: of the quantiser, in the values' unit.
@@ -69,7 +69,7 @@ def code_basis(basis: Basis, step: float, preset: int) -> Basis:
         part = slice(first, first + each)
         unit = _unit(float(values[part].min()), float(values[part].max()))
         codes = np.rint(values[part] / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
-        data = encode_deep(_stack(codes), crf_of(step / unit), preset)
+        data = coder(_stack(codes), crf_of(step / unit))
         stored[part], scale[part] = _unstack(decode_deep(data, "textures"), codes.shape), unit
         numbers = len(codes) * channels
         affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO)))
@@ -103,11 +103,11 @@ def coded_plane(
     mean: NDArray[np.float32],
     bases: tuple[Basis, ...],
     step: float,
-    preset: int,
+    coder: Coder,
     precision: NDArray[np.float32] | None = None,
 ) -> Plane:
     """A plane of coded bases with its mean coded, as its files give it back; see `code_mean`."""
-    values, file = code_mean(mean, step, preset, precision)
+    values, file = code_mean(mean, step, coder, precision)
     made = Plane(values, bases)
     keep_files(made, [file])
     return made
