@@ -83,6 +83,14 @@ def test_a_program_that_fails_later_is_replaced_with_a_warning(tmp_path, monkeyp
     assert "out of luck" in caplog.text
 
 
+def test_an_interrupted_program_is_no_failure(tmp_path, monkeypatch, caplog):
+    fake(tmp_path, monkeypatch, "exit 255")
+    monkeypatch.setattr(aom, "aom_program", lambda: str(tmp_path / "ffmpeg"))
+    with pytest.raises(KeyboardInterrupt):
+        aom.encode_aom(codes(), 30)
+    assert not caplog.records
+
+
 def test_a_program_that_leaves_nothing_is_not_used(tmp_path, monkeypatch):
     fake(tmp_path, monkeypatch, "exit 0")
     assert aom.aom_program() is None

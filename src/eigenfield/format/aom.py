@@ -19,6 +19,7 @@ log = logging.getLogger("eigenfield.encode")
 
 # 1 needs the same bytes in the same time, 3 about 2 % more in half of it (Shop's mean and textures)
 SPEED = 2
+STOPPED = 255  # the program's exit status when the key that stops us has stopped it too
 SPARE = 4  # SVT-AV1's preset for a picture on which the program fails
 _OPTIONS = (
     "-c:v", "libaom-av1", "-usage", "good", "-cpu-used", str(SPEED), "-tune", "psnr", "-b:v", "0", "-threads", "1",
@@ -42,7 +43,7 @@ def aom_program() -> str | None:
 
 def encode_aom(codes: NDArray[np.uint16], crf: int) -> bytes:
     """As `deep.encode_deep`, by libaom; by SVT-AV1, with a warning, where it fails. Raises ValueError where the machine
-    does not have it."""
+    does not have it, KeyboardInterrupt where the program was interrupted."""
     program = aom_program()
     if program is None:
         raise ValueError("no ffmpeg program with libaom")
@@ -62,6 +63,8 @@ def _run(program: str, codes: NDArray[np.uint16], crf: int) -> bytes:
         command = [program, "-loglevel", "error", *source, "-frames:v", "1", "-crf", str(crf), *_OPTIONS, str(file)]
         values = codes.astype("<u2").tobytes() + flat.tobytes()
         done = subprocess.run(command, input=values, capture_output=True, check=False)
+        if done.returncode == STOPPED:
+            raise KeyboardInterrupt
         if done.returncode:
             raise RuntimeError(" ".join(done.stderr.decode(errors="replace").split())[-200:] or str(done.returncode))
         return file.read_bytes()
