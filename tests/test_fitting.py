@@ -26,6 +26,7 @@ from eigenfield.fitting import (
     Target,
     code_plane,
     coded_psnr,
+    density_of,
     fit_plane,
     fitted_textures,
     open_shots,
@@ -432,7 +433,7 @@ def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fit
 def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, monkeypatch):
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
-    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "fit": "photographs"}
+    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=24)
     with caplog.at_level("INFO", "eigenfield.encode"):
         once = ef.encode(capture, **options, target=asked)
@@ -447,3 +448,22 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     caplog.clear()
     ef.encode(capture, **options, target=Target(size=1200))
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
+
+
+def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
+    folder = write_capture(tmp_path / "nine")
+    capture, proxy = ef.open_capture(folder), folder / "proxy.ply"
+    with caplog.at_level("INFO", "eigenfield.encode"):
+        near = ef.encode(capture, proxy, textures=2, target=Target(psnr=20))
+    assert "fitted again for quality" in caplog.text
+    default = ef.encode(capture, proxy, textures=2)
+    assert near.settings["atlas"] < default.settings["atlas"]
+
+
+def test_the_density_is_what_a_quality_pays_for():
+    found = [density_of(quality) for quality in (0, 60, 79, 89, 95, 100)]
+    assert found == sorted(found) and found[:2] == [0.9, 0.9] and found[-2:] == [1.5, 1.5]
+    assert Options(fit="photographs", preset="small").atlas_density == density_of(79)
+    assert Options(fit="photographs", quality=60).atlas_density == 0.9
+    assert Options(fit="photographs", quality=60, density=1.2).atlas_density == 1.2
+    assert Options(fit="none").atlas_density == 1.5

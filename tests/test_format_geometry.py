@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from coded_scenes import coded
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scenes import bumpy_square, row_grid, tiny_scene
 
 import eigenfield as ef
@@ -16,7 +18,7 @@ from eigenfield.format import parts, validate
 from eigenfield.format.coarse import coarse_mesh
 from eigenfield.format.container import parse_glb, read_file
 from eigenfield.format.geometry import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
-from eigenfield.format.relief_lattice import relief_lattice
+from eigenfield.format.relief_lattice import _spacing, relief_lattice
 from eigenfield.format.stored import cameras_stream, stream_of
 from eigenfield.mesh import Mesh
 from eigenfield.scene import Scene
@@ -74,6 +76,30 @@ def test_other_meshes_are_no_relief():
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
     assert relief_lattice(bent, row_grid(9), DEPTH_ERROR) is None
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(120, 3000), st.floats(0.3, 1), st.floats(0, 0.6), st.sampled_from([1, 2, 4]), st.integers(0, 2**32 - 1)
+)
+def test_columns_are_found_however_many_vertices_stand_between_them(columns, part, between, cells, seed):
+    """Rows of a canvas of so many columns that takes a part of the atlas; most flat places have vertices in every
+    second or fourth column alone; those of contours stand on quarters."""
+    rng = np.random.default_rng(seed)
+    wide = int(columns * part)
+    whole = np.concatenate([rng.integers(0, wide, 600), cells * rng.integers(0, wide // cells, 1400)])
+    contours = rng.integers(0, 4 * wide, int(between * 2000)) / 4
+    first = rng.uniform(0, 1 - part)
+    values = (first + (np.concatenate([whole, contours]) + 0.5) / columns).astype(np.float32).astype(np.float64)
+    found, near = 1 / _spacing(values) / columns, 0.02 / wide
+    assert min(abs(found * finer - 1) for finer in (1, 2, 4, 1 / 2, 1 / 4)) < near
+    assert abs(found - 1) < near or between > 0.2 or cells > 1  # else others are as good a guess
+
+
+def test_vertices_in_no_columns():
+    assert _spacing(np.random.default_rng(1).uniform(0, 1, 3000)) == 0
+    assert _spacing(np.full(100, 0.5)) == 0
+    assert _spacing(np.zeros(3)) == 0
 
 
 def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():

@@ -16,7 +16,7 @@ from eigenfield import __version__
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import OptionError
-from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, split_matrix
+from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, density_of, split_matrix
 from eigenfield.format.geometry import coded_cameras, coded_mesh
 from eigenfield.format.stored import stream_of
 from eigenfield.holdout import held_out_cameras
@@ -59,7 +59,7 @@ class Options:
 
     textures: int | None = None
     uv_ssim: float | None = None
-    density: float = DEFAULT_DENSITY
+    density: float | None = None
     atlas: int | tuple[int, int] | None = None
     align: str | None = None
     reference: str | None = None
@@ -86,7 +86,7 @@ class Options:
             raise OptionError(
                 "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
             )
-        check_density(self.density)
+        check_density(self.atlas_density)
         if self.harmonise is not None:
             check_model(self.harmonise)
         if self.atlas is not None:
@@ -110,6 +110,13 @@ class Options:
     def fit_quality(self) -> int:
         """At which quality a fit is coded, unless a target says otherwise."""
         return self.fit_preset.quality if self.quality is None else self.quality
+
+    @property
+    def atlas_density(self) -> float:
+        """Texels per photograph pixel, unless the atlas's size is given: of a fit what its quality pays for."""
+        if self.density is not None:
+            return self.density
+        return DEFAULT_DENSITY if self.fit == "none" else density_of(self.fit_quality)
 
     def _choose_fit(self) -> None:
         """Decide what `fit` is where it was not said, and raise OptionError for options that do not go with it."""
@@ -160,14 +167,15 @@ def check_options(capture: LightField | PhotoSet, options: Options) -> None:
 class Draft:
     """A scene without its textures.
 
-    whole: the proxy before it was simplified for a quality, None where it was not. cameras: all, as the file keeps
-    them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index of the reference camera. atlas:
-    width and height.
+    whole: the proxy as it was prepared; simplify: whether a quality decides what the mesh keeps of it. cameras: all, as
+    the file keeps them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index of the reference
+    camera. atlas: width and height.
     """
 
     capture: LightField
     options: Options
-    whole: Mesh | None
+    whole: Mesh
+    simplify: bool
     mesh: Mesh
     cameras: tuple[Camera, ...]
     view_plane: ViewPlane
@@ -204,11 +212,9 @@ class Draft:
         return len(stream_of(self.mesh) or b"")
 
     def at_quality(self, quality: int) -> Draft:
-        """The same with the mesh that it has at another quality."""
-        if self.whole is None or quality == self.options.fit_quality:
-            return self
+        """The same with the mesh and the atlas that it has at another quality."""
         options = replace(self.options, quality=quality, target=None)
-        return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.atlas, True)
+        return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.simplify)
 
     def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """Pixels and mask of an encoded camera, counted among those."""
@@ -272,8 +278,7 @@ def make_draft(
     centre = _reference(options.reference, names, coordinates, encoded)
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
-    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
-    return _draft(capture, mesh, options, held, centre, size, options.fit != "none" and triangles is None)
+    return _draft(capture, mesh, options, held, centre, options.fit != "none" and triangles is None)
 
 
 def _draft(
@@ -282,15 +287,14 @@ def _draft(
     options: Options,
     held: NDArray[np.bool_],
     centre: int,
-    size: tuple[int, int],
     simplify: bool,
 ) -> Draft:
     """The draft with a proxy that is prepared. simplify: a fit's, for its quality."""
-    mesh, cameras = whole, [view.camera.rounded() for view in capture.views]
+    mesh, cameras, encoded = whole, [view.camera.rounded() for view in capture.views], np.flatnonzero(~held)
+    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     if options.fit != "none":
         if simplify:
             texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
-            encoded = np.flatnonzero(~held)
             mesh = _slim(
                 capture.subset(encoded.tolist()), mesh, [cameras[i] for i in encoded],
                 int(np.searchsorted(encoded, centre)), options, texels,
@@ -302,7 +306,7 @@ def _draft(
     plane = fit_view_plane(cameras)
     coordinates = plane.coordinates([camera.centre for camera in cameras])
     return Draft(
-        capture, options, whole if simplify else None, mesh, tuple(cameras), plane, coordinates, held, centre, size
+        capture, options, whole, simplify, mesh, tuple(cameras), plane, coordinates, held, centre, size
     )  # fmt: skip
 
 
@@ -340,10 +344,11 @@ def _reference(
 def _atlas_size(options: Options, mesh: Mesh, camera: Camera, encoded: Sequence[Camera]) -> tuple[int, int]:
     if options.atlas is None:
         pixels = sum(one.width * one.height for one in encoded)
-        side = atlas_side(mesh, camera, options.density, pixels)
+        density = options.atlas_density
+        side = atlas_side(mesh, camera, density, pixels)
         reached = side * texels_per_pixel(mesh, camera)
-        if reached < 0.98 * options.density:
-            log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, options.density)
+        if reached < 0.98 * density:
+            log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, density)
         return side, side
     return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
 

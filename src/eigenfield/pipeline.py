@@ -65,6 +65,7 @@ __all__ = ["DEFAULT_DENSITY", "Options", "Target", "check_options", "encode", "o
 log = logging.getLogger("eigenfield.encode")
 
 MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
+DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer
 
 
 def encode(
@@ -73,7 +74,7 @@ def encode(
     *,
     textures: int | None = None,
     uv_ssim: float | None = None,
-    density: float = DEFAULT_DENSITY,
+    density: float | None = None,
     atlas: int | tuple[int, int] | None = None,
     triangles: int | None = None,
     align: str | None = None,
@@ -96,9 +97,9 @@ def encode(
     textures: N, at most one less than there are encoded cameras; None: by the number of cameras, without a fit 15.
     Of a fit a region with much of the error gets up to as many of its own.
     uv_ssim: instead, the smallest N whose UV measure reaches this. density: atlas texels per photograph pixel along
-    one axis, in the camera nearest the centre; the side is at most 4096, and the texels at most twice the
-    photographs' pixels. atlas: its side, or (width, height), outright. triangles: simplify the proxy to this many;
-    without it only a mesh that needs an atlas and has over 30,000, and for a
+    one axis, in the camera nearest the centre, at most 4096 a side and twice the photographs' pixels; None: 1.5, of a
+    fit what its quality pays for (`density_of`). atlas: its side, or (width, height), outright. triangles: simplify the
+    proxy to this many; without it only a mesh that needs an atlas and has over 30,000, and for a
     fit a relief, by what its pictures lose (`simplification`). align: "dis" or "tvl1", optical-flow alignment to
     the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic" (None), "lanczos" or "bilinear". harmonise: "gain" or
@@ -199,16 +200,20 @@ def _fitted(
 
 def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress | None) -> Scene:
     """The scene that reaches a target, or with a warning the nearest. A relief has the triangles that the preset's
-    quality pays for; where the target is met at a quality that pays for others, there is a second fit, on those."""
+    quality pays for, and the atlas its density; where the target is met at a quality that pays for others, there is a
+    second fit, on those."""
     with _fitted(draft, work, progress) as (coded, measured, shots):
         found, met = reach(target, coded, shots)
         other = draft.at_quality(found.quality)
-        again = abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
+        again = (
+            abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
+            or abs(other.atlas[0] / draft.atlas[0] - 1) >= DENSITY_SHARE
+        )
         if not again:
             scene = measured(found.result)
     if again:
-        words = "fitted again for quality %d: mesh %d bytes instead of %d"
-        log.info(words, found.quality, other.mesh_bytes, draft.mesh_bytes)
+        words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
+        log.info(words, found.quality, other.mesh_bytes, draft.mesh_bytes, *other.atlas, *draft.atlas)
         with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
             found, met = reach(target, coded, shots, found.quality)
             scene = measured(found.result)

@@ -81,11 +81,9 @@ Examples:
 @click.option(
     "--density",
     type=float,
-    default=1.5,
-    show_default=True,
     metavar="D",
     help="Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096, texels at "
-    "most twice the photographs' pixels).",
+    "most twice the photographs' pixels).  [default: 1.5; of a fit 0.9 to 1.5, what its quality pays for]",
 )
 @click.option("--atlas", callback=_atlas, metavar="N", help="Side of the atlas outright, or WIDTHxHEIGHT.")
 @click.option(
@@ -213,7 +211,7 @@ def command(
     frame: str | None,
     textures: int | None,
     uv_ssim: float | None,
-    density: float,
+    density: float | None,
     atlas: int | tuple[int, int] | None,
     triangles: int | None,
     align: str | None,

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from eigenfield.fitting.colour import split_matrix, to_rgb
 from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
-from eigenfield.fitting.planes import KINDS, PRESETS, Fits, Preset, byte_price, fitted_textures, open_fits
+from eigenfield.fitting.planes import (
+    KINDS,
+    PRESETS,
+    Fits,
+    Preset,
+    byte_price,
+    density_of,
+    fitted_textures,
+    open_fits,
+)
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.target import Target, reach, warn_of_miss
 
@@ -21,6 +30,7 @@ __all__ = [
     "byte_price",
     "code_plane",
     "coded_psnr",
+    "density_of",
     "fit_plane",
     "fitted_textures",
     "open_fits",

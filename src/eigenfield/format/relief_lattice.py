@@ -23,6 +23,10 @@ REACH = 2**20 - 1  # of lattice coordinates, either way
 OFF = 0.05  # pixels of the lattice by which vertices may be off the fitted camera
 WHOLE = 0.7  # of the vertices must stand on whole pixels
 FINE = 2  # binary digits that those of contours may have
+BINS, OVER = 2**16, 8  # of a chart's extent, in which columns are looked for; how much finer their number is looked at
+FEWEST_COLUMNS, MOST_COLUMNS = 16, 8192  # of a chart
+CLEAR = 0.75  # of the longest sum, for the coarsest columns
+STRAY = 6.0  # times what a sum of random turns has
 
 
 def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> tuple[Lattice, int] | None:
@@ -110,16 +114,26 @@ def _largest_chart(mesh: Mesh) -> NDArray[np.int64]:
 
 
 def _spacing(values: NDArray[np.float64]) -> float:
-    """How far neighbouring columns (or rows) of vertices are apart; 0 where they stand in none."""
-    places = np.unique(np.rint(values * 2**22)) / 2**22
-    apart = np.diff(places)
-    apart = apart[apart > 4 / 2**22]
-    if len(apart) < 8:
+    """How far neighbouring columns (or rows) of vertices are apart in texture coordinates; 0 where they stand in none.
+
+    The most vertices stand on whole columns where the sum of their turns exp(2 pi i n u), at n columns to the atlas, is
+    longest. Finer ones have sums as long: half a column is as far from none.
+    """
+    low, high = float(values.min()), float(values.max())
+    if len(values) < 16 or not high - low > 0:
         return 0.0
-    first = float(np.median(apart))
-    near = apart[np.abs(apart / first - 1) < 0.1]
-    columns = np.rint((places[-1] - places[0]) / float(near.mean()))
-    return float((places[-1] - places[0]) / columns)
+    bins = np.bincount(((values - low) / (high - low) * (BINS - 1)).round().astype(np.int64), minlength=BINS)
+    length = np.abs(np.fft.rfft(bins, OVER * BINS))[: OVER * MOST_COLUMNS] / len(values)
+    length[: OVER * FEWEST_COLUMNS] = 0
+    first = int(np.argmax(length > CLEAR * length.max()))
+    if not length[first] > STRAY / np.sqrt(len(values)):
+        return 0.0
+    near = first + int(np.argmax(length[first : first + OVER]))
+    columns = near * (BINS - 1) / (OVER * BINS) / (high - low)
+    for step in (0.1, 0.01, 0.001):  # of a column over the whole extent
+        tried = columns + np.arange(-10, 11) * step / (high - low)
+        columns = float(tried[np.argmax(np.abs(np.exp(2j * np.pi * np.outer(tried, values)).mean(axis=1)))])
+    return 1 / columns
 
 
 def _camera_of(places: NDArray[np.float64], pixels: NDArray[np.float64]) -> NDArray[np.float64] | None:
