@@ -65,6 +65,7 @@ __all__ = ["DEFAULT_DENSITY", "Options", "Target", "check_options", "encode", "o
 log = logging.getLogger("eigenfield.encode")
 
 MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
+NEAR = 3  # qualities beside the preset's that have as good as its mesh and atlas
 DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer
 
 
@@ -204,7 +205,8 @@ def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress
     second fit, on those."""
     with _fitted(draft, work, progress) as (coded, measured, shots):
         found, met = reach(target, coded, shots)
-        other = draft.at_quality(found.quality)
+        near = abs(found.quality - draft.options.fit_quality) <= NEAR
+        other = draft if near else draft.at_quality(found.quality)
         again = (
             abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
             or abs(other.atlas[0] / draft.atlas[0] - 1) >= DENSITY_SHARE
