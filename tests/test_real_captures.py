@@ -11,6 +11,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.evaluation import read_circles
+from eigenfield.format import parts
 
 pytestmark = pytest.mark.slow
 
@@ -34,6 +35,13 @@ def test_tarot_before_coding(data, hold_out, part, whole, outside):
     assert figures["psnr"] >= whole and figures["outside"]["psnr"] >= outside
 
 
+def call(*words):
+    """What the program says to standard output."""
+    done = subprocess.run([sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
 CAPTURES = {
     "tarot_5x4_1024": (
         ["--calibration", "calibration/refined.json"], "../tarot_17x17_512/calibration/proxy.ply",
@@ -48,12 +56,6 @@ def test_the_command_line_on_a_capture(data, tmp_path, name):
     where, proxy, options, least, coverage = CAPTURES[name]
     folder = data / name
     where = [str(folder / word) if "/" in word else word for word in where]
-
-    def call(*words):
-        done = subprocess.run([sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
-
     scene = tmp_path / "scene.glb"
     call("inspect", folder, *where, "--proxy", folder / proxy, "--overlay", tmp_path / "overlay.png")
     call("encode", folder, *where, "--proxy", folder / proxy, "-o", scene, *options)
@@ -63,6 +65,17 @@ def test_the_command_line_on_a_capture(data, tmp_path, name):
     assert figures["image"]["encoded"]["coverage"] > coverage
     assert figures["bytes"]["total"] == scene.stat().st_size
     call("render", scene, "--at", "0.2,0.1", "-o", tmp_path / "view.png")
+
+
+def test_photographs_in_one_small_file_out(data, tmp_path):
+    """Nothing but photographs and their own parameters: the proxy is estimated, found to be a relief, simplified; the
+    textures are fitted to it."""
+    folder, scene = data / "hci_antinous_9x9", tmp_path / "scene.glb"
+    call("encode", folder, "-o", scene, "--preset", "small", "-q")
+    assert "no findings" in call("validate", scene)
+    assert scene.stat().st_size < 18_000 and dict(parts(scene))["mesh"] < 6_500
+    figures = json.loads(call("evaluate", scene, folder, "--json"))["image"]["encoded"]
+    assert figures["psnr"] > 37.5 and figures["psnr_luma"] > 38.5 and figures["coverage"] > 0.999
 
 
 def test_lenses_are_removed(data):
