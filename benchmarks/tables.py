@@ -227,7 +227,8 @@ def between_marks(text: str, made: str) -> str:
 
 def main() -> None:
     made = {
-        README: f"## Figures\n\n{quality()}{reconstruction()}{evaluation_tables.brief()}{encoding()}{drawing()}",
+        README: f"## Figures\n\n{rate_tables.brief()}{quality()}{reconstruction()}{evaluation_tables.brief()}"
+        f"{encoding()}{drawing()}",
         EVALUATION: rate_tables.section() + evaluation_tables.page(),
     }
     for path, figures in made.items():
