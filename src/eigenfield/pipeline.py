@@ -176,13 +176,7 @@ def _fitted(
     with (
         open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
         open_fits(
-            shots,
-            draft.density,
-            component_count(asked, len(used)),
-            options.fit_preset,
-            KINDS[options.fit_planes],
-            work,
-            progress,
+            shots, component_count(asked, len(used)), options.fit_preset, KINDS[options.fit_planes], work, progress
         ) as fits,
     ):
         if warn:
