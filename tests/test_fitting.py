@@ -18,6 +18,7 @@ from eigenfield.cli import group, main
 from eigenfield.errors import OptionError
 from eigenfield.evaluation import evaluate
 from eigenfield.fitting import (
+    KINDS,
     PRESETS,
     Pixels,
     PlaneSettings,
@@ -36,6 +37,7 @@ from eigenfield.fitting.colour import LUMA, split_matrix, to_rgb
 from eigenfield.fitting.kernels import bend, draw, put_back, squares_of
 from eigenfield.fitting.model import Block, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
+from eigenfield.fitting.planes import scaled
 from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.format import encode_scene, parts, validate
 from eigenfield.format.deep import svt
@@ -467,3 +469,11 @@ def test_the_density_is_what_a_quality_pays_for():
     assert Options(fit="photographs", quality=60).atlas_density == 0.9
     assert Options(fit="photographs", quality=60, density=1.2).atlas_density == 1.2
     assert Options(fit="none").atlas_density == 1.5
+
+
+def test_chroma_gets_less_dense_later_than_luma():
+    luma, chroma = KINDS["luma-chroma"]
+    for density, share in ((0.9, 1.1 / 0.9), (1.2, 1.4 / 1.2), (1.4, 1.5 / 1.4), (1.5, 1.0), (2.0, 1.0), (0.01, 2.0)):
+        assert luma.settings((800, 960), density, 20).mean == (800, 960)
+        found = chroma.settings((800, 960), density, 20)
+        assert found.mean == scaled((800, 960), 0.5 * share) and found.grid == scaled((800, 960), 0.3 * share)

@@ -216,6 +216,11 @@ class Draft:
         options = replace(self.options, quality=quality, target=None)
         return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.simplify)
 
+    @cached_property
+    def density(self) -> float:
+        """The atlas's texels per pixel of the reference photograph, along one axis."""
+        return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, self.cameras[self.reference])
+
     def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """Pixels and mask of an encoded camera, counted among those."""
         picture = self._shown.photograph(index)
@@ -230,11 +235,10 @@ class Draft:
         to_rgb: NDArray[np.float32] | None = None,
     ) -> Scene:
         """The scene with these planes. own: what the settings say of how they were made."""
-        density = float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, self.cameras[self.reference])
         settings = {
             "textures": max(sum(basis.count for basis in one.bases) for one in planes),
             "atlas": list(self.atlas),
-            "density": round(density, 4),
+            "density": round(self.density, 4),
             "holdOut": self.options.hold_out,
             **own,
             **_scale(self.capture, self.options.metres_per_unit),

@@ -176,7 +176,13 @@ def _fitted(
     with (
         open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
         open_fits(
-            shots, component_count(asked, len(used)), options.fit_preset, KINDS[options.fit_planes], work, progress
+            shots,
+            draft.density,
+            component_count(asked, len(used)),
+            options.fit_preset,
+            KINDS[options.fit_planes],
+            work,
+            progress,
         ) as fits,
     ):
         if warn:

@@ -23,6 +23,7 @@ from eigenfield.scene import Plane
 log = logging.getLogger("eigenfield.fit")
 
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
+DENSEST = 1.5  # atlas texels per photograph pixel along one axis
 SIDE_STEP = 16  # atlas sides are multiples of this
 # SVT-AV1's preset. 2 takes longer, and needs about 8 % more bytes for the same textures, for the same means 1 % fewer
 # (Tarot) to 3 % more (Shop); 5 needs 3 % more for means, 6 needs 7 % more
@@ -33,7 +34,8 @@ ENCODER = svt(4)
 class Kind:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
-    matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis.
+    matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis; ahead:
+    as if the atlas had so many texels a pixel more, up to DENSEST.
     textures: of the number asked for. mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's
     density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the pictures are
     steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras.
@@ -47,13 +49,16 @@ class Kind:
     mean_step: float
     texture_step: float
     thinned: bool
+    ahead: float
 
-    def settings(self, size: tuple[int, int], textures: int) -> PlaneSettings:
-        """Of a fit. size: (rows, columns) of the atlas. textures: luma's number, also of each region's own."""
+    def settings(self, size: tuple[int, int], density: float, textures: int) -> PlaneSettings:
+        """Of a fit. size: (rows, columns) of the atlas; density: its texels per photograph pixel along one axis.
+        textures: luma's number, also of each region's own."""
         count = round(self.textures * textures)
-        return PlaneSettings(
-            self.matrix, scaled(size, self.mean_share), scaled(size, self.texture_share), count, count
-        )  # fmt: skip
+        wanted = max(min(density + self.ahead, DENSEST), density)
+        finer = min(wanted / density, 1 / self.mean_share)
+        mean, grid = scaled(size, finer * self.mean_share), scaled(size, finer * self.texture_share)
+        return PlaneSettings(self.matrix, mean, grid, count, count)
 
     def rate(self, step: float, patient: bool = False) -> Rate:
         """step: see `step_of`. patient: coded by libaom, which the machine must have."""
@@ -66,10 +71,10 @@ class Kind:
 _LUMA, _CHROMA = split_matrix()
 KINDS = {
     "luma-chroma": (
-        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False),
-        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True),
+        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0),
+        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
     ),
-    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False),),
+    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0),),
 }
 HALF_LEVEL = 0.002  # grey level, in the photographs' range
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
@@ -127,19 +132,20 @@ class Fits:
 @contextlib.contextmanager
 def open_fits(
     shots: Shots,
+    density: float,
     textures: int,
     preset: Preset,
     kinds: Sequence[Kind] = KINDS["luma-chroma"],
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Fits]:
-    """Planes fitted to `shots`, which stay open. textures: luma's number."""
+    """Planes fitted to `shots`, which stay open. density: of their atlas. textures: luma's number."""
     size = shots.surface.size
     with thinned(shots, 2 if len(shots) >= THINNED_FROM else 1, work) as some:
 
         def fit(kind: Kind) -> OpenFit:
             pixels = Pixels(shots, some if kind.thinned else shots, some)
-            return fit_plane(pixels, kind.settings(size, textures), kind.name, preset.rounds, work, progress)
+            return fit_plane(pixels, kind.settings(size, density, textures), kind.name, preset.rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:
@@ -157,7 +163,7 @@ def density_of(quality: int) -> float:
     """Atlas texels per photograph pixel along one axis that a quality pays for: the coarser the codes, the less is left
     of what a denser atlas could hold. Least bytes for the same luma on Tarot at 0.9 (quality 62), 1.05 (68) and 1.35
     (86), on Shop at 1.25 (80), on Antinous at 1.0 (75)."""
-    return float(np.clip(0.9 + 0.6 * (quality - 60) / 35, 0.9, 1.5))
+    return float(np.clip(0.9 + 0.6 * (quality - 60) / 35, 0.9, DENSEST))
 
 
 def byte_price(quality: int) -> float:
