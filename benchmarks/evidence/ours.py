@@ -22,7 +22,7 @@ from eigenfield.rendering import Renderer
 
 Fit = tuple[Options, Sequence[int]]  # and the qualities at which it is coded, the same for all captures
 
-QUALITIES: tuple[Fit, ...] = ((Options(), (70, 84, 91, 95)),)
+QUALITIES: tuple[Fit, ...] = ((Options(), (84, 91, 95)), (Options(preset="small", quality=70), (70,)))
 QUICK_QUALITIES: tuple[Fit, ...] = ((Options(), (84, 91)),)
 
 Setting = tuple[float, int | None, int, int]
