@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from evaluation_tables import NONE, newest, origin, percent, table
@@ -34,10 +34,7 @@ def brief() -> str:
     for name, one in captures.items():
         mine, *others = one["curves"]
         point = next(p for p in mine["points"] if p["parameter"] == BALANCED)
-        against = [
-            " / ".join(_saved(point, next((o for o in others if o["name"] == label), None), key) for key in KEYS)
-            for label in (ANCHOR, FASTER)
-        ]
+        against = [" / ".join(_saved(point, _curve(others, label), key) for key in KEYS) for label in (ANCHOR, FASTER)]
         rows.append([
             f"`{name}`", str(one["views"]), f"{point['bytes'] / 1e3:.0f}",
             f"{point['psnr']:.2f} / {point['psnr_luma']:.2f}", f"{point['ssim']:.3f}", *against,
@@ -100,12 +97,17 @@ def _outside(figures: Mapping[str, Any]) -> str:
     return NONE if not found else _both(found)
 
 
+def _curve(peers: Sequence[Mapping[str, Any]], name: str) -> Mapping[str, Any] | None:
+    """A peer's curve, None where it was not measured."""
+    return next((one for one in peers if one["name"] == name), None)
+
+
 def _points(captures: Mapping[str, Any]) -> str:
     """Each of our points, and what the anchor needs for the same figure."""
     rows = []
     for name, one in captures.items():
         mine, *others = one["curves"]
-        anchor = next((other for other in others if other["name"] == ANCHOR), None)
+        anchor = _curve(others, ANCHOR)
         rows += [_row(f"`{name}`", point, anchor) for point in mine["points"]]
         patient = one.get("best") or {"points": []}
         rows += [_row(f"`{name}`, `best`", point, anchor) for point in patient["points"]]

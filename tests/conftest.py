@@ -32,6 +32,22 @@ def good() -> dict[str, bytes]:
     return {codec: encode_scene(scene, codec=codec) for codec in CODECS}
 
 
+@pytest.fixture(scope="session")
+def fitted(tmp_path_factory) -> tuple[Path, Path]:
+    """A folder of nine photographs and their proxy, and the file that they were fitted to."""
+    from captures import write_capture
+
+    from eigenfield.cli import main
+
+    folder = write_capture(tmp_path_factory.mktemp("fit") / "nine")
+    output = folder.parent / "fitted.glb"
+    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q"]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "92"])
+        main()
+    return folder, output
+
+
 @pytest.fixture(scope="module")
 def context():
     """An OpenGL context; tests that need it are skipped where there is none."""

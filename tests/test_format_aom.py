@@ -8,7 +8,7 @@ import pytest
 
 from eigenfield.fitting import planes
 from eigenfield.format import aom
-from eigenfield.format.deep import TOP, decode_deep, encode_deep
+from eigenfield.format.deep import SVT, TOP, decode_deep, encode_deep
 
 HAS_AOM = aom.aom_program() is not None
 
@@ -79,7 +79,7 @@ def test_a_program_that_fails_later_is_replaced_with_a_warning(tmp_path, monkeyp
     fake(tmp_path, monkeypatch, "echo out of luck >&2; exit 1")
     monkeypatch.setattr(aom, "aom_program", lambda: str(tmp_path / "ffmpeg"))
     data = aom.encode_aom(codes(), 30)
-    assert data == encode_deep(codes(), 30, aom.SPARE)
+    assert data == SVT(codes(), 30)
     assert "out of luck" in caplog.text
 
 
@@ -100,4 +100,4 @@ def test_the_best_preset_alone_is_patient():
     assert [name for name, preset in planes.PRESETS.items() if preset.patient] == ["best"]
     rate = planes.KINDS["luma-chroma"][0].rate(0.01, patient=True)
     assert rate.coder is aom.encode_aom
-    assert rate.trial is planes.ENCODER
+    assert rate.trial is SVT

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
+from eigenfield.draft import DEFAULT_PRESET
 from eigenfield.format import parts
 from eigenfield.parallel import parallel_stream
 from eigenfield.pipeline import Options, open_fitted
@@ -55,7 +56,7 @@ def fitted(
     names = [light_field.names[index] for index in order]
     fits: dict[str, dict[str, Any]] = {}
     for options, some in asked:
-        preset = options.preset or "balanced"
+        preset = options.preset or DEFAULT_PRESET
         started = time.perf_counter()
         with open_fitted(light_field, ready.mesh, options, work=ready.work) as coded:
             fit = time.perf_counter() - started

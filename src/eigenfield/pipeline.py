@@ -183,7 +183,7 @@ def _fitted(
             KINDS[options.fit_planes],
             work,
             progress,
-        ) as fits,
+        ) as fits,  # fmt: skip
     ):
         if warn:
             apart = fits.planes[0][1].mean_alone
@@ -192,10 +192,8 @@ def _fitted(
         def coded(quality: int) -> Scene:
             coder = {"coder": "libaom"} if fits.patient else {}
             own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": fits.reached()}}
-            planes, matrix = (
-                fits.coded(quality, draft.grid, progress),
-                None if options.fit_planes == "rgb" else to_rgb(),
-            )
+            planes = fits.coded(quality, draft.grid, progress)
+            matrix = None if options.fit_planes == "rgb" else to_rgb()
             return draft.scene(tuple(planes.values()), own, to_rgb=matrix)
 
         def measured(scene: Scene) -> Scene:

@@ -16,7 +16,7 @@ from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_pl
 from eigenfield.fitting.seen import mean_precision
 from eigenfield.fitting.shots import Shots, thinned
 from eigenfield.format.aom import aom_program, encode_aom
-from eigenfield.format.deep import SMALLEST, encoder_step, svt
+from eigenfield.format.deep import SMALLEST, SVT, encoder_step
 from eigenfield.progress import Progress
 from eigenfield.scene import Plane
 
@@ -25,9 +25,6 @@ log = logging.getLogger("eigenfield.fit")
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
 DENSEST = 1.5  # atlas texels per photograph pixel along one axis
 SIDE_STEP = 16  # atlas sides are multiples of this
-# SVT-AV1's preset. 2 takes longer, and needs about 8 % more bytes for the same textures, for the same means 1 % fewer
-# (Tarot) to 3 % more (Shop); 5 needs 3 % more for means, 6 needs 7 % more
-ENCODER = svt(4)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,8 +61,8 @@ class Kind:
         """step: see `step_of`. patient: coded by libaom, which the machine must have."""
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
         if patient:
-            return Rate(mean_step, texture_step, encode_aom, ENCODER)
-        return Rate(mean_step, texture_step, ENCODER)
+            return Rate(mean_step, texture_step, encode_aom, SVT)
+        return Rate(mean_step, texture_step, SVT)
 
 
 _LUMA, _CHROMA = split_matrix()

@@ -13,14 +13,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.format.deep import FLAT, PIXELS, SMALLEST, encode_deep
+from eigenfield.format.deep import FLAT, PIXELS, SMALLEST, SVT
 
 log = logging.getLogger("eigenfield.encode")
 
 # 1 needs the same bytes in the same time, 3 about 2 % more in half of it (Shop's mean and textures)
 SPEED = 2
 STOPPED = 255  # the program's exit status when the key that stops us has stopped it too
-SPARE = 4  # SVT-AV1's preset for a picture on which the program fails
 _OPTIONS = (
     "-c:v", "libaom-av1", "-usage", "good", "-cpu-used", str(SPEED), "-tune", "psnr", "-b:v", "0", "-threads", "1",
     "-still-picture", "1", "-color_range", "pc", "-f", "avif",
@@ -51,7 +50,7 @@ def encode_aom(codes: NDArray[np.uint16], crf: int) -> bytes:
         return _run(program, codes, crf)
     except (OSError, RuntimeError) as error:
         log.warning("%s failed, SVT-AV1 codes a picture in its place: %s", program, error)
-        return encode_deep(codes, crf, SPARE)
+        return SVT(codes, crf)
 
 
 def _run(program: str, codes: NDArray[np.uint16], crf: int) -> bytes:
