@@ -160,7 +160,7 @@ def density_of(quality: int) -> float:
     """Atlas texels per photograph pixel along one axis that a quality pays for: the coarser the codes, the less is left
     of what a denser atlas could hold. Least bytes for the same luma on Tarot at 0.9 (quality 62), 1.05 (68) and 1.35
     (86), on Shop at 1.25 (80), on Antinous at 1.0 (75)."""
-    return float(np.clip(0.9 + 0.6 * (quality - 60) / 35, 0.9, DENSEST))
+    return float(np.clip(0.9 + 0.6 * (quality - 60) / 31, 0.9, DENSEST))
 
 
 def byte_price(quality: int) -> float:
