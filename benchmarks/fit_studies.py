@@ -69,13 +69,21 @@ def _whole(mesh: Any, cameras: Any, reference: int, *_: Any) -> Any:
 
 
 def _no_rounds() -> contextlib.AbstractContextManager[Any]:
-    few = {name: replace(one, rounds=0) for name, one in planes.PRESETS.items()}
-    return patch.dict(planes.PRESETS, few)
+    none = {name: replace(one, rounds=0) for name, one in planes.PRESETS.items()}
+    stack = contextlib.ExitStack()
+    stack.enter_context(patch.dict(planes.PRESETS, none))
+    stack.enter_context(patch.object(planes, "FEW_ROUNDS", 0))
+    return stack
+
+
+def _trusting() -> contextlib.AbstractContextManager[Any]:
+    return patch.object(planes, "doubtable", lambda shots, _: contextlib.nullcontext(shots))
 
 
 LEVERS = {
     "all": Lever("all on"),
     "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
+    "doubt": Lever("pixels far off count as much as others", _trusting),
     "loop": Lever("open loop: weights and mean not fitted to the coded textures", coding=_open_loop),
     "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=Options(planes="rgb")),
     "dense": Lever(

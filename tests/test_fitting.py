@@ -30,9 +30,10 @@ from eigenfield.fitting import (
     thinned,
 )
 from eigenfield.fitting.colour import LUMA, split_matrix, to_rgb
-from eigenfield.fitting.kernels import bend, draw, put_back, squares_of
+from eigenfield.fitting.kernels import bend, distrust, draw, put_back, squares_of
 from eigenfield.fitting.model import Block, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
+from eigenfield.fitting.shots import doubtable
 from eigenfield.fitting.solve import fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.format import encode_scene, parts, validate
 from eigenfield.format.deep import svt
@@ -107,12 +108,13 @@ def test_drawing_and_its_transpose(height, width, channels, seed):
     covered = places[..., 0] >= 0
     texture = random.normal(size=(channels, height, width)).astype(np.float32)
     image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
-    weight = random.uniform(0, 1, (7, 9)).astype(np.float32)
+    codes = random.integers(0, 256, (7, 9)).astype(np.uint8)
+    weight = codes / np.float32(255)
     drawn, back = np.zeros_like(image), np.zeros_like(texture)
     draw(places, size, texture, np.float32(1), drawn)
-    put_back(places, size, image, weight, back)
+    put_back(places, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
-    squares, total = squares_of(places, drawn, weight)
+    squares, total = squares_of(places, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
     ones = np.zeros_like(drawn)
@@ -209,6 +211,38 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
     assert top <= 24 and left <= 24 and bottom >= 40 and right >= 40, region.rectangle  # all of it, little else
     assert region.textures.shape == (5, 3, bottom - top, right - left) and (bottom - top) * (right - left) < 0.3 * 64**2
     assert fit.uncoded > alone.uncoded + 3
+
+
+def test_pixels_far_off_count_for_less(world):
+    shots, _, _ = world
+    random = np.random.default_rng(2)
+    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
+    spoiled = [random.random(picture.shape[:2]) < 0.002 for picture in pictures]
+    for picture, glints in zip(pictures, spoiled, strict=True):
+        picture[glints] = 1.0
+
+    def reached(work: Shots) -> float:
+        model = fit_plane(Pixels(glinting, work, work), settings_of(), "test", 4).model
+        found = residual(shots, model)
+        return psnr_of(found.squares, found.pixels, 3)
+
+    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as glinting:
+        with doubtable(glinting) as doubted:
+            robust = reached(doubted)
+            weights = np.stack([doubted.weight(i) for i in range(9)])
+            covered = np.stack([doubted.places(i)[..., 0] >= 0 for i in range(9)])
+        assert robust > reached(glinting) + 0.7
+    glints = np.stack(spoiled)
+    assert np.median(weights[glints & covered]) < 128 and np.median(weights[~glints & covered]) > 240
+
+
+def test_what_a_pixel_counts_for():
+    image = np.array([[[0.0, 0.3, 0.1]], [[0.0, 0.4, 0.0]]], np.float32)
+    out = np.zeros((1, 3), np.uint8)
+    distrust(image, np.zeros((0, 0), np.uint8), np.float32(0.25), out)
+    assert out.tolist() == [[255, 128, 245]]  # 1 / (1 + e^2 / 0.25)
+    distrust(image, np.array([[0, 255, 100]], np.uint8), np.float32(0.25), out)
+    assert out.tolist() == [[0, 128, 96]]
 
 
 def test_components_that_are_not_worth_their_bytes_are_left_out(world):

@@ -115,7 +115,7 @@ def encode(
     until the file reaches it, with a second fit where another mesh belongs to it; where none does, the nearest, with a
     warning. planes: "luma-chroma" (None), or "rgb", one
     plane for all of a fit, as the paper has it. keep_maps: folder for the filled maps and visibility as pictures. work:
-    folder for scratch files (11 bytes a pixel; 4 bytes x channels x cameras x texels).
+    folder for scratch files (up to 17 bytes a pixel; 4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """

@@ -1,8 +1,9 @@
 """The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
 
 Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
-weights, in turns, until a round gains less than `STOP`. Then closed loop, at any rates: the textures are coded, weights
-and mean are fitted again to what the coded ones draw, and the mean is coded last.
+weights, in turns, until a round changes less than `STOP`; from the second round on pixels count less the farther they
+are from what is drawn (`DOUBT`). Then closed loop, at any rates: the textures are coded, weights and mean are fitted
+again to what the coded ones draw, and the mean is coded last.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ from eigenfield.scene import Basis, Plane
 
 log = logging.getLogger("eigenfield.fit")
 
-STOP = 0.05  # dB that a round must gain for another to follow
+STOP = 0.05  # dB by which a round must change the pictures for another to follow
+DOUBT = 4.0  # times what the round before left, root mean square: an error that makes a pixel count for half
 MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
 TEXTURE_STEPS = 5
 WEIGHT_STEPS = 4
@@ -73,7 +75,7 @@ class Rate:
 
 @dataclass(frozen=True, eq=False)
 class Pixels:
-    """Those of all photographs, and those that mean and textures, and weights, are fitted to (see `thinned`)."""
+    """Those of all photographs; those (`thinned`, `doubtable`) that mean and textures, and weights are fitted to."""
 
     every: Shots
     fitted: Shots
@@ -134,16 +136,17 @@ def fit_plane(
         whiten(model, scales)
         _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
     tick()
-    reached = -math.inf
+    reached, half = -math.inf, None
     for number in range(rounds if count else 0):
-        left = residual(fitted, model)
+        left = residual(fitted, model, half=half)
         before, reached = reached, psnr_of(left.squares, left.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
-        if reached - before < STOP:
+        if abs(reached - before) < STOP:
             break
         fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
-        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS, half)
+        half = DOUBT**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
     fill_unseen(model, scales)

@@ -97,16 +97,22 @@ def draw(places, size, texture, sign, image):
                             drawn[k * area + into] += sign * d[v] * a[u] * value
 
 
+@kernel(inline=True)
+def part_of(weight, row, pixel):
+    """What a pixel counts for, 0 to 1. weight (h, w) uint8, 255 for whole; (0, 0): all do."""
+    return np.float32(weight[row, pixel]) * np.float32(1 / 255) if weight.shape[0] > 0 else np.float32(1)
+
+
 @kernel()
 def put_back(places, size, image, weight, out):
-    """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight (h, w) float32; (0, 0): ones."""
+    """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
     channels, height, width = out.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
-    flat, plane, weighed = out.reshape(-1), height * width, weight.shape[0] > 0
+    flat, plane = out.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
     for row in range(places.shape[0]):
         for pixel in range(places.shape[1]):
-            w = weight[row, pixel] if weighed else np.float32(1)
+            w = part_of(weight, row, pixel)
             if places[row, pixel, 0] < 0 or w <= 0:
                 continue
             left, top, a, d = footprint(places[row, pixel], across, down, width, height)
@@ -125,13 +131,12 @@ def put_back(places, size, image, weight, out):
 
 @kernel()
 def squares_of(places, image, weight):
-    """Over the covered pixels: the sum of w image^2, and of w. weight (h, w) float32, or (0, 0): ones."""
+    """Over the covered pixels: the sum of w image^2, and of w. weight: see `part_of`."""
     squares, total = 0.0, 0.0
-    weighed = weight.shape[0] > 0
     for row in range(places.shape[0]):
         line_squares, line_total = np.float32(0), np.float32(0)
         for pixel in range(places.shape[1]):
-            w = weight[row, pixel] if weighed else np.float32(1)
+            w = part_of(weight, row, pixel)
             if places[row, pixel, 0] < 0 or w <= 0:
                 continue
             for k in range(image.shape[0]):
@@ -140,6 +145,19 @@ def squares_of(places, image, weight):
         squares += np.float64(line_squares)
         total += np.float64(line_total)
     return squares, total
+
+
+@kernel()
+def distrust(image, weight, half, out):
+    """out (h, w) uint8 = weight times 1 / (1 + e^2 / half), the weight of Cauchy's likelihood for an error of e, the
+    channels of image (C, h, w) together. weight: see `part_of`. half: the squared error of pixels that count half."""
+    for row in range(out.shape[0]):
+        for pixel in range(out.shape[1]):
+            square = np.float32(0)
+            for k in range(image.shape[0]):
+                square += image[k, row, pixel] * image[k, row, pixel]
+            trusted = part_of(weight, row, pixel) / (np.float32(1) + square / half)
+            out[row, pixel] = np.uint8(np.float32(255) * trusted + np.float32(0.5))
 
 
 @kernel()

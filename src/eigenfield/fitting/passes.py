@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.fitting.kernels import aim, draw, put_back, squares_of
+from eigenfield.fitting.kernels import aim, distrust, draw, put_back, squares_of
 from eigenfield.fitting.model import COLUMNS, Composer, Model, sums_of
 from eigenfield.fitting.shots import Shots
 from eigenfield.parallel import parallel_map, pieces
@@ -34,8 +34,8 @@ class Look:
     """What a pass brings: sums over the cameras of G^T w (photograph - drawn), or of G^T w drawn.
 
     mean: as the model's. textures: for each block (n, C, rows, columns). weights: for each block (Ne, n).
-    squares: (Ne,) of each camera, sum of w (photograph - drawn)^2. pixels: (Ne,), sum of w; both zero without
-    photographs.
+    squares: (Ne,) of each camera, sum of m (photograph - drawn)^2, m being its mask. pixels: (Ne,), sum of m; both zero
+    without photographs.
     """
 
     mean: NDArray[np.float32]
@@ -55,12 +55,14 @@ def look(
     photographs: bool,
     wanted: tuple[bool, bool, bool],
     composer: Composer | None = None,
+    half: float | None = None,
 ) -> Look:
     """Draw every camera from a mean and textures (None: nothing) with weights, which need not be the model's own.
 
     photographs: whether they are compared with (the residual goes back), or what is drawn goes back itself. wanted:
     which of mean, textures and weights to bring; the textures asked of go with the model's weights, the weights with
-    its textures. composer: draw exactly as the renderers do, mean and textures both given.
+    its textures. composer: draw exactly as the renderers do, mean and textures both given. half: from here on
+    pixels of `doubtable` shots count for less the farther they are off (`kernels.distrust`); None: as before.
     """
     for_mean, for_textures, for_weights = wanted
     blocks, size = model.blocks, shots.surface.size
@@ -102,7 +104,9 @@ def look(
                     if sums is not None:
                         draw(places, size, sums[at], sign, image)
                 if photographs:
-                    squares[index], pixels[index] = squares_of(places, image, weight)
+                    squares[index], pixels[index] = squares_of(places, image, shots.mask(index))
+                if half is not None and shots.doubts is not None:
+                    distrust(image, shots.mask(index), np.float32(max(half, 1e-12)), weight)
                 if for_mean:
                     put_back(places, size, image, weight, added)
                 if for_coarse:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from eigenfield.fitting.colour import split_matrix
 from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane, price_of
 from eigenfield.fitting.seen import mean_precision
-from eigenfield.fitting.shots import Shots, thinned
+from eigenfield.fitting.shots import Shots, doubtable, thinned
 from eigenfield.format.aom import aom_program, encode_aom
 from eigenfield.format.deep import SMALLEST, SVT, encoder_step
 from eigenfield.progress import Progress
@@ -78,11 +78,13 @@ TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
+FEW_ROUNDS = 4  # at most, or the preset's, for fewer cameras: they take longer to settle, and a round is cheap
 
 
 @dataclass(frozen=True)
 class Preset:
-    """What a fit aims at. quality: 0 to 100. rounds: at most. patient: coded by libaom where the machine has it."""
+    """What a fit aims at. quality: 0 to 100. rounds: at most (see FEW_ROUNDS). patient: coded by libaom where there is
+    one."""
 
     quality: int
     rounds: int
@@ -138,11 +140,16 @@ def open_fits(
 ) -> Iterator[Fits]:
     """Planes fitted to `shots`, which stay open. density: of their atlas. textures: luma's number."""
     size = shots.surface.size
-    with thinned(shots, 2 if len(shots) >= THINNED_FROM else 1, work) as some:
+    few = len(shots) < THINNED_FROM
+    rounds = max(preset.rounds, FEW_ROUNDS) if few else preset.rounds
+    with contextlib.ExitStack() as kept:
+        some = kept.enter_context(thinned(shots, 1 if few else 2, work))
 
         def fit(kind: Kind) -> OpenFit:
-            pixels = Pixels(shots, some if kind.thinned else shots, some)
-            return fit_plane(pixels, kind.settings(size, density, textures), kind.name, preset.rounds, work, progress)
+            weighed = kept.enter_context(doubtable(some, work))
+            whole = shots is not some and not kind.thinned
+            pixels = Pixels(shots, kept.enter_context(doubtable(shots, work)) if whole else weighed, weighed)
+            return fit_plane(pixels, kind.settings(size, density, textures), kind.name, rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,16 +30,17 @@ class Shots:
     """Photographs of Ne cameras as 8-bit codes, which is what the measures compare with, and where their pixels land.
 
     shapes: (h, w) of each camera. codes: a flat memory map of R, G, B, landed: one of columns and rows in the atlas,
-    both from pixel starts[c] for camera c. masks: (h, w) float32 of each camera, None without one. surface: the mesh
-    under the finest atlas.
+    both from pixel starts[c] for camera c. counts: likewise what each pixel counts for, 255 for whole; None: all do.
+    surface: the mesh under the finest atlas. doubts: what pixels count for instead, see `doubtable`.
     """
 
     shapes: tuple[tuple[int, int], ...]
     codes: NDArray[np.uint8]
     landed: NDArray[np.float32]
     starts: NDArray[np.int64]
-    masks: tuple[NDArray[np.float32] | None, ...]
+    counts: NDArray[np.uint8] | None
     surface: Surface
+    doubts: NDArray[np.uint8] | None = None
 
     def __len__(self) -> int:
         return len(self.shapes)
@@ -55,10 +56,13 @@ class Shots:
     def _part(self, of: NDArray[Any], index: int) -> NDArray[Any]:
         return np.asarray(of[self.starts[index] : self.starts[index + 1]]).reshape(*self.shapes[index], -1)
 
-    def weight(self, index: int) -> NDArray[np.float32]:
-        """(h, w) weights of the pixels, or (0, 0) for ones."""
-        mask = self.masks[index]
-        return np.zeros((0, 0), np.float32) if mask is None else mask
+    def weight(self, index: int) -> NDArray[np.uint8]:
+        """(h, w) what the pixels count for, 255 for whole, or (0, 0) where all do."""
+        return self.mask(index) if self.doubts is None else self._part(self.doubts, index)[..., 0]
+
+    def mask(self, index: int) -> NDArray[np.uint8]:
+        """The same without doubts."""
+        return np.zeros((0, 0), np.uint8) if self.counts is None else self._part(self.counts, index)[..., 0]
 
 
 @contextlib.contextmanager
@@ -70,15 +74,19 @@ def open_shots(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Shots]:
-    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 11 bytes a pixel:
-    memory does not grow with their number (but for masks). atlas: (rows, columns) of the finest texture. Raises
-    CaptureError, OutputError `disk-full`."""
+    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 12 bytes a pixel:
+    memory does not grow with their number. atlas: (rows, columns) of the finest texture. Raises CaptureError,
+    OutputError `disk-full`."""
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     starts, surface = _starts(shapes), make_surface(mesh, *atlas)
     total = int(starts[-1])
-    with scratch_array((total, 3), np.uint8, work) as codes, scratch_array((total, 2), np.float32, work) as landed:
+    with (
+        scratch_array((total, 3), np.uint8, work) as codes,
+        scratch_array((total, 2), np.float32, work) as landed,
+        scratch_array((total,), np.uint8, work) as counts,
+    ):
 
-        def put(index: int) -> NDArray[np.float32] | None:
+        def put(index: int) -> bool:
             pixels, mask = decode(index)
             camera, part = cameras[index], slice(starts[index], starts[index + 1])
             codes[part] = to_codes(pixels).reshape(-1, 3)
@@ -87,10 +95,11 @@ def open_shots(
             places = np.zeros((camera.height, camera.width, 2), np.float32)
             place_pixels(frame.inverse_depth, frame.column_of, frame.row_of, *atlas, places)
             landed[part] = places.reshape(-1, 2)
-            return None if mask is None else (mask > 0.5).astype(np.float32)
+            counts[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
+            return mask is not None
 
-        masks = tuple(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
-        yield Shots(shapes, codes, landed, starts, masks, surface)
+        masked = list(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
+        yield Shots(shapes, codes, landed, starts, counts if any(masked) else None, surface)
 
 
 @contextlib.contextmanager
@@ -112,14 +121,26 @@ def thinned(shots: Shots, step: int, work: Path | None = None) -> Iterator[Shots
     )
     starts = _starts(shapes)
     total = int(starts[-1])
-    with scratch_array((total, 3), np.uint8, work) as codes, scratch_array((total, 2), np.float32, work) as landed:
-        masks = []
-        for index, mask in enumerate(shots.masks):
+    with (
+        scratch_array((total, 3), np.uint8, work) as codes,
+        scratch_array((total, 2), np.float32, work) as landed,
+        scratch_array((total,), np.uint8, work) as counts,
+    ):
+        for index in range(len(shots)):
             part, taken = slice(starts[index], starts[index + 1]), corner(index)
             codes[part] = shots.photograph(index)[taken].reshape(-1, 3)
             landed[part] = shots.places(index)[taken].reshape(-1, 2)
-            masks.append(None if mask is None else np.ascontiguousarray(mask[taken]))
-        yield Shots(shapes, codes, landed, starts, tuple(masks), shots.surface)
+            if shots.counts is not None:
+                counts[part] = shots.weight(index)[taken].reshape(-1)
+        yield Shots(shapes, codes, landed, starts, None if shots.counts is None else counts, shots.surface)
+
+
+@contextlib.contextmanager
+def doubtable(shots: Shots, work: Path | None = None) -> Iterator[Shots]:
+    """The same shots, whose pixels `passes.look` may let count for less: a byte a pixel more on disk."""
+    with scratch_array((int(shots.starts[-1]),), np.uint8, work) as doubts:
+        doubts[:] = 255 if shots.counts is None else shots.counts
+        yield replace(shots, doubts=doubts)
 
 
 def _starts(shapes: Sequence[tuple[int, int]]) -> NDArray[np.int64]:

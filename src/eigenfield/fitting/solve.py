@@ -68,13 +68,19 @@ def _median(values: NDArray[np.float32]) -> float:
     return float(np.median(seen)) if len(seen) else 1.0
 
 
-def residual(shots: Shots, model: Model, mean_only: bool = False, composer: Composer | None = None) -> Look:
+def residual(
+    shots: Shots,
+    model: Model,
+    mean_only: bool = False,
+    composer: Composer | None = None,
+    half: float | None = None,
+) -> Look:
     """What the model leaves of the photographs, and what that asks of mean and textures. composer: what it leaves as
-    the renderers draw it."""
+    the renderers draw it. half: see `look`."""
     return look(
         shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
         weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
-        composer=composer,
+        composer=composer, half=half,
     )  # fmt: skip
 
 
@@ -168,9 +174,9 @@ class _Kind:
         return self.share, np.float32(4 * self.smooth), np.float32(self.energy)
 
 
-def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
+def fit_weights(shots: Shots, model: Model, iterations: int, half: float | None = None) -> None:
     """The weights of all cameras for the model's mean and textures, each camera its own least squares, solved side by
-    side."""
+    side. half: see `look`."""
     blocks = model.blocks
     textures = [block.textures for block in blocks]
     sizes = [block.count for block in blocks]
@@ -182,7 +188,7 @@ def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
     def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
         found = look(
             shots, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
-            photographs=photographs, wanted=(False, False, True),
+            photographs=photographs, wanted=(False, False, True), half=half if photographs else None,
         )  # fmt: skip
         return np.concatenate(found.weights, axis=1)
 
