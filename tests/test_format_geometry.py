@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 from coded_scenes import coded
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -15,8 +16,10 @@ import eigenfield as ef
 from eigenfield.camera import Camera
 from eigenfield.errors import FormatError
 from eigenfield.format import parts, validate
-from eigenfield.format.coarse import coarse_mesh
+from eigenfield.format.coarse import coarse_mesh, shown_mesh
 from eigenfield.format.container import parse_glb, read_file
+from eigenfield.format.deep import svt
+from eigenfield.format.deep_code import coded_plane
 from eigenfield.format.geometry import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
 from eigenfield.format.relief_lattice import _spacing, relief_lattice
 from eigenfield.format.stored import cameras_stream, stream_of
@@ -160,6 +163,24 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
     assert 100 < len(coarse.faces) <= 200 and coarse.uv is not None
     assert np.abs(coarse.vertices[:, :2] - (2 * coarse.uv - 1)).max() < 0.2  # about as in the fine one
     assert coarse_mesh(bumpy_square(4)).faces.shape == bumpy_square(4).faces.shape
+
+
+def test_small_files_have_a_smaller_mesh_for_other_viewers():
+    mesh = bumpy_square(40)
+    faces = [len(shown_mesh(mesh, coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
+    assert faces == sorted(faces) and faces[0] == faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
+    assert len(shown_mesh(bumpy_square(2), 10).faces) == 2
+
+
+def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
+    path, random = tmp_path / "scene.glb", np.random.default_rng(3)
+    mean = np.kron(random.random((64, 64, 3)), np.ones((4, 4, 1))).astype(np.float32)
+    for contrast, side in ((0.0, 64), (1.0, 128)):
+        shown = 0.5 + contrast * (mean - 0.5)
+        planes = tuple(coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3))
+        replace(tiny_scene(cameras=4), planes=planes, to_rgb=np.eye(3, dtype=np.float32)).save(path, overwrite=True)
+        (mesh,) = trimesh.load(path).geometry.values()
+        assert mesh.visual.material.baseColorTexture.size == (side, side)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A proxy for viewers that know nothing of coded meshes."""
+"""A proxy and its picture for viewers that know nothing of coded ones: in a small file they are small."""
 
 from __future__ import annotations
 
@@ -6,11 +6,22 @@ import numpy as np
 
 from eigenfield.mesh import Mesh
 
-COARSE = 128  # triangles: with fewer the rim of Tarot's ball comes apart
+COARSE = (128, 64, 32)  # triangles: with fewer than the first the rim of Tarot's ball comes apart
+SHARE = 0.1  # of the bytes of what is coded, that the mesh may take, and the picture
 ENOUGH = 1.5  # times as many are taken from the first way
 
 
-def coarse_mesh(mesh: Mesh, triangles: int = COARSE) -> Mesh:
+def shown_mesh(mesh: Mesh, coded: int) -> Mesh:
+    """The mesh in as many triangles as `coded`, the bytes of what is coded, allow."""
+    found = mesh
+    for triangles in COARSE:
+        found = coarse_mesh(mesh, triangles)
+        if 20 * len(found.vertices) + 3 * len(found.faces) <= SHARE * coded:
+            break
+    return found
+
+
+def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
     """The mesh simplified; of the vertices that fell together the one nearest to
     where they came to lie gives the texture coordinates."""
     import fast_simplification

@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.format import pictures, quantise
+from eigenfield.format.coarse import SHARE
 from eigenfield.format.stored import PictureFile, files_of
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
 from eigenfield.scene import Basis, Plane, Scene
 
-SMALL_PREVIEW = 128, 50  # texels and quality of the preview beside pictures of a fit: as little as tells what is there
+SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels and quality beside a fit's pictures, the first that is in SHARE
 MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: there a byte gains as much (Tarot)
 
 
@@ -34,6 +35,15 @@ class Coded:
 
     preview: bytes | None
     planes: list[CodedPlane]
+
+    @property
+    def bytes(self) -> int:
+        """Of all pictures."""
+        return _bytes(self.planes)
+
+
+def _bytes(planes: Sequence[CodedPlane]) -> int:
+    return sum(len(file.data) for plane in planes for files in ([plane.mean], *plane.bases) for file in files)
 
 
 def code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progress | None) -> Coded:
@@ -54,7 +64,7 @@ def code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progr
     plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
     if plain and first.mime == "image/png" and first.affine is None:
         return Coded(None, planes)  # the mean itself serves
-    return Coded(_preview(scene), planes)
+    return Coded(_preview(scene, _bytes(planes)), planes)
 
 
 def _mean(scene: Scene, plane: Plane, codec: str | None, quality: int) -> list[Callable[[], PictureFile]]:
@@ -99,8 +109,9 @@ def _code_texture(
     return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
 
-def _preview(scene: Scene) -> bytes:
-    """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched."""
+def _preview(scene: Scene, coded: int) -> bytes:
+    """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
+    coded: bytes of the coded pictures."""
     mean = scene.planes[0].mean if scene.to_rgb is None else _joined(scene, scene.to_rgb)
     if scene.colours is not None:
         mean = mean.clip(0, 1)
@@ -108,8 +119,15 @@ def _preview(scene: Scene) -> bytes:
     if not quantise.photographic(mean) and not quantise.unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
-    small = () if scene.to_rgb is None else SMALL_PREVIEW
-    return pictures.encode_preview(np.rint(shown * 255).clip(0, 255).astype(np.uint8), *small)
+    codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
+    if scene.to_rgb is None:
+        return pictures.encode_preview(codes)
+    found = b""
+    for small in SMALL_PREVIEWS:
+        found = pictures.encode_preview(codes, *small)
+        if len(found) <= SHARE * coded:
+            break
+    return found
 
 
 def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -17,7 +17,7 @@ from eigenfield.errors import OutputError
 from eigenfield.files import atomic_writer, refuse_existing
 from eigenfield.format import limits, pictures, strict_json
 from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
-from eigenfield.format.coarse import coarse_mesh
+from eigenfield.format.coarse import shown_mesh
 from eigenfield.format.coded_pictures import Coded, CodedPlane, code_pictures, shortest
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
@@ -135,7 +135,8 @@ def check_readable(text: bytes, binary: bytes) -> None:
 def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
     mesh, poses = stream_of(scene.mesh), cameras_stream(scene.cameras)
-    primitive = _primitive(scene.mesh if mesh is None else coarse_mesh(scene.mesh), buffer, mesh is not None)
+    shown = scene.mesh if mesh is None else shown_mesh(scene.mesh, coded.bytes + len(mesh))
+    primitive = _primitive(shown, buffer, mesh is not None)
     proxy = {} if mesh is None else {"mesh": {"bufferView": buffer.view(mesh)}}
     first = coded.planes[0].mean.data if coded.preview is None else coded.preview
     image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
@@ -238,7 +239,7 @@ def _primitive(mesh: Mesh, buffer: _Buffer, small: bool) -> dict[str, Any]:
     assert mesh.uv is not None
     # the largest index of a type restarts a primitive and may not be used
     index = UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
-    bounds = {"min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()}
+    bounds = {"min": shortest(mesh.vertices.min(axis=0)), "max": shortest(mesh.vertices.max(axis=0))}
     return {
         "attributes": {
             "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
