@@ -76,14 +76,9 @@ def _no_rounds() -> contextlib.AbstractContextManager[Any]:
     return stack
 
 
-def _trusting() -> contextlib.AbstractContextManager[Any]:
-    return patch.object(planes, "doubtable", lambda shots, _: contextlib.nullcontext(shots))
-
-
 LEVERS = {
     "all": Lever("all on"),
     "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
-    "doubt": Lever("pixels far off count as much as others", _trusting),
     "loop": Lever("open loop: weights and mean not fitted to the coded textures", coding=_open_loop),
     "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=Options(planes="rgb")),
     "dense": Lever(

@@ -1,9 +1,9 @@
 """The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
 
 Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
-weights, in turns, until a round changes less than `STOP`; from the second round on pixels count less the farther they
-are from what is drawn (`DOUBT`). Then closed loop, at any rates: the textures are coded, weights and mean are fitted
-again to what the coded ones draw, and the mean is coded last.
+weights, in turns, until a round changes less than `STOP`; from the second round on pixels of `doubtable` shots count
+less the farther they are from what is drawn (`DOUBT`). Then closed loop, at any rates: the textures are coded, weights
+and mean are fitted again to what the coded ones draw, and the mean is coded last.
 """
 
 from __future__ import annotations

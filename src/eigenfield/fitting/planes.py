@@ -78,7 +78,7 @@ TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
-FEW_ROUNDS = 4  # at most, or the preset's, for fewer cameras: they take longer to settle, and a round is cheap
+FEW_ROUNDS = 4  # at most, or the preset's, for fewer: they take longer to settle, and what is far off does not even out
 
 
 @dataclass(frozen=True)
@@ -146,9 +146,11 @@ def open_fits(
         some = kept.enter_context(thinned(shots, 1 if few else 2, work))
 
         def fit(kind: Kind) -> OpenFit:
-            weighed = kept.enter_context(doubtable(some, work))
-            whole = shots is not some and not kind.thinned
-            pixels = Pixels(shots, kept.enter_context(doubtable(shots, work)) if whole else weighed, weighed)
+            if few:
+                doubted = kept.enter_context(doubtable(shots, work))
+                pixels = Pixels(shots, doubted, doubted)
+            else:
+                pixels = Pixels(shots, some if kind.thinned else shots, some)
             return fit_plane(pixels, kind.settings(size, density, textures), kind.name, rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
