@@ -121,10 +121,10 @@ def _entry(
     intrinsics, lens = _intrinsics(top, frame, label, path)
     rotation, shift, scale = undo
     with np.errstate(invalid="ignore", over="ignore"):
-        axes = rotation.T @ pose[:, :3]
+        axes = FLIP @ (rotation.T @ pose[:, :3]).T
         centre = rotation.T @ (pose[:, 3] / scale - shift)
     return Entry(
-        file.replace("\\", "/"), label, intrinsics, FLIP @ axes.T, centre, lens, mask and mask.replace("\\", "/")
+        file.replace("\\", "/"), label, intrinsics, axes, centre, lens, mask and mask.replace("\\", "/")
     )
 
 
