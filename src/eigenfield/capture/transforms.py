@@ -123,9 +123,7 @@ def _entry(
     with np.errstate(invalid="ignore", over="ignore"):
         axes = FLIP @ (rotation.T @ pose[:, :3]).T
         centre = rotation.T @ (pose[:, 3] / scale - shift)
-    return Entry(
-        file.replace("\\", "/"), label, intrinsics, axes, centre, lens, mask and mask.replace("\\", "/")
-    )
+    return Entry(file.replace("\\", "/"), label, intrinsics, axes, centre, lens, mask and mask.replace("\\", "/"))
 
 
 def _matrix(value: Any, what: str, path: Path) -> NDArray[np.float64]:
