@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from eigenfield.capture import open_capture
@@ -134,6 +134,7 @@ PLACES = [
 
 @settings(max_examples=300, deadline=None)
 @given(st.sampled_from(PLACES), JSON)
+@example("frames/0/transform_matrix/1/2", float("inf"))
 def test_any_value_anywhere_is_read_or_refused(tmp_path_factory, path, value):
     folder = tmp_path_factory.getbasetemp() / "any"
     if not folder.exists():

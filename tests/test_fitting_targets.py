@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+import pytest
 from captures import write_capture
 from scenes import row_grid
 
@@ -63,20 +64,40 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
-    asked = Target(psnr=24)
+    asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
         once = ef.encode(capture, **options, target=asked)
         assert "fitted again for quality" not in caplog.text  # the meshes differ by some bytes, not worth a second fit
         monkeypatch.setattr("eigenfield.pipeline.MESH_SHARE", 1e-3)
         found = ef.encode(capture, **options, target=asked)
-    assert "fitted again for quality" in caplog.text
+    assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
     assert len(found.mesh.faces) < len(once.mesh.faces)
-    sizes = [len(stream_of(scene.mesh) or b"") for scene in (found, once)]
-    assert 0 < sizes[0] < sizes[1]
-    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 24
+    assert 0 < len(stream_of(found.mesh) or b"") < len(stream_of(once.mesh) or b"")
+    sizes = [len(encode_scene(scene)) for scene in (found, once)]
+    assert sizes[0] < sizes[1]
+    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 28
     caplog.clear()
     ef.encode(capture, **options, target=Target(size=1200))
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
+
+
+@pytest.mark.parametrize("asked", [Target(psnr=24), Target(size=6000)])
+def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
+    """The second may be worse: another mesh and atlas are a guess from the quality."""
+    cameras = row_grid(9, 64, 56)
+    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
+    capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
+    made = []
+    for share in (1.0, 1e-3):
+        monkeypatch.setattr("eigenfield.pipeline.MESH_SHARE", share)
+        with caplog.at_level("INFO", "eigenfield.encode"):
+            made.append(ef.encode(capture, **options, target=asked))
+        assert ("fitted again" in caplog.text) == (share < 1)
+    once, found = (len(encode_scene(scene)) for scene in made)
+    reached = [evaluate(scene, capture)["image"]["encoded"]["psnr"] for scene in made]
+    assert (
+        (found <= once and min(reached) >= 24) if asked.size is None else (found <= 6000 and reached[1] >= reached[0])
+    )
 
 
 def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):

@@ -49,3 +49,17 @@ def test_targets_that_cannot_be(target):
     with pytest.raises(OptionError) as caught:
         target.check()
     assert caught.value.code == "target"
+
+
+@pytest.mark.parametrize(
+    ("target", "worst_first"),
+    [
+        (Target(size=1000), [(1300, 39.0), (1200, 30.0), (900, 31.0), (1000, 32.0)]),
+        (Target(psnr=30), [(700, 28.0), (900, 29.5), (1400, 31.0), (1300, 30.0)]),
+        (Target(ssim=0.9), [(700, 0.7), (900, 0.89), (1400, 0.91), (1300, 0.9)]),
+    ],
+)
+def test_what_a_file_is_worth(target, worst_first):
+    tried = [Tried(50, size, measured, None) for size, measured in worst_first]
+    worths = [target.worth(one) for one in tried]
+    assert worths == sorted(worths) and len(set(worths)) == len(worths)

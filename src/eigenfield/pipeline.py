@@ -183,7 +183,7 @@ def _fitted(
             KINDS[options.fit_planes],
             work,
             progress,
-        ) as fits,  # fmt: skip
+        ) as fits,
     ):
         if warn:
             apart = fits.planes[0][1].mean_alone
@@ -206,23 +206,27 @@ def _fitted(
 def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress | None) -> Scene:
     """The scene that reaches a target, or with a warning the nearest. A relief has the triangles that the preset's
     quality pays for, and the atlas its density; where the target is met at a quality that pays for others, there is a
-    second fit, on those."""
+    second fit, on those, and the better file of both is kept."""
     with _fitted(draft, work, progress) as (coded, measured, shots):
         found, met = reach(target, coded, shots)
+        scene = measured(found.result)
         near = abs(found.quality - draft.options.fit_quality) <= NEAR
         other = draft if near else draft.at_quality(found.quality)
         again = (
             abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
             or abs(other.atlas[0] / draft.atlas[0] - 1) >= DENSITY_SHARE
         )
-        if not again:
-            scene = measured(found.result)
     if again:
         words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
         log.info(words, found.quality, other.mesh_bytes, draft.mesh_bytes, *other.atlas, *draft.atlas)
         with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
-            found, met = reach(target, coded, shots, found.quality)
-            scene = measured(found.result)
+            second, met_again = reach(target, coded, shots, found.quality)
+            sizes = second.size, second.measured, found.size, found.measured
+            if target.worth(second) > target.worth(found):
+                log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
+                found, met, scene = second, met_again, measured(second.result)
+            else:
+                log.info("not kept: %d bytes, %.4f, and the first has %d, %.4f", *sizes)
     if not met:
         warn_of_miss(target, found)
     return scene

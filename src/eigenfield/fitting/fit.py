@@ -145,7 +145,7 @@ def fit_plane(
             break
         fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
-        fit_weights(pixels.weighed, model, WEIGHT_STEPS, half)
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         half = DOUBT**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()

@@ -174,9 +174,9 @@ class _Kind:
         return self.share, np.float32(4 * self.smooth), np.float32(self.energy)
 
 
-def fit_weights(shots: Shots, model: Model, iterations: int, half: float | None = None) -> None:
+def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
     """The weights of all cameras for the model's mean and textures, each camera its own least squares, solved side by
-    side. half: see `look`."""
+    side."""
     blocks = model.blocks
     textures = [block.textures for block in blocks]
     sizes = [block.count for block in blocks]
@@ -188,7 +188,7 @@ def fit_weights(shots: Shots, model: Model, iterations: int, half: float | None 
     def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
         found = look(
             shots, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
-            photographs=photographs, wanted=(False, False, True), half=half if photographs else None,
+            photographs=photographs, wanted=(False, False, True),
         )  # fmt: skip
         return np.concatenate(found.weights, axis=1)
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -57,6 +57,13 @@ class Target:
             return tried.size <= self.size
         return tried.measured >= self.wanted
 
+    def worth(self, tried: Tried[T]) -> tuple[bool, float]:
+        """By which files of different fits compare, the greater the better: one that meets it before one that does
+        not, then the better picture in as many bytes or the fewer bytes for as good a picture; of those that do not,
+        the nearer."""
+        met = self.met(tried)
+        return met, tried.measured if met == (self.size is not None) else -float(tried.size)
+
     @property
     def wanted(self) -> float:
         """The PSNR or SSIM asked for."""
@@ -65,7 +72,8 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class Tried(Generic[T]):
-    """A file at a quality: its bytes, and what it reaches of what was asked for (0 for a size)."""
+    """A file at a quality: its bytes, and what it reaches of what was asked for (the PSNR where that is a size; 0 where
+    it is not measured)."""
 
     quality: int
     size: int
@@ -121,7 +129,10 @@ def reach(target: Target, coded: Callable[[int], Scene], shots: Shots, first: in
         scene = coded(quality)
         return Tried(quality, len(encode_scene(scene)), 0.0 if target.size else _measured(target, scene, shots), scene)
 
-    return search(target, code, first)
+    found, met = search(target, code, first)
+    if target.size is not None:
+        found = replace(found, measured=_measured(target, found.result, shots))
+    return found, met
 
 
 def warn_of_miss(target: Target, nearest: Tried[Scene]) -> None:
@@ -148,7 +159,7 @@ def _measured(target: Target, scene: Scene, shots: Shots) -> float:
         covered, weight = picture.covered, shots.weight(index)
         if weight.size:
             covered &= weight > 0
-        measure = ssim if target.psnr is None else psnr
+        measure = psnr if target.ssim is None else ssim
         return measure(to_codes(picture.image), shots.photograph(index), covered)
 
     some = np.unique(np.linspace(0, count - 1, min(count, MEASURED)).round().astype(int))

@@ -2,23 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
 import numpy as np
 
 from eigenfield.mesh import Mesh
+
+T = TypeVar("T")
 
 COARSE = (128, 64, 32)  # triangles: with fewer than the first the rim of Tarot's ball comes apart
 SHARE = 0.1  # of the bytes of what is coded, that the mesh may take, and the picture
 ENOUGH = 1.5  # times as many are taken from the first way
 
 
+def affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) -> T:
+    """The first of some ways, in falling order, whose bytes are SHARE of what is coded; else the last."""
+    ways = iter(ways)
+    found = next(ways)
+    while size(found) > SHARE * coded and (smaller := next(ways, None)) is not None:
+        found = smaller
+    return found
+
+
 def shown_mesh(mesh: Mesh, coded: int) -> Mesh:
     """The mesh in as many triangles as `coded`, the bytes of what is coded, allow."""
-    found = mesh
-    for triangles in COARSE:
-        found = coarse_mesh(mesh, triangles)
-        if 20 * len(found.vertices) + 3 * len(found.faces) <= SHARE * coded:
-            break
-    return found
+    return affordable((coarse_mesh(mesh, triangles) for triangles in COARSE), _plain_bytes, coded)
+
+
+def _plain_bytes(mesh: Mesh) -> int:
+    """What a small mesh takes as plain floats with a byte a corner."""
+    assert mesh.uv is not None
+    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
 
 
 def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:

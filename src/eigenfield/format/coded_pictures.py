@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.format import pictures, quantise
-from eigenfield.format.coarse import SHARE
+from eigenfield.format.coarse import affordable
 from eigenfield.format.stored import PictureFile, files_of
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
@@ -38,12 +38,8 @@ class Coded:
 
     @property
     def bytes(self) -> int:
-        """Of all pictures."""
-        return _bytes(self.planes)
-
-
-def _bytes(planes: Sequence[CodedPlane]) -> int:
-    return sum(len(file.data) for plane in planes for files in ([plane.mean], *plane.bases) for file in files)
+        """Of all planes."""
+        return sum(len(file.data) for plane in self.planes for files in ([plane.mean], *plane.bases) for file in files)
 
 
 def code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progress | None) -> Coded:
@@ -60,11 +56,11 @@ def code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progr
     for plan in planned:
         files = [[next(done) for _ in some] for some in plan]
         planes.append(CodedPlane(files[0][0], files[1:]))
-    first = planes[0].mean
+    first, coded = planes[0].mean, Coded(None, planes)
     plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
     if plain and first.mime == "image/png" and first.affine is None:
-        return Coded(None, planes)  # the mean itself serves
-    return Coded(_preview(scene, _bytes(planes)), planes)
+        return coded  # the mean itself serves
+    return replace(coded, preview=_preview(scene, coded.bytes))
 
 
 def _mean(scene: Scene, plane: Plane, codec: str | None, quality: int) -> list[Callable[[], PictureFile]]:
@@ -111,7 +107,7 @@ def _code_texture(
 
 def _preview(scene: Scene, coded: int) -> bytes:
     """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
-    coded: bytes of the coded pictures."""
+    coded: bytes of the planes."""
     mean = scene.planes[0].mean if scene.to_rgb is None else _joined(scene, scene.to_rgb)
     if scene.colours is not None:
         mean = mean.clip(0, 1)
@@ -122,12 +118,7 @@ def _preview(scene: Scene, coded: int) -> bytes:
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
     if scene.to_rgb is None:
         return pictures.encode_preview(codes)
-    found = b""
-    for small in SMALL_PREVIEWS:
-        found = pictures.encode_preview(codes, *small)
-        if len(found) <= SHARE * coded:
-            break
-    return found
+    return affordable((pictures.encode_preview(codes, *small) for small in SMALL_PREVIEWS), len, coded)
 
 
 def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
