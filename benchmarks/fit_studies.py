@@ -95,6 +95,9 @@ LEVERS = {
         "the mean coded as finely everywhere", coding=lambda: patch.object(planes, "mean_precision", lambda *_: None)
     ),
     "unseen": Lever("texels that no photograph sees left as they are", lambda: patch.object(fit, "fill_unseen")),
+    "surface": Lever(
+        "the proxy's surface as it was given", lambda: patch.object(draft, "fit_surface", lambda mesh, *_: mesh)
+    ),
     "relief": Lever("the relief not simplified", lambda: patch.object(draft, "slim_mesh", _whole)),
     "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
 }

@@ -50,6 +50,7 @@ SAME_FLOOR = {
     ("basis", "texturing"),
     ("fitting", "rendering"),
     ("fitting", "format"),
+    ("fitting", "simplification"),
     ("simplification", "format"),
     ("draft", "fitting"),
     ("draft", "simplification"),

@@ -31,13 +31,14 @@ def test_levers_are_put_back():
         draft.slim_mesh,
         planes.mean_precision,
         fit.fill_unseen,
+        draft.fit_surface,
     )
     for lever in fit_studies.LEVERS.values():
         with lever.change(), lever.coding():
             pass
     after = (
         planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, fit.LAGRANGE, draft.slim_mesh,
-        planes.mean_precision, fit.fill_unseen,
+        planes.mean_precision, fit.fill_unseen, draft.fit_surface,
     )  # fmt: skip
     assert before == after
 

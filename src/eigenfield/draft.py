@@ -7,6 +7,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,8 +17,9 @@ from eigenfield import __version__
 from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
 from eigenfield.errors import OptionError
-from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, density_of, split_matrix
-from eigenfield.format.geometry import coded_cameras, coded_mesh
+from eigenfield.fitting import KINDS, PRESETS, Preset, Target, byte_price, density_of, fit_surface, split_matrix
+from eigenfield.format.geometry import DEPTH_ERROR, coded_cameras, coded_mesh
+from eigenfield.format.relief_lattice import relief_lattice
 from eigenfield.format.stored import stream_of
 from eigenfield.holdout import held_out_cameras
 from eigenfield.mesh import Mesh
@@ -270,10 +272,11 @@ def make_draft(
     proxy: str | os.PathLike[str] | Mesh,
     options: Options,
     triangles: int | None = None,
+    work: Path | None = None,
     progress: Progress | None = None,
 ) -> Draft:
-    """Cameras as a file keeps them, the proxy with an atlas; for a fit both as they are coded. triangles, errors: as
-    `encode`."""
+    """Cameras as a file keeps them, the proxy with an atlas; for a fit its surface fitted to the photographs, and both
+    as they are coded. triangles, work, errors: as `encode`."""
     names = [view.name for view in capture.views]
     cameras = [view.camera.rounded() for view in capture.views]
     coordinates = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
@@ -282,6 +285,8 @@ def make_draft(
     centre = _reference(options.reference, names, coordinates, encoded)
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
+    if options.fit != "none":
+        mesh = _fitted_surface(capture.subset(encoded.tolist()), mesh, cameras, encoded, centre, work, progress)
     return _draft(capture, mesh, options, held, centre, options.fit != "none" and triangles is None)
 
 
@@ -312,6 +317,26 @@ def _draft(
     return Draft(
         capture, options, whole, simplify, mesh, tuple(cameras), plane, coordinates, held, centre, size
     )  # fmt: skip
+
+
+def _fitted_surface(
+    shown: LightField,
+    mesh: Mesh,
+    cameras: Sequence[Camera],
+    encoded: NDArray[np.int64],
+    centre: int,
+    work: Path | None,
+    progress: Progress | None,
+) -> Mesh:
+    """The proxy where the encoded photographs, `shown`, agree on it."""
+
+    def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+        picture = shown.photograph(index)
+        return picture.pixels, picture.mask
+
+    relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
+    used = [cameras[index] for index in encoded]
+    return fit_surface(mesh, relief and relief[0], used, photograph, side, work, progress)
 
 
 def _slim(

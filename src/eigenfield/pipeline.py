@@ -108,7 +108,7 @@ def encode(
     scene keeps them for drawing its captured cameras. metres_per_unit: metres in one unit of the cameras' world, by
     which a headset shows the scene in its real size; without it what the capture's format says, if it does. fit:
     "photographs" fits means, textures and weights, luma apart from chroma, until the drawn pictures match the
-    photographs, to textures as they are coded; "none" is the paper's way. `align`, `uv_ssim`, `harmonise`, `resampling`
+    photographs, to textures as they are coded, on a proxy whose vertices have moved to where they agree; "none" is the paper's way. `align`, `uv_ssim`, `harmonise`, `resampling`
     and `keep_maps` are about texture maps, which a fit does not make; None: "none" if one of them is asked for, with a
     warning, else "photographs". preset: "small", "balanced" (None) or "best", how finely and with how much patience a
     fit is made and coded. quality: of a fit, 0 to 100 instead of the preset's. target: the quality is searched for,
@@ -124,7 +124,7 @@ def encode(
         preset, quality, target, keep_maps, planes=planes,
     )  # fmt: skip
     place = None if work is None else Path(work)
-    draft = make_draft(capture, proxy, options, triangles, progress)
+    draft = make_draft(capture, proxy, options, triangles, place, progress)
     if target is not None:
         return _reached(target, draft, place, progress)
     if options.fit != "none":
@@ -159,8 +159,9 @@ def open_fitted(
     """Fit once, code at many qualities (0 to 100): what `encode` with these options and `fit="photographs"` makes of
     each. Errors as there."""
     options = replace(options, fit="photographs")
-    draft = make_draft(capture, proxy, options, None, progress)
-    with _fitted(draft, None if work is None else Path(work), progress) as (coded, measured, _):
+    place = None if work is None else Path(work)
+    draft = make_draft(capture, proxy, options, None, place, progress)
+    with _fitted(draft, place, progress) as (coded, measured, _):
         yield lambda quality: measured(coded(quality))
 
 

@@ -15,6 +15,7 @@ from eigenfield.fitting.planes import (
     open_fits,
 )
 from eigenfield.fitting.shots import Shots, open_shots, thinned
+from eigenfield.fitting.surface import fit_surface
 from eigenfield.fitting.target import Target, reach, warn_of_miss
 
 __all__ = [
@@ -32,6 +33,7 @@ __all__ = [
     "coded_psnr",
     "density_of",
     "fit_plane",
+    "fit_surface",
     "fitted_textures",
     "open_fits",
     "open_shots",

@@ -127,7 +127,7 @@ def fit_plane(
             "no camera sees any texel of the proxy",
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
-    mean_alone = _first_mean(fitted, model, scales)
+    mean_alone = fit_mean(fitted, model, scales)
     tick()
     count = min(settings.textures, len(fitted) - 1)
     if count:
@@ -261,8 +261,8 @@ def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
     return psnr_of(found.squares, found.pixels, model.channels)
 
 
-def _first_mean(shots: Shots, model: Model, scales: Scales) -> MeanAlone:
-    """The mean alone, from one colour."""
+def fit_mean(shots: Shots, model: Model, scales: Scales) -> MeanAlone:
+    """Fit the model's mean alone, from one colour."""
     left = residual(shots, model, mean_only=True)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
     sums = left.mean.sum(axis=(1, 2), dtype=np.float64)

@@ -1,7 +1,7 @@
 """A proxy in as few bytes as its pictures are worth: simplified and rounded by what the photographs lose."""
 
-from eigenfield.simplification.effect import Effect, Grey, depth_effect
+from eigenfield.simplification.effect import Effect, Grey, depth_effect, spread_cameras, texels_of
 from eigenfield.simplification.relief import Form, slim_relief
 from eigenfield.simplification.slim import slim_mesh
 
-__all__ = ["Effect", "Form", "Grey", "depth_effect", "slim_mesh", "slim_relief"]
+__all__ = ["Effect", "Form", "Grey", "depth_effect", "slim_mesh", "slim_relief", "spread_cameras", "texels_of"]

@@ -69,7 +69,7 @@ def depth_effect(mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[C
     def look(index: int) -> NDArray[np.float64]:
         return _looked(mesh, cameras[index], grey(index), world, deeper)
 
-    chosen = _spread(np.array([camera.centre for camera in cameras]), CAMERAS)
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
     seen, first, second, most, pixels = np.zeros((5, len(points)))
     for found in parallel_stream(look, chosen):  # in order: the same numbers at any number of threads
         for total, one in zip((seen, first, second, most, pixels), found, strict=True):
@@ -90,6 +90,15 @@ def texel_values(
     """(t, ...) what vertices' values are at the texels that are covered, row by row."""
     corners, weights = texel_weights(places, faces, owners)
     return np.asarray(np.einsum("tk,tk...->t...", weights, values[corners]))
+
+
+def texels_of(mesh: Mesh, shape: tuple[int, ...]) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+    """Of an atlas of (rows, columns): (rows, columns) the face that covers each texel or -1, and as `texel_weights`."""
+    assert mesh.uv is not None
+    owners = np.zeros(shape, np.int32)
+    places = np.rint(mesh.uv.astype(np.float64) * [shape[1], shape[0]] * STEPS).astype(np.int64)
+    draw_owners(places, mesh.faces, owners)
+    return owners, *texel_weights(places, mesh.faces, owners)
 
 
 def texel_weights(
@@ -128,7 +137,7 @@ def _looked(
 def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> float:
     """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`:
     judged by the OUTERMOST cameras of the array, which see the most of what lies behind."""
-    some = _spread(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+    some = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
     error = 0.0
     for index in some:
         through = (rasterise_view(mesh, cameras[index]).face < 0) & (rasterise_view(given, cameras[index]).face >= 0)
@@ -174,7 +183,7 @@ def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
     return int(np.clip(round(np.sqrt(pixels)), 16, SIDE_MOST))
 
 
-def _spread(centres: NDArray[np.float64], count: int) -> list[int]:
+def spread_cameras(centres: NDArray[np.float64], count: int) -> list[int]:
     """Indices of cameras, each the farthest from those before; the first is the middle one."""
     apart = np.linalg.norm(centres - centres.mean(axis=0), axis=1)
     chosen = [int(np.argmin(apart))]

@@ -58,9 +58,10 @@ def slim_relief(
     effect = depth_effect(mesh, lattice, 2.0**fine, cameras, grey)
     price *= effect.seen / texels / LEFT
     found: list[tuple[float, Form]] = []
+    whole = list(_forms(mesh, lattice, fine, effect))  # all of a grid is cheap
     for worth in COLLAPSES:
         slim, gone = _collapsed(mesh, lattice, effect, exact.copy(), worth * price * VERTEX_BYTES)
-        forms = [*_forms(slim, lattice, fine, effect), *_forms(mesh, lattice, fine, effect)]  # all of a grid is cheap
+        forms = [*_forms(slim, lattice, fine, effect), *whole]
         if not forms:
             continue
         best = min(forms, key=lambda form: form.loss + price * len(form.stream))
