@@ -109,12 +109,12 @@ def encode(
     which a headset shows the scene in its real size; without it what the capture's format says, if it does. fit:
     "photographs" fits means, textures and weights, luma apart from chroma, until the drawn pictures match the
     photographs, to textures as they are coded, on a proxy whose vertices have moved to where they agree; "none" is the
-    paper's way. `align`, `uv_ssim`, `harmonise`, `resampling` and `keep_maps` are about texture maps, which
-    a fit does not make; None: "none" if one of them is asked for, with a warning, else "photographs". preset: "small", "balanced" (None) or "best", how finely and with how much patience a
-    fit is made and coded. quality: of a fit, 0 to 100 instead of the preset's. target: the quality is searched for,
-    until the file reaches it, with a second fit where another mesh belongs to it; where none does, the nearest, with a
-    warning. planes: "luma-chroma" (None), or "rgb", one
-    plane for all of a fit, as the paper has it. keep_maps: folder for the filled maps and visibility as pictures. work:
+    paper's way. `align`, `uv_ssim`, `harmonise`, `resampling` and `keep_maps` are about texture maps, which a fit does
+    not make; None: "none" if one of them is asked for, with a warning, else "photographs". preset: "small", "balanced"
+    (None) or "best", how finely and with how much patience a fit is made and coded. quality: of a fit, 0 to 100 instead
+    of the preset's. target: the quality is searched for, until the file reaches it, with a second fit where another
+    mesh belongs to it; where none does, the nearest, with a warning. planes: "luma-chroma" (None), or "rgb", one plane
+    for all of a fit, as the paper has it. keep_maps: folder for the filled maps and visibility as pictures. work:
     folder for scratch files (up to 17 bytes a pixel; 4 bytes x channels x cameras x texels).
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
