@@ -46,7 +46,8 @@ log = logging.getLogger("eigenfield.fit")
 
 ROUNDS = 4
 CAMERAS = 49  # of the array, spread over it, are looked at
-THINNED_FROM = 25  # of them, from which every second pixel each way is enough
+THINNED_FROM = 25  # of them, from which every second pixel each way is enough,
+PIXELS = 1 << 25  # and of all together
 STOP = 0.003  # of the squared error that a round must promise to take off
 STIFF = 0.5  # what it costs that vertices a texel apart are a pixel further apart than given, beside `Asked.weight`
 RIDGE = 0.015  # likewise, that a texel is a pixel off its given place
@@ -111,6 +112,7 @@ def fit_surface(
     """
     some = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
     used, shape = [cameras[index] for index in some], (min(side, SIDE_MOST),) * 2
+    thin = len(used) >= THINNED_FROM or sum(camera.width * camera.height for camera in used) > PIXELS
     sheet = Sheet(mesh, lattice, _lines(mesh, lattice, used), shape, np.zeros(len(mesh.vertices)))
     best, reached = mesh, -np.inf
     for number in range(ROUNDS + 1):
@@ -118,7 +120,7 @@ def fit_surface(
             progress("fit surface", number, ROUNDS + 1)
         with (
             open_shots(used, lambda index: decode(some[index]), sheet.mesh, shape, work) as every,
-            thinned(every, 1 if len(used) < THINNED_FROM else 2, work) as shots,
+            thinned(every, 2 if thin else 1, work) as shots,
         ):
             model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
             left = fit_mean(shots, model, measure_scales(shots, model))
