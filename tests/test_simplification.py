@@ -45,7 +45,7 @@ def ground(curve=1.0):
     one = np.ones((SIDE, SIDE), np.float32)
     return Ground(
         valley(column, row).astype(np.float32), one.astype(np.uint8), np.float32(curve) * one, np.float32(MOST) * one,
-        np.zeros((SIDE, SIDE), np.int16),
+        np.float32(MOST) * one, np.zeros((SIDE, SIDE), np.int16),
     )  # fmt: skip
 
 
@@ -230,3 +230,29 @@ def test_what_a_camera_sees_through_is_found():
     assert opened(part, whole, cameras, lambda index: bright) == 0  # more is no hole
     lost = [(rasterise_view(m, c).face >= 0).sum() for m in (whole, part) for c in cameras]
     assert opened(whole, part, cameras, lambda index: bright) == pytest.approx(0.25 * (sum(lost[:9]) - sum(lost[9:])))
+
+
+def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
+    """Two sheets over one another: of the near one alone the photographs' variance is lost."""
+    cameras = row_grid(9, 64, 48)
+    near = relief(cameras[4], 0.5, False)
+    lattice, fine = relief_lattice(near, cameras, DEPTH_ERROR) or (None, 0)
+    assert lattice is not None
+    exact = lattice.coordinates(near.vertices)
+    exact[:, 2] = exact[:, 2].mean() + 0.02 * (exact[:, 2] - exact[:, 2].mean())  # inverse depth
+    near = replace(near, vertices=lattice.points(exact).astype(np.float32))
+    exact[:, 2] *= 0.8
+    x = near.vertices[near.faces][..., 0].mean(axis=1)
+    patch = near.faces[x > np.median(x)]  # the half of the picture that the near one covers
+    vertices = np.concatenate([near.vertices, lattice.points(exact).astype(np.float32)])
+    uv = np.concatenate([near.uv * [0.5, 1], near.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32)
+    both = Mesh(vertices, np.concatenate([patch, near.faces + len(near.vertices)]).astype(np.int32), uv)
+    grey = np.tile(0.5 + 0.02 * np.sin(np.arange(64)), (48, 1)).astype(np.float32)
+    effect = depth_effect(both, lattice, 2.0**fine, cameras, lambda _: grey)
+    ground = effect.ground
+    given, middle = ground.given > 0, ground.given.shape[1] // 2
+    front = given & (np.arange(given.shape[1]) < middle)
+    alone = given & ~front & (ground.bare > 10 * ground.most)
+    assert (ground.bare[front] == ground.most[front]).mean() > 0.9
+    assert 0.3 < alone.sum() / (given & ~front).sum() <= 1.0
+    assert np.median(ground.bare[alone]) > 50 * np.median(ground.most[front])

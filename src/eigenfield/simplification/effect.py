@@ -3,7 +3,8 @@
 A point whose inverse depth is off by d is drawn b d pixels off in a camera, b being its parallax there. With the
 gradient g of the photograph the error is (g . b) d, squared and summed over the cameras that see the point; what is
 the same in all of them is no loss, the texture takes it. However far it is off, it is not worse than something
-else in its place: the variance of the photographs around.
+else in its place: the variance of the photographs around. Only where the surface is gone and none lies behind, the
+picture is black.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -32,6 +33,10 @@ SIDE_MOST = 1536  # texels
 AROUND = 9  # pixels over which photographs vary
 SMOOTH = 3  # texels over which errors are averaged
 BEHIND = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
+CELL, APART = (
+    4,
+    0.01,
+)  # pixels within which, and inverse depth by which, one point must lie behind another to stand for it
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,17 +75,18 @@ def depth_effect(mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[C
         return _looked(mesh, cameras[index], grey(index), world, deeper)
 
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    seen, first, second, most, pixels = np.zeros((5, len(points)))
+    seen, first, second, most, black, pixels = np.zeros((6, len(points)))
     for found in parallel_stream(look, chosen):  # in order: the same numbers at any number of threads
-        for total, one in zip((seen, first, second, most, pixels), found, strict=True):
+        for total, one in zip((seen, first, second, most, black, pixels), found, strict=True):
             total += one
     if not seen.any():
-        return Effect(_ground(depth, given, np.zeros(len(points)), np.zeros(len(points))), (side, start), 0.0)
+        return Effect(_ground(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
     of_texel = len(cameras) / len(chosen) * float(pixels[0] / seen.sum())
     curve = second - np.square(first) / np.maximum(seen, 1)
     for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
         values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
-    ground = _ground(depth, given, curve * of_texel, most * of_texel)
+    bare = np.where(_covering(points / [pixel, pixel, 1]), most, np.maximum(black, most))
+    ground = _ground(depth, given, curve * of_texel, most * of_texel, bare * of_texel)
     return Effect(ground, (side, start), float(np.median(seen[seen > 0])) * of_texel)
 
 
@@ -116,8 +122,8 @@ def texel_weights(
 def _looked(
     mesh: Mesh, camera: Camera, photograph: NDArray[np.float32], world: NDArray[np.float64], deeper: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """(5, t): whether the camera sees each texel, error for a step of depth and its square, variance around, and how
-    many pixels see the mesh."""
+    """(6, t): whether the camera sees each texel, error for a step of depth and its square, variance around, the
+    photograph's square, and how many pixels see the mesh."""
     drawn = rasterise_view(mesh, camera)
     (at, depth), (beside, _) = camera.project(world), camera.project(deeper)
     column, row = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
@@ -131,7 +137,17 @@ def _looked(
     shift = np.nan_to_num(beside - at)
     error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
     pixels = np.full(len(world), float((drawn.face >= 0).sum()))
-    return np.stack([inside, error, np.square(error), np.where(inside, varies[row, column], 0), pixels])
+    found = [np.where(inside, picture[row, column], 0) for picture in (varies, np.square(photograph))]
+    return np.stack([inside, error, np.square(error), *found, pixels])
+
+
+def _covering(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(t,) whether more of the surface lies behind each of some points (pixel, pixel, inverse depth)."""
+    _, cell = np.unique(np.floor(points[:, :2] / CELL), axis=0, return_inverse=True)
+    cell = cell.reshape(-1)
+    farthest = np.full(int(cell.max(initial=-1)) + 1, np.inf)
+    np.minimum.at(farthest, cell, points[:, 2])
+    return points[:, 2] > farthest[cell] * (1 + APART)
 
 
 def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> float:
@@ -147,16 +163,20 @@ def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> fl
 
 
 def _ground(
-    depth: NDArray[np.float32], given: NDArray[np.bool_], curve: NDArray[np.float64], most: NDArray[np.float64]
+    depth: NDArray[np.float32],
+    given: NDArray[np.bool_],
+    curve: NDArray[np.float64],
+    most: NDArray[np.float64],
+    bare: NDArray[np.float64],
 ) -> Ground:
     """The curve smoothed; beside the surface a texel costs what the nearest on it does."""
-    full = np.zeros((2, *given.shape), np.float32)
-    full[:, given] = curve, most
+    full = np.zeros((3, *given.shape), np.float32)
+    full[:, given] = curve, most, bare
     share = np.maximum(uniform_filter(given.astype(np.float32), SMOOTH), 1e-6)
     smooth = np.where(given, uniform_filter(full[0], SMOOTH) / share, 0).astype(np.float32)
     row, column = distance_transform_edt(~given, return_distances=False, return_indices=True)
     return Ground(
-        depth, given.astype(np.uint8), smooth, np.ascontiguousarray(full[1][row, column]),
+        depth, given.astype(np.uint8), smooth, np.ascontiguousarray(full[1][row, column]), full[2],
         np.zeros(given.shape, np.int16),
     )  # fmt: skip
 

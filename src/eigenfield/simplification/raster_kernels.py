@@ -25,13 +25,15 @@ class Ground(NamedTuple):
 
     depth: float32, of the given surface. given: uint8, 1 where that is. curve: float32, squared error of all pictures
     together for a squared step of depth, while it is small. most: float32, the squared error where something else is
-    seen. cover: int16, of the sheet in hand.
+    seen. bare: float32, where the sheet is gone: as `most` if there is more of the given surface behind, else of black.
+    cover: int16, of the sheet in hand.
     """
 
     depth: NDArray[np.float32]
     given: NDArray[np.uint8]
     curve: NDArray[np.float32]
     most: NDArray[np.float32]
+    bare: NDArray[np.float32]
     cover: NDArray[np.int16]
 
 
@@ -92,7 +94,7 @@ def face_cost(ground, places, depth, a, b, c, add, holes):
             if cost > 0.0:
                 total += cost * most / (cost + most)
             if holes and covered + min(add, 0) == 0:
-                total -= most
+                total -= ground.bare[row, column]
     return total
 
 
@@ -107,7 +109,7 @@ def sheet_cost(ground, places, depth, faces):
     for row in range(ground.depth.shape[0]):
         for column in range(ground.depth.shape[1]):
             if ground.given[row, column] and ground.cover[row, column] == 0:
-                total += ground.most[row, column]
+                total += ground.bare[row, column]
     return total
 
 
