@@ -6,7 +6,7 @@ import logging
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 
@@ -225,8 +225,7 @@ class Draft:
 
     def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """Pixels and mask of an encoded camera, counted among those."""
-        picture = self._shown.photograph(index)
-        return picture.pixels, picture.mask
+        return _photograph(self._shown, index)
 
     def scene(
         self,
@@ -319,6 +318,11 @@ def _draft(
     )  # fmt: skip
 
 
+def _photograph(shown: LightField, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
+    picture = shown.photograph(index)
+    return picture.pixels, picture.mask
+
+
 def _fitted_surface(
     shown: LightField,
     mesh: Mesh,
@@ -330,13 +334,9 @@ def _fitted_surface(
 ) -> Mesh:
     """The proxy where the encoded photographs, `shown`, agree on it."""
 
-    def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-        picture = shown.photograph(index)
-        return picture.pixels, picture.mask
-
     relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
     used = [cameras[index] for index in encoded]
-    return fit_surface(mesh, relief and relief[0], used, photograph, side, work, progress)
+    return fit_surface(mesh, relief and relief[0], used, partial(_photograph, shown), side, work, progress)
 
 
 def _slim(

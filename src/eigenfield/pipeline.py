@@ -40,6 +40,7 @@ from eigenfield.fitting import (
     KINDS,
     Shots,
     Target,
+    compared,
     fitted_textures,
     open_fits,
     open_shots,
@@ -217,11 +218,14 @@ def _reached(target: Target, draft: Draft, work: Path | None, progress: Progress
             abs(other.mesh_bytes - draft.mesh_bytes) >= MESH_SHARE * found.size
             or abs(other.atlas[0] / draft.atlas[0] - 1) >= DENSITY_SHARE
         )
+        if again:
+            found = compared(target, found, shots)
     if again:
         words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
         log.info(words, found.quality, other.mesh_bytes, draft.mesh_bytes, *other.atlas, *draft.atlas)
         with _fitted(other, work, progress, warn=False) as (coded, measured, shots):
             second, met_again = reach(target, coded, shots, found.quality)
+            second = compared(target, second, shots)
             sizes = second.size, second.measured, found.size, found.measured
             if target.worth(second) > target.worth(found):
                 log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)

@@ -16,7 +16,7 @@ from eigenfield.fitting.planes import (
 )
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.surface import fit_surface
-from eigenfield.fitting.target import Target, reach, warn_of_miss
+from eigenfield.fitting.target import Target, compared, reach, warn_of_miss
 
 __all__ = [
     "KINDS",
@@ -31,6 +31,7 @@ __all__ = [
     "byte_price",
     "code_plane",
     "coded_psnr",
+    "compared",
     "density_of",
     "fit_plane",
     "fit_surface",

@@ -88,18 +88,35 @@ def open_shots(
 
         def put(index: int) -> bool:
             pixels, mask = decode(index)
-            camera, part = cameras[index], slice(starts[index], starts[index + 1])
+            part = slice(starts[index], starts[index + 1])
             codes[part] = to_codes(pixels).reshape(-1, 3)
-            frame = Frame(surface, camera.height, camera.width)
-            cover(surface, camera, frame)
-            places = np.zeros((camera.height, camera.width, 2), np.float32)
-            place_pixels(frame.inverse_depth, frame.column_of, frame.row_of, *atlas, places)
-            landed[part] = places.reshape(-1, 2)
+            landed[part] = _places(surface, cameras[index])
             counts[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
             return mask is not None
 
         masked = list(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
         yield Shots(shapes, codes, landed, starts, counts if any(masked) else None, surface)
+
+
+def on_mesh(shots: Shots, cameras: Sequence[Camera], mesh: Mesh) -> Shots:
+    """The photographs of `cameras` on another mesh; `shots`, whose places these replace, are of no use any more."""
+    surface = make_surface(mesh, *shots.surface.size)
+
+    def put(index: int) -> None:
+        shots.landed[shots.starts[index] : shots.starts[index + 1]] = _places(surface, cameras[index])
+
+    for _ in parallel_stream(put, range(len(cameras))):
+        pass
+    return replace(shots, surface=surface)
+
+
+def _places(surface: Surface, camera: Camera) -> NDArray[np.float32]:
+    """(pixels, 2) of `Shots.landed` for one camera."""
+    frame = Frame(surface, camera.height, camera.width)
+    cover(surface, camera, frame)
+    places = np.zeros((camera.height, camera.width, 2), np.float32)
+    place_pixels(frame.inverse_depth, frame.column_of, frame.row_of, *surface.size, places)
+    return places.reshape(-1, 2)
 
 
 @contextlib.contextmanager

@@ -18,13 +18,12 @@ from __future__ import annotations
 import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
-from scipy.sparse import coo_array, diags_array
+from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import cg
 
 from eigenfield.camera import Camera
@@ -33,7 +32,7 @@ from eigenfield.fitting.fit import fit_mean
 from eigenfield.fitting.kernels import aim, draw, put_back
 from eigenfield.fitting.model import Model
 from eigenfield.fitting.passes import MINUS, psnr_of
-from eigenfield.fitting.shots import Decode, Shots, open_shots, thinned
+from eigenfield.fitting.shots import Decode, Shots, on_mesh, open_shots, thinned
 from eigenfield.fitting.solve import measure_scales
 from eigenfield.fitting.surface_kernels import gather_steps
 from eigenfield.format.lattice import Lattice
@@ -61,26 +60,25 @@ SOME = 2000  # vertices by which pixels are measured
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """A mesh whose vertices may move along `lines` (n, 3), of which a unit is about a pixel in the camera that moves
-    most. lattice: of a relief. shape: rows and columns of the atlas. off: (n,) units from the given places."""
+    """A mesh as it was given, whose p points may move along `lines` (p, 3), of which a unit is about a pixel in the
+    camera that moves most. lattice: of a relief. shape: rows and columns of the atlas.
+
+    same: (n,) the point at which each vertex is, those that are doubled for their texture at one. owners: the face of
+    each texel, spread: (t, p) from points to covered texels, prior: (p, p) what displacements cost."""
 
     given: Mesh
     lattice: Lattice | None
     lines: NDArray[np.float64]
     shape: tuple[int, int]
-    off: NDArray[np.float64]
+    same: NDArray[np.int64]
+    owners: NDArray[np.int32]
+    spread: csr_array
+    prior: csr_array
 
-    @cached_property
-    def mesh(self) -> Mesh:
-        """As it is now."""
-        vertices = self.given.vertices + self.off[:, None] * self.lines
-        return replace(self.given, vertices=vertices.astype(np.float32)) if self.off.any() else self.given
-
-    @property
-    def uv(self) -> NDArray[np.float64]:
-        """(n, 2) texture coordinates in texels."""
-        assert self.given.uv is not None
-        return self.given.uv.astype(np.float64) * [self.shape[1], self.shape[0]]
+    def moved(self, off: NDArray[np.float64]) -> Mesh:
+        """With the points so many units (p,) off."""
+        vertices = self.given.vertices + (off[:, None] * self.lines)[self.same]
+        return replace(self.given, vertices=vertices.astype(np.float32))
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,70 +110,74 @@ def fit_surface(
     """
     some = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
     used, shape = [cameras[index] for index in some], (min(side, SIDE_MOST),) * 2
-    thin = len(used) >= THINNED_FROM or sum(camera.width * camera.height for camera in used) > PIXELS
-    sheet = Sheet(mesh, lattice, _lines(mesh, lattice, used), shape, np.zeros(len(mesh.vertices)))
-    best, reached = mesh, -np.inf
-    for number in range(ROUNDS + 1):
-        if progress is not None:
-            progress("fit surface", number, ROUNDS + 1)
-        with (
-            open_shots(used, lambda index: decode(some[index]), sheet.mesh, shape, work) as every,
-            thinned(every, 2 if thin else 1, work) as shots,
-        ):
-            model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
-            left = fit_mean(shots, model, measure_scales(shots, model))
-            if not left.pixels.any():
-                break
-            now = psnr_of(left.squares, left.pixels)
-            log.info("surface, after round %d: %.2f dB by the mean alone", number, now)
-            if now <= reached:
-                break
-            best, reached = sheet.mesh, now
-            if number == ROUNDS:
-                break
-            step, promised = _step(sheet, shots, used, model)
+    step = 2 if len(used) >= THINNED_FROM or sum(one.width * one.height for one in used) > PIXELS else 1
+    sheet = _sheet(mesh, lattice, used, shape)
+    best, reached, off = mesh, -np.inf, np.zeros(len(sheet.lines))
+    with open_shots(used, lambda index: decode(some[index]), mesh, shape, work) as every:
+        for number in range(ROUNDS + 1):
+            if progress is not None:
+                progress("fit surface", number, ROUNDS + 1)
+            with thinned(every, step, work) as shots:
+                model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
+                left = fit_mean(shots, model, measure_scales(shots, model))
+                if not left.pixels.any():
+                    break
+                now = psnr_of(left.squares, left.pixels)
+                log.info("surface, after round %d: %.2f dB by the mean alone", number, now)
+                if now <= reached:
+                    break
+                best, reached = mesh, now
+                if number == ROUNDS:
+                    break
+                further, promised = _step(sheet, mesh, off, shots, used, model)
             if promised < STOP:
                 break
-            sheet = replace(sheet, off=sheet.off + step)
+            off += further
+            mesh = sheet.moved(off)
+            every = on_mesh(every, used, mesh)
     if progress is not None:
         progress("fit surface", ROUNDS + 1, ROUNDS + 1)
     return best
 
 
-def _step(sheet: Sheet, shots: Shots, cameras: Sequence[Camera], model: Model) -> tuple[NDArray[np.float64], float]:
-    """(n,) by how much vertices move in a round, and the part of the squared error that this is reckoned to take
-    off."""
-    owners, corners, weights = texels_of(sheet.mesh, sheet.shape)
-    asked = _asked(sheet, shots, cameras, model, (owners, corners, weights))
-    _, first, same = np.unique(sheet.mesh.vertices, axis=0, return_index=True, return_inverse=True)
-    same, count = same.reshape(-1), len(first)  # vertices that are doubled for their texture move as one
+def _sheet(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape: tuple[int, int]) -> Sheet:
+    assert mesh.uv is not None
+    found, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    points, same = found.astype(np.float64), same.reshape(-1)
+    owners, corners, weights = texels_of(mesh, shape)
     rows = np.repeat(np.arange(len(corners)), 3)
-    spread = coo_array((weights.reshape(-1), (rows, same[corners].reshape(-1))), shape=(len(corners), count)).tocsr()
+    size = len(corners), len(points)
+    spread = coo_array((weights.reshape(-1), (rows, same[corners].reshape(-1))), shape=size).tocsr()
     area: NDArray[np.float64] = np.asarray(spread.sum(axis=0)).reshape(-1)
-    prior = STIFF * _laplacian(sheet, same, count) + RIDGE * diags_array(np.maximum(area, 1))
-    normal = (spread.T @ diags_array(asked.weight) @ spread + prior).tocsr()
-    pull = np.asarray(spread.T @ asked.pull - prior @ sheet.off[first])
+    uv = mesh.uv.astype(np.float64) * [shape[1], shape[0]]
+    prior = STIFF * _laplacian(same, mesh.faces, uv) + RIDGE * diags_array(np.maximum(area, 1))
+    lines = _lines(points, same[mesh.faces], lattice, cameras)
+    return Sheet(mesh, lattice, lines, shape, same, owners, spread, prior.tocsr())
+
+
+def _step(
+    sheet: Sheet, mesh: Mesh, off: NDArray[np.float64], shots: Shots, cameras: Sequence[Camera], model: Model
+) -> tuple[NDArray[np.float64], float]:
+    """(p,) by how much points that are `off` (p,), as in `mesh`, move in a round, and the part of the squared error
+    that this is reckoned to take off."""
+    asked, spread = _asked(sheet, mesh, shots, cameras, model), sheet.spread
+    normal = (spread.T @ diags_array(asked.weight) @ spread + sheet.prior).tocsr()
+    pull = np.asarray(spread.T @ asked.pull - sheet.prior @ off)
     step, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
     step = step.clip(-LONGEST, LONGEST)
     moved = spread @ step
     less = ((2 * moved * asked.pull - moved * moved * asked.weight) / asked.scale).sum()
-    return step[same], float(less) / max(asked.squares, 1e-12)
+    return step, float(less) / max(asked.squares, 1e-12)
 
 
-def _asked(
-    sheet: Sheet,
-    shots: Shots,
-    cameras: Sequence[Camera],
-    model: Model,
-    texels: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]],
-) -> Asked:
-    """What all cameras together ask of the covered texels. texels: of `texels_of`."""
-    owners, corners, weights = texels
-    covered, mean, size = owners >= 0, model.mean[0], shots.surface.size
-    points = np.einsum("tk,tkc->tc", weights, sheet.mesh.vertices.astype(np.float64)[corners])
-    steps = np.einsum("tk,tkc->tc", weights, sheet.lines[corners])
+def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], model: Model) -> Asked:
+    """What all cameras together ask of the covered texels."""
+    covered, mean, size = sheet.owners >= 0, model.mean[0], shots.surface.size
+    places = np.zeros(sheet.lines.shape)
+    places[sheet.same] = mesh.vertices
+    points, steps = sheet.spread @ places, sheet.spread @ sheet.lines
     slopes = np.stack([np.gradient(mean, axis=1)[covered], np.gradient(mean, axis=0)[covered]], axis=1)
-    tangents, faces = _tangents(sheet), owners[covered]
+    tangents, faces = _tangents(mesh, sheet.lattice, sheet.shape), sheet.owners[covered]
     matrix = (model.matrix / np.float32(255)).astype(np.float32)
 
     def look(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
@@ -206,22 +208,23 @@ def _asked(
     return Asked(np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum()))
 
 
-def _lines(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n, 3) of a `Sheet`; longer with the square of the distance, so that a unit is as much parallax everywhere."""
-    points = mesh.vertices.astype(np.float64)
+def _lines(
+    points: NDArray[np.float64], faces: NDArray[np.int64], lattice: Lattice | None, cameras: Sequence[Camera]
+) -> NDArray[np.float64]:
+    """(p, 3) of a `Sheet`; longer with the square of the distance, so that a unit is as much parallax everywhere.
+    faces: (m, 3) of points."""
     if lattice is not None:
         exact = lattice.coordinates(points)
         lines = lattice.points(exact + np.array([0, 0, 1])) - lattice.points(exact)
     else:
-        _, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
-        same, corners = same.reshape(-1), points[mesh.faces]
+        corners = points[faces]
         across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals = np.zeros((int(same.max(initial=-1)) + 1, 3))
+        normals = np.zeros_like(points)
         for k in range(3):
-            np.add.at(normals, same[mesh.faces[:, k]], across)
+            np.add.at(normals, faces[:, k], across)
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
         middle = np.mean([camera.centre for camera in cameras], axis=0)
-        lines = normals[same] * np.square(points - middle).sum(axis=1, keepdims=True)
+        lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
     few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SOME)).astype(int))
     length = max(float(np.linalg.norm(lines[few])), 1e-30)
     small = 1e-4 * float(np.linalg.norm(points[few] - cameras[0].centre)) / length
@@ -233,15 +236,17 @@ def _lines(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera]) -> ND
     return lines / most if most > 0 else np.zeros_like(lines)
 
 
-def _tangents(sheet: Sheet) -> NDArray[np.float64]:
+def _tangents(mesh: Mesh, lattice: Lattice | None, shape: tuple[int, int]) -> NDArray[np.float64]:
     """(m, 2, 3) for each face how the world's point moves for a texel to the right, and one down. A relief's faces are
     taken as if they faced its camera: those that are steep, across steps of depth, would ask for more than all
     others."""
-    uv, points = sheet.uv[sheet.given.faces], sheet.mesh.vertices.astype(np.float64)[sheet.given.faces]
-    if sheet.lattice is not None:
-        exact = sheet.lattice.coordinates(points.reshape(-1, 3)).reshape(-1, 3, 3)
+    assert mesh.uv is not None
+    uv = (mesh.uv.astype(np.float64) * [shape[1], shape[0]])[mesh.faces]
+    points = mesh.vertices.astype(np.float64)[mesh.faces]
+    if lattice is not None:
+        exact = lattice.coordinates(points.reshape(-1, 3)).reshape(-1, 3, 3)
         exact[..., 2] = exact[..., 2].mean(axis=1, keepdims=True)
-        points = sheet.lattice.points(exact.reshape(-1, 3)).reshape(-1, 3, 3)
+        points = lattice.points(exact.reshape(-1, 3)).reshape(-1, 3, 3)
     (a, b), (c, d) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
     one, other = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
     area = a * d - b * c
@@ -249,12 +254,13 @@ def _tangents(sheet: Sheet) -> NDArray[np.float64]:
     return np.stack([(one * d[:, None] - other * b[:, None]) * over, (other * a[:, None] - one * c[:, None]) * over], 1)
 
 
-def _laplacian(sheet: Sheet, same: NDArray[np.int64], count: int) -> coo_array:
-    """(count, count) of the mesh's edges, the weight of one in inverse proportion to its length in texels."""
-    faces, uv = sheet.given.faces, sheet.uv
+def _laplacian(same: NDArray[np.int64], faces: NDArray[np.int32], uv: NDArray[np.float64]) -> coo_array:
+    """(p, p) of the mesh's edges, the weight of one in inverse proportion to its length in texels, which are what uv
+    (n, 2) counts. same: see `Sheet`."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     ends, some = np.unique(np.sort(same[edges], axis=1), axis=0, return_index=True)
     strength = 1 / np.maximum(np.linalg.norm(uv[edges[some, 0]] - uv[edges[some, 1]], axis=1), 1)
     one, other = ends.T
     places = np.concatenate([one, other, one, other]), np.concatenate([one, other, other, one])
+    count = int(same.max()) + 1
     return coo_array((np.concatenate([strength, strength, -strength, -strength]), places), shape=(count, count))

@@ -72,8 +72,8 @@ class Target:
 
 @dataclass(frozen=True, eq=False)
 class Tried(Generic[T]):
-    """A file at a quality: its bytes, and what it reaches of what was asked for (the PSNR where that is a size; 0 where
-    it is not measured)."""
+    """A file at a quality: its bytes, and what it reaches of what was asked for (of a size: 0, or the PSNR once
+    `compared`)."""
 
     quality: int
     size: int
@@ -129,10 +129,12 @@ def reach(target: Target, coded: Callable[[int], Scene], shots: Shots, first: in
         scene = coded(quality)
         return Tried(quality, len(encode_scene(scene)), 0.0 if target.size else _measured(target, scene, shots), scene)
 
-    found, met = search(target, code, first)
-    if target.size is not None:
-        found = replace(found, measured=_measured(target, found.result, shots))
-    return found, met
+    return search(target, code, first)
+
+
+def compared(target: Target, found: Tried[Scene], shots: Shots) -> Tried[Scene]:
+    """What was found, measured too where the target is a size: for `Target.worth`."""
+    return found if target.size is None else replace(found, measured=_measured(target, found.result, shots))
 
 
 def warn_of_miss(target: Target, nearest: Tried[Scene]) -> None:

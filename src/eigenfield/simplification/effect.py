@@ -33,10 +33,8 @@ SIDE_MOST = 1536  # texels
 AROUND = 9  # pixels over which photographs vary
 SMOOTH = 3  # texels over which errors are averaged
 BEHIND = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
-CELL, APART = (
-    4,
-    0.01,
-)  # pixels within which, and inverse depth by which, one point must lie behind another to stand for it
+CELL = 4  # pixels within which one point must lie behind another to stand for it
+APART = 0.01  # of inverse depth, by which it must
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,7 @@ def texels_of(mesh: Mesh, shape: tuple[int, ...]) -> tuple[NDArray[np.int32], ND
     """Of an atlas of (rows, columns): (rows, columns) the face that covers each texel or -1, and as `texel_weights`."""
     assert mesh.uv is not None
     owners = np.zeros(shape, np.int32)
-    places = np.rint(mesh.uv.astype(np.float64) * [shape[1], shape[0]] * STEPS).astype(np.int64)
+    places = _places(mesh.uv, np.array(shape[::-1]), np.zeros(2))
     draw_owners(places, mesh.faces, owners)
     return owners, *texel_weights(places, mesh.faces, owners)
 
@@ -181,7 +179,7 @@ def _ground(
     )  # fmt: skip
 
 
-def _places(uv: NDArray[np.float32], side: float, start: NDArray[np.float64]) -> NDArray[np.int64]:
+def _places(uv: NDArray[np.float32], side: float | NDArray[np.int64], start: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.rint((uv.astype(np.float64) * side + start) * STEPS).astype(np.int64)
 
 
