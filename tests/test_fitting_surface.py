@@ -109,6 +109,36 @@ def test_doubled_vertices_move_as_one():
     assert np.median(np.abs(torn_found.vertices[first] - found.vertices)) < 1e-3
 
 
+def test_surfaces_that_touch_without_common_vertices_stay_together():
+    """A wall on a floor, divided otherwise: where only one of them moved, a camera would look through between."""
+    cameras = row_grid(9, 64, 56)
+    fine, coarse = sheet(3.1, 9), sheet(3.1, 6)
+    halves = [
+        replace(
+            half, vertices=(half.vertices * [0.5, 1, 1] + [add, 0, 0]).astype(np.float32), uv=half.uv * [0.5, 1] + u
+        )
+        for half, add, u in ((fine, -1.5, 0), (coarse, 1.5, [0.5, 0]))
+    ]
+    wrong = Mesh(
+        np.concatenate([half.vertices for half in halves]),
+        np.concatenate([halves[0].faces, halves[1].faces + len(fine.vertices)]),
+        np.concatenate([half.uv for half in halves]).astype(np.float32),
+    )
+    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    moved = np.abs(found.vertices - wrong.vertices).max(axis=1) > 0
+    touching = np.abs(wrong.vertices[:, 0]) < 1e-6
+    assert moved.any() and touching.sum() == 9 + 6 and not moved[touching].any()
+    for camera in cameras:
+        assert draw_texture(found, detailed(), camera, samples=1).coverage.all()
+
+
+def test_a_mesh_of_open_edges_alone_stays():
+    cameras = row_grid(9, 64, 56)
+    wrong = sheet(3.1, 2)
+    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    np.testing.assert_array_equal(found.vertices, wrong.vertices)
+
+
 def test_masked_pixels_do_not_count():
     cameras = row_grid(9, 64, 56)
     right, spoiled = photographs_of(sheet(3.0), cameras), np.random.default_rng(1)

@@ -8,7 +8,9 @@ the photographs, r, is to be g x for the steps x, less what is the same in all c
 the mean is fitted again on the moved mesh, in turns.
 
 Errors count by those around, so that glass and gloss, which no depth draws, move nothing; and no vertex moves far from
-its given place, or apart from its neighbours, that the photographs do not hold to another.
+its given place, or apart from its neighbours, that the photographs do not hold to another. Open edges of what is no
+relief stay where they are: another surface may touch them there without a common vertex, and a gap would show what is
+behind.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -63,14 +65,16 @@ class Sheet:
     """A mesh as it was given, whose p points may move along `lines` (p, 3), of which a unit is about a pixel in the
     camera that moves most. lattice: of a relief. shape: rows and columns of the atlas.
 
-    same: (n,) the point at which each vertex is, those that are doubled for their texture at one. owners: the face of
-    each texel, spread: (t, p) from points to covered texels, prior: (p, p) what displacements cost."""
+    same: (n,) the point at which each vertex is, those that are doubled for their texture at one. free: (p,) which may
+    move. owners: the face of each texel, spread: (t, p) from points to covered texels, prior: (p, p) what displacements
+    cost."""
 
     given: Mesh
     lattice: Lattice | None
     lines: NDArray[np.float64]
     shape: tuple[int, int]
     same: NDArray[np.int64]
+    free: NDArray[np.bool_]
     owners: NDArray[np.int32]
     spread: csr_array
     prior: csr_array
@@ -152,7 +156,10 @@ def _sheet(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape
     uv = mesh.uv.astype(np.float64) * [shape[1], shape[0]]
     prior = STIFF * _laplacian(same, mesh.faces, uv) + RIDGE * diags_array(np.maximum(area, 1))
     lines = _lines(points, same[mesh.faces], lattice, cameras)
-    return Sheet(mesh, lattice, lines, shape, same, owners, spread, prior.tocsr())
+    free = np.ones(len(points), bool)
+    if lattice is None:
+        free[_open_points(same[mesh.faces])] = False
+    return Sheet(mesh, lattice, lines, shape, same, free, owners, spread, prior.tocsr())
 
 
 def _step(
@@ -160,11 +167,14 @@ def _step(
 ) -> tuple[NDArray[np.float64], float]:
     """(p,) by how much points that are `off` (p,), as in `mesh`, move in a round, and the part of the squared error
     that this is reckoned to take off."""
-    asked, spread = _asked(sheet, mesh, shots, cameras, model), sheet.spread
-    normal = (spread.T @ diags_array(asked.weight) @ spread + sheet.prior).tocsr()
-    pull = np.asarray(spread.T @ asked.pull - sheet.prior @ off)
-    step, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
-    step = step.clip(-LONGEST, LONGEST)
+    step, spread, free = np.zeros(len(off)), sheet.spread, np.flatnonzero(sheet.free)
+    if not len(free):
+        return step, 0.0
+    asked = _asked(sheet, mesh, shots, cameras, model)
+    normal = (spread.T @ diags_array(asked.weight) @ spread + sheet.prior).tocsr()[free][:, free]
+    pull = np.asarray(spread.T @ asked.pull - sheet.prior @ off)[free]
+    found, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
+    step[free] = found.clip(-LONGEST, LONGEST)
     moved = spread @ step
     less = ((2 * moved * asked.pull - moved * moved * asked.weight) / asked.scale).sum()
     return step, float(less) / max(asked.squares, 1e-12)
@@ -252,6 +262,13 @@ def _tangents(mesh: Mesh, lattice: Lattice | None, shape: tuple[int, int]) -> ND
     area = a * d - b * c
     over = np.divide(1, area, out=np.zeros_like(area), where=np.abs(area) > 1e-12)[:, None]
     return np.stack([(one * d[:, None] - other * b[:, None]) * over, (other * a[:, None] - one * c[:, None]) * over], 1)
+
+
+def _open_points(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Points on edges of one face only. faces: (m, 3) of points."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    ends, count = np.unique(edges, axis=0, return_counts=True)
+    return np.unique(ends[count == 1])
 
 
 def _laplacian(same: NDArray[np.int64], faces: NDArray[np.int32], uv: NDArray[np.float64]) -> coo_array:
