@@ -16,7 +16,7 @@ from eigenfield.format.stored import stream_of
 from eigenfield.mesh import Mesh
 from eigenfield.raster import rasterise_view
 from eigenfield.simplification import depth_effect, slim_mesh, slim_relief
-from eigenfield.simplification.collapse_kernels import collapse
+from eigenfield.simplification.collapse_kernels import collapse, fallen
 from eigenfield.simplification.effect import opened
 from eigenfield.simplification.raster_kernels import STEPS, Ground, sheet_cost
 from eigenfield.simplification.relief import _sheet
@@ -81,7 +81,11 @@ def test_collapses_lose_less_than_they_save_and_leave_a_sheet(worth):
     exact = np.concatenate([places / STEPS, depth[:, None]], axis=1)
     sheet, below = _sheet(places, exact, faces), ground()
     before = sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
-    gone = collapse(below, sheet, worth)
+    falls, costs = collapse(below, sheet, worth)
+    gone = len(falls)
+    assert (costs < worth).all()
+    again = fallen(faces, falls)
+    np.testing.assert_array_equal(again[again[:, 0] >= 0], sheet.faces[sheet.faces[:, 0] >= 0])
     covered = below.cover.copy()
     left = sheet.faces[sheet.faces[:, 0] >= 0]
     after = sheet_cost(below, sheet.places, sheet.depth, left)
@@ -104,13 +108,35 @@ def test_what_is_dear_keeps_more():
     row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
     counts = []
     for curve in (0.0, 0.01, 1.0):
-        exact = np.stack([x, y, 3 * np.sin(x / 4) * np.cos(y / 5)], axis=1)
-        below = ground(curve)._replace(depth=(3 * np.sin(column / 4) * np.cos(row / 5)).astype(np.float32))
+        exact = np.stack([x, y, hills(x, y)], axis=1)
+        below = ground(curve)._replace(depth=hills(column, row).astype(np.float32))
         sheet = _sheet(places, exact, faces)
         sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
         collapse(below, sheet, 0.05)
         counts.append(len(np.unique(sheet.faces[sheet.faces[:, 0] >= 0])))
     assert counts[0] < counts[1] < counts[2] / 2
+
+
+def hills(x, y):
+    return 3 * np.sin(x / 4) * np.cos(y / 5)
+
+
+def test_less_worth_is_the_same_up_to_what_costs_as_much():
+    places, _, faces = terrain()
+    x, y = places.T / STEPS
+    row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
+
+    def taken(worth):
+        sheet = _sheet(places, np.stack([x, y, hills(x, y)], axis=1), faces)
+        below = ground()._replace(depth=hills(column, row).astype(np.float32))
+        sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
+        return collapse(below, sheet, worth)
+
+    falls, costs = taken(1.0)
+    for worth in (0.3, 0.05, 0.01):
+        dear = costs >= worth
+        assert 0 < dear.sum() < len(costs)
+        np.testing.assert_array_equal(taken(worth)[0], falls[: dear.argmax()])
 
 
 def test_vertices_of_two_charts_stay():

@@ -181,10 +181,12 @@ def _fall(ground, sheet, u, v):
 @kernel()
 def collapse(ground, sheet, worth):
     """Take vertices away, the most rewarding first, while what the pictures lose is less than `worth`, squared error,
-    of a vertex' bytes. `ground.cover` is that of the sheet. Returns how many went."""
+    of a vertex' bytes. `ground.cover` is that of the sheet. Returns who fell onto whom (g, 2) int32 in their order, and
+    what each cost (g,): for less worth, the same up to the first that costs as much."""
     n = sheet.places.shape[0]
     marks, stamps, version = np.zeros(n, np.int64), np.zeros(1, np.int64), np.zeros(n, np.int64)
     ring, beside = np.empty(n, np.int64), np.empty(n, np.int64)
+    falls, costs = np.empty((n, 2), np.int32), np.empty(n)
     heap = [(0.0, np.int64(0), np.int64(0), np.int64(0))]
     heap.clear()
     for vertex in range(n):
@@ -193,11 +195,12 @@ def collapse(ground, sheet, worth):
             heapq.heappush(heap, (cost, np.int64(vertex), target, np.int64(0)))
     gone = 0
     while len(heap) > 0:
-        _, u, v, at = heapq.heappop(heap)
+        cost, u, v, at = heapq.heappop(heap)
         if version[u] != at:
             continue
         _fall(ground, sheet, u, v)
         version[u] += 1
+        falls[gone, 0], falls[gone, 1], costs[gone] = u, v, cost
         gone += 1
         stamps[0] += 1
         count, _ = _ring(sheet, v, beside, marks, stamps[0])
@@ -207,4 +210,18 @@ def collapse(ground, sheet, worth):
             cost, target = _best(ground, sheet, w, ring, beside, marks, stamps)
             if cost < worth:
                 heapq.heappush(heap, (cost, np.int64(w), target, version[w]))
-    return gone
+    return falls[:gone], costs[:gone]
+
+
+@kernel()
+def fallen(faces, falls):
+    """Faces (m, 3) int32 once vertices have fallen, falls (g, 2) as of `collapse`; -1 first where one is gone."""
+    onto = np.arange(faces.max() + 1 if faces.size else 0)
+    for i in range(len(falls) - 1, -1, -1):
+        onto[falls[i, 0]] = onto[falls[i, 1]]
+    result = np.empty_like(faces)
+    for f in range(faces.shape[0]):
+        a, b, c = onto[faces[f, 0]], onto[faces[f, 1]], onto[faces[f, 2]]
+        gone = a == b or b == c or c == a
+        result[f, 0], result[f, 1], result[f, 2] = -1 if gone else a, b, c
+    return result

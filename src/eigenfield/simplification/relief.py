@@ -1,17 +1,17 @@
 """A relief in as few bytes as its pictures are worth.
 
 Vertices are taken away while that costs the pictures less than their bytes cost elsewhere; depths are fitted to those
-of the given surface; then the steps of depth and of contours are tried, and the form is kept whose bytes and errors
-together are least. Where a camera sees through it, fewer vertices are taken away.
+of the given surface; then steps of depth and of contours are tried, from those of the lattice to coarser ones, and the
+form is kept whose bytes and errors together are least. Where a camera sees through it, fewer vertices are taken away.
 """
 
 # mypy: disable-error-code="no-untyped-call"
 
 from __future__ import annotations
 
-import contextlib
+import itertools
 import logging
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,7 +24,7 @@ from eigenfield.format.geometry import UV_BITS
 from eigenfield.format.lattice import Lattice
 from eigenfield.format.mesh_coder import encode_mesh
 from eigenfield.mesh import Mesh
-from eigenfield.simplification.collapse_kernels import BORDER, INSIDE, KEPT, Sheet, collapse
+from eigenfield.simplification.collapse_kernels import BORDER, INSIDE, KEPT, Sheet, collapse, fallen
 from eigenfield.simplification.effect import Effect, Grey, depth_effect, opened, texel_weights
 from eigenfield.simplification.raster_kernels import draw_owners, sheet_cost
 
@@ -46,6 +46,10 @@ class Form:
     mesh: Mesh
     loss: float
 
+    def cost(self, price: float) -> float:
+        """Of both together: a byte is worth `price`."""
+        return self.loss + price * len(self.stream)
+
 
 def slim_relief(
     mesh: Mesh, lattice: Lattice, fine: int, cameras: Sequence[Camera], grey: Grey, price: float, texels: float
@@ -57,16 +61,23 @@ def slim_relief(
     exact = lattice.coordinates(mesh.vertices)
     effect = depth_effect(mesh, lattice, 2.0**fine, cameras, grey)
     price *= effect.seen / texels / LEFT
+    sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
+    sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
+    falls, costs = collapse(effect.ground, sheet, COLLAPSES[0] * price * VERTEX_BYTES)
     found: list[tuple[float, Form]] = []
-    whole = list(_forms(mesh, lattice, fine, effect))  # all of a grid is cheap
+    whole = _form(mesh, lattice, fine, effect, 0, 1.0)  # all of a grid is cheap
+    start = 0, 0
     for worth in COLLAPSES:
-        slim, gone = _collapsed(mesh, lattice, effect, exact.copy(), worth * price * VERTEX_BYTES)
-        forms = [*_forms(slim, lattice, fine, effect), *whole]
-        if not forms:
+        dear = costs >= worth * price * VERTEX_BYTES
+        gone = int(dear.argmax()) if dear.any() else len(costs)
+        slim = _fallen(mesh, lattice, effect, exact, falls[:gone])
+        best, start = _cheapest(slim, lattice, fine, effect, price, start)
+        if whole is not None and (best is None or whole.cost(price) < best.cost(price)):
+            best, _ = _cheapest(mesh, lattice, fine, effect, price, (0, 0))
+        if best is None:
             continue
-        best = min(forms, key=lambda form: form.loss + price * len(form.stream))
         holes = opened(mesh, best.mesh, cameras, grey)
-        found.append((best.loss + price * len(best.stream) + HOLES * holes, best))
+        found.append((best.cost(price) + HOLES * holes, best))
         log.info(
             "relief: %d of %d triangles in %d bytes, %d vertices went, squared error of holes %.4g",
             len(best.mesh.faces), len(mesh.faces), len(best.stream), gone, holes,
@@ -78,32 +89,59 @@ def slim_relief(
     return min(found, key=lambda one: one[0])[1]
 
 
-def _collapsed(
-    mesh: Mesh, lattice: Lattice, effect: Effect, exact: NDArray[np.float64], worth: float
-) -> tuple[Mesh, int]:
-    """The mesh without vertices that cost less than `worth`, depths fitted; how many went. exact: (n, 3) the vertices'
-    lattice coordinates, which are changed."""
+def _fallen(mesh: Mesh, lattice: Lattice, effect: Effect, exact: NDArray[np.float64], falls: NDArray[np.int32]) -> Mesh:
+    """The mesh without the vertices that fell, depths fitted. exact: (n, 3) the vertices' lattice coordinates."""
     assert mesh.uv is not None
-    sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
-    sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
-    gone = collapse(effect.ground, sheet, worth)
-    faces = np.ascontiguousarray(sheet.faces[sheet.faces[:, 0] >= 0])
-    exact[:, 2] = _fitted(effect, sheet.places, sheet.depth, faces)
-    return Mesh(lattice.points(exact).astype(np.float32), faces, mesh.uv), int(gone)
+    faces = fallen(mesh.faces, falls)
+    faces = np.ascontiguousarray(faces[faces[:, 0] >= 0])
+    depth = _fitted(effect, effect.places(mesh.uv), exact[:, 2], faces)
+    used, faces = np.unique(faces, return_inverse=True)
+    vertices = lattice.points(np.column_stack([exact[used, :2], depth[used]])).astype(np.float32)
+    return Mesh(vertices, faces.reshape(-1, 3).astype(np.int32), mesh.uv[used])
 
 
-def _forms(mesh: Mesh, lattice: Lattice, fine: int, effect: Effect) -> Iterator[Form]:
-    """The mesh coded with depths and contours as coarse as may pay."""
-    for digits in range(fine + 1):  # fine digits less
-        for step in DEPTH_STEPS:
-            coarse = Lattice(lattice.matrix @ np.diag([2.0**digits, 2.0**digits, step, 1.0]), True)
-            with contextlib.suppress(ValueError):
-                stream, found = encode_mesh(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
-                if len(found.faces):
-                    assert found.uv is not None
-                    depth = lattice.coordinates(found.vertices)[:, 2]
-                    loss = sheet_cost(effect.ground, effect.places(found.uv), depth, found.faces)
-                    yield Form(stream, found, float(loss))
+def _cheapest(
+    mesh: Mesh, lattice: Lattice, fine: int, effect: Effect, price: float, start: tuple[int, int]
+) -> tuple[Form | None, tuple[int, int]]:
+    """The form with depths and contours as coarse as pays best, from which no single step either way is better, and how
+    coarse: digits less, and the index in DEPTH_STEPS. start: where to look first. Where nothing there can be coded, all
+    are tried."""
+    tried: dict[tuple[int, int], Form | None] = {}
+
+    def cost(at: tuple[int, int]) -> float:
+        digits, step = at
+        if not (0 <= digits <= fine and 0 <= step < len(DEPTH_STEPS)):
+            return np.inf
+        if at not in tried:
+            tried[at] = _form(mesh, lattice, fine, effect, digits, DEPTH_STEPS[step])
+        form = tried[at]
+        return np.inf if form is None else form.cost(price)
+
+    best = start
+    if cost(best) == np.inf:
+        best = min(itertools.product(range(fine + 1), range(len(DEPTH_STEPS))), key=cost)
+    while True:
+        digits, step = best
+        near = (best, (digits, step + 1), (digits, step - 1), (digits + 1, step), (digits - 1, step))
+        following = min(near, key=cost)
+        if following == best:
+            return tried[best], best
+        best = following
+
+
+def _form(mesh: Mesh, lattice: Lattice, fine: int, effect: Effect, digits: int, step: float) -> Form | None:
+    """The mesh coded with so many of the contours' fine digits less, and depths in steps so many times the lattice's;
+    None where it cannot be."""
+    coarse = Lattice(lattice.matrix @ np.diag([2.0**digits, 2.0**digits, step, 1.0]), True)
+    try:
+        stream, found = encode_mesh(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
+    except ValueError:
+        return None
+    if not len(found.faces):
+        return None
+    assert found.uv is not None
+    depth = lattice.coordinates(found.vertices)[:, 2]
+    return Form(stream, found, float(sheet_cost(effect.ground, effect.places(found.uv), depth, found.faces)))
 
 
 def _sheet(places: NDArray[np.int64], exact: NDArray[np.float64], faces: NDArray[np.int32]) -> Sheet:
