@@ -18,6 +18,7 @@ JSON_CHUNK = b"JSON"
 BINARY_CHUNK = b"BIN\0"
 HEADER = struct.Struct("<4sII")  # magic, version, length of the file
 CHUNK = struct.Struct("<I4s")  # length of the data, type
+EXACT = 2.0**53  # below which a float is a whole number exactly
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,9 +133,19 @@ def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:
 
 
 def json_bytes(value: Any) -> bytes:
-    """Compact JSON, padded with spaces to a multiple of 4. Raises ValueError for NaN: our own bug."""
-    text = json.dumps(value, separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
+    """Compact JSON, whole numbers without a fraction, padded with spaces to a multiple of 4. Raises ValueError for NaN:
+    our own bug."""
+    text = json.dumps(_short(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
     return text + b" " * (-len(text) % 4)
+
+
+def _short(value: Any) -> Any:
+    """The same numbers in fewer characters: 1 for 1.0."""
+    if isinstance(value, dict):
+        return {key: _short(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_short(item) for item in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < EXACT else value
 
 
 def front(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
