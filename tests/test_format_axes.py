@@ -86,7 +86,7 @@ def test_a_gltf_viewer_opens_on_what_the_reference_camera_saw(tmp_path):
     clip = seen[:, :2] / (-seen[:, 2:] * half * np.array([perspective["aspectRatio"], 1]))
     pixels, depth = camera.project(scene.mesh.vertices)
     assert depth.min() > perspective["znear"]
-    np.testing.assert_allclose((clip * (1, -1) + 1) / 2 * (48, 40), pixels, atol=1e-4)  # float32
+    np.testing.assert_allclose((clip * (1, -1) + 1) / 2 * (48, 40), pixels, atol=1e-6)
 
 
 def test_a_scene_that_stands_as_gltf_has_it_needs_no_rotation(tmp_path):

@@ -105,12 +105,8 @@ for (const name of [...new Set(references.map(({ scene }) => scene))]) {
         const share = within(picture, expected);
         assert.ok(share > 0.99, `${reference.file}: only ${share} of the pixels within two grey levels`);
       } else {
-        // A surface moved to where nine photographs agree has the finest ripples in its textures: there a few pixels
-        // are up to 8 levels off, 1 in 2000 more than two, in the mean 0.04
-        if (reference.snapped) {
-          const share = within(picture, expected);
-          assert.ok(mean <= 0.1 && share > 0.999, `${reference.file}: mean ${mean}, ${share} within two grey levels`);
-        } else assert.ok(largest <= 2, `${reference.file}: largest ${largest}`);
+        const most = reference.snapped ? 1 : 2; // without the browser's rounding of vertices, and with it
+        assert.ok(largest <= most, `${reference.file}: largest ${largest}`);
       }
     }
     await close();
@@ -397,13 +393,10 @@ test("a browser that does not give codes of 10 bits draws nearly the same with 8
     await load(page, name);
     for (const reference of references.filter(({ scene }) => scene === name)) {
       await drawReference(page, reference);
-      const [picture, expected] = [await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file)))];
-      const { mean } = difference(picture, expected);
+      const { largest, mean } = difference(await canvasPixels(page), decodePng(readFileSync(scenePath(reference.file))));
       // half a code of 8 bits is up to 0.5 grey levels of the mean, as if random 0.3; textures have codes as fine as
       // their values allow. With ten bits the means of these pictures are 0.11 at most.
-      assert.ok(mean <= 0.5, `${reference.file}: mean ${mean}`);
-      const share = within(picture, expected, 4);
-      assert.ok(share > 0.999, `${reference.file}: only ${share} of the pixels within four grey levels`);
+      assert.ok(mean <= 0.5 && largest <= 4, `${reference.file}: mean ${mean}, largest ${largest}`);
       assert.ok(mean >= 0.15, `${reference.file}: mean ${mean}, as if all ten bits were there`);
     }
   }

@@ -88,7 +88,7 @@ class Sheet:
 @dataclass(frozen=True, eq=False)
 class Asked:
     """What t texels ask of the steps of the points in them: to be `pull` / `weight`, counted by `weight`, which is the
-    square of what a unit changes beside that of the errors around. scale: (t,) by which both are more than in the
+    square of what a unit changes beside that of the errors around, less for fewer cameras. scale: (t,) by which both are more than in the
     pictures. squares: of all errors there."""
 
     pull: NDArray[np.float64]
@@ -214,7 +214,8 @@ def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], mo
     often = np.zeros_like(mean)
     often[covered] = shown
     error = gaussian_filter(squares, AROUND) / np.maximum(gaussian_filter(often, AROUND), 1e-6)
-    scale = 1 / (usual * np.maximum(error[covered].astype(np.float64), LEAST_ERROR**2))
+    sure = len(shots) / CAMERAS  # fewer cameras tell light from depth less well
+    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), LEAST_ERROR**2))
     return Asked(np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum()))
 
 

@@ -388,20 +388,14 @@ def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     turn = capture_to_gltf(scene.view_plane)
     perspective, axes = opening_view(camera, scene.mesh)
     proxy = {"name": "proxy", "mesh": 0, **_turned(turn)}
-    place = _single(turn @ camera.centre)
-    reference = {"name": "reference camera", "camera": 0, "translation": place, **_turned(turn @ axes)}
-    return {key: _single([value])[0] for key, value in perspective.items()}, [proxy, reference]
+    place = (turn @ camera.centre + 0.0).tolist()
+    return perspective, [proxy, {"name": "reference camera", "camera": 0, "translation": place, **_turned(turn @ axes)}]
 
 
 def _turned(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
     """A node's rotation, (3, 3); left out where it is none."""
-    found = _single(quaternion(rotation))
+    found = quaternion(rotation)
     return {} if found == [0, 0, 0, 1] else {"rotation": found}
-
-
-def _single(values: Sequence[float] | NDArray[np.float64]) -> list[float]:
-    """Numbers that float32 holds, as engines read them, in as few digits; no minus zero."""
-    return [float(str(number)) for number in np.asarray(values, np.float32) + np.float32(0)]
 
 
 def check_writable(scene: Scene, path: Path | None) -> None:
