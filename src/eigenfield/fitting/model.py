@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.kernels import enlarge
-from eigenfield.parallel import pieces
 from eigenfield.rendering.drawing import Surface
 from eigenfield.rendering.kernels import TILE
 from eigenfield.rendering.resample import Taps, make_taps
@@ -59,29 +58,30 @@ class Model:
 
     def sums(self, cameras: slice) -> NDArray[np.float32]:
         """(B, C, h, w) float32: the weighted sum of all components for some cameras."""
-        return sums_of(
-            self, [block.textures for block in self.blocks], [block.weights for block in self.blocks], cameras
-        )
+        weights = [block.weights[cameras] for block in self.blocks]
+        total = np.empty((len(weights[0]) if weights else 0, self.channels, *self.grid), np.float32)
+        sum_up(self, [block.textures for block in self.blocks], weights, total)
+        return total
 
 
-def sums_of(
-    model: Model, textures: list[NDArray[np.float32]], weights: list[NDArray[np.float32]], cameras: slice
-) -> NDArray[np.float32]:
-    """As `Model.sums`, with other textures or weights in the model's blocks."""
-    rows = [block_weights[cameras] for block_weights in weights]
-    count = len(rows[0]) if rows else 0
-    total = np.zeros((count, model.channels, *model.grid), np.float32)
-    for block, some, mine in zip(model.blocks, textures, rows, strict=True):
+def sum_up(
+    model: Model, textures: list[NDArray[np.float32]], weights: list[NDArray[np.float32]], total: NDArray[np.float32]
+) -> None:
+    """As `Model.sums`, of textures and weights, (B, n) each, in the model's blocks, into `total`."""
+    into, begun = total.reshape(len(total), -1), False
+    for block, some, mine in zip(model.blocks, textures, weights, strict=True):
         if not block.count:
             continue
         flat = some.reshape(block.count, -1)
-        if some.shape[2:] == model.grid:
-            into = total.reshape(count, -1)
-            for first, last in pieces(flat.shape[1], COLUMNS):
-                into[:, first:last] += mine @ flat[:, first:last]
+        if not begun and some.shape[2:] == model.grid:
+            np.matmul(mine, flat, out=into)
         else:
-            total[:, :, *block.window] += (mine @ flat).reshape(count, *some.shape[1:])
-    return total
+            if not begun:
+                into[:] = 0
+            total[:, :, *block.window] += (mine @ flat).reshape(len(mine), *some.shape[1:])
+        begun = True
+    if not begun:
+        into[:] = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.kernels import aim, distrust, draw, put_back, squares_of
-from eigenfield.fitting.model import COLUMNS, Composer, Model, sums_of
+from eigenfield.fitting.model import COLUMNS, Composer, Model, sum_up
 from eigenfield.fitting.shots import Shots
 from eigenfield.parallel import parallel_map, pieces
 
@@ -74,18 +74,25 @@ def look(
     summed, for_coarse = coarse and textures is not None, coarse and (for_textures or for_weights)
     matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
+    # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
+    batch = min(BATCH, len(shots))
+    room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
+    product = np.empty((max((block.count for block in blocks), default=0), COLUMNS), np.float32)
+    shares = np.zeros((len(pieces(batch, PIECE)), *total.shape), np.float32)
     for first, last in pieces(len(shots), BATCH):
         some = slice(first, last)
-        sums = sums_of(model, textures, weights, some) if summed and textures is not None else None
-        back = np.zeros((last - first if for_coarse else 0, model.channels, *model.grid), np.float32)
+        sums = room[0, : last - first] if summed and textures is not None else None
+        if sums is not None and textures is not None:
+            sum_up(model, textures, [rows[some] for rows in weights], sums)
+        back = room[1, : last - first]
 
         def piece(
             part: tuple[int, int],
             first: int = first,
             sums: NDArray[np.float32] | None = sums,
             back: NDArray[np.float32] = back,
-        ) -> NDArray[np.float32]:
-            added = np.zeros(model.mean.shape if for_mean else (0, 0, 0), np.float32)
+        ) -> None:
+            added = shares[part[0] // PIECE]
             for at in range(*part):
                 index = first + at
                 places, weight = shots.places(index), shots.weight(index)
@@ -110,19 +117,21 @@ def look(
                 if for_mean:
                     put_back(places, size, image, weight, added)
                 if for_coarse:
+                    back[at] = 0
                     put_back(places, size, image, weight, back[at])
-            return added
 
-        for added in parallel_map(piece, pieces(last - first, PIECE)):
-            total += added
+        parallel_map(piece, pieces(last - first, PIECE))
         for number, block in enumerate(blocks if for_coarse else ()):
             inside = np.ascontiguousarray(back[:, :, *block.window]).reshape(last - first, -1)
             if for_textures and block.count:
                 into = found[number].reshape(block.count, -1)
                 for left, right in pieces(into.shape[1], COLUMNS):
-                    into[:, left:right] += block.weights[some].T @ inside[:, left:right]
+                    part = product[: block.count, : right - left]
+                    into[:, left:right] += np.matmul(block.weights[some].T, inside[:, left:right], out=part)
             if for_weights and block.count:
                 asked[number][some] = inside @ block.textures.reshape(block.count, -1).T
+    for share in shares:
+        total += share
     return Look(total, found, asked, squares, pixels)
 
 
