@@ -26,7 +26,7 @@ demo: $(VENV)/.installed
 	$(BIN)/eigenfield demo
 
 test: $(VENV)/.installed-test
-	$(BIN)/python -m pytest -m 'not slow' $(PYTEST_ARGS)
+	$(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadfile $(PYTEST_ARGS)
 
 web:
 	cd web && npm ci --no-audit --no-fund && npm run build
