@@ -88,8 +88,8 @@ class Sheet:
 @dataclass(frozen=True, eq=False)
 class Asked:
     """What t texels ask of the steps of the points in them: to be `pull` / `weight`, counted by `weight`, which is the
-    square of what a unit changes beside that of the errors around, less for fewer cameras. scale: (t,) by which both are
-    more than in the pictures. squares: of all errors there."""
+    square of what a unit changes beside that of the errors around, less for fewer cameras. scale: (t,) by which both
+    are more than in the pictures. squares: of all errors there."""
 
     pull: NDArray[np.float64]
     weight: NDArray[np.float64]
