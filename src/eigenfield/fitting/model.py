@@ -67,21 +67,15 @@ class Model:
 def sum_up(
     model: Model, textures: list[NDArray[np.float32]], weights: list[NDArray[np.float32]], total: NDArray[np.float32]
 ) -> None:
-    """As `Model.sums`, of textures and weights, (B, n) each, in the model's blocks, into `total`."""
-    into, begun = total.reshape(len(total), -1), False
-    for block, some, mine in zip(model.blocks, textures, weights, strict=True):
-        if not block.count:
-            continue
-        flat = some.reshape(block.count, -1)
-        if not begun and some.shape[2:] == model.grid:
-            np.matmul(mine, flat, out=into)
-        else:
-            if not begun:
-                into[:] = 0
-            total[:, :, *block.window] += (mine @ flat).reshape(len(mine), *some.shape[1:])
-        begun = True
-    if not begun:
-        into[:] = 0
+    """As `Model.sums`, of textures and weights, (B, n) each, in the model's blocks, into `total` (contiguous)."""
+    parts = [part for part in zip(model.blocks, textures, weights, strict=True) if part[0].count]
+    if parts and parts[0][1].shape[2:] == model.grid:
+        _, some, mine = parts.pop(0)
+        np.matmul(mine, some.reshape(len(some), -1), out=total.reshape(len(total), -1))
+    else:
+        total[:] = 0
+    for block, some, mine in parts:
+        total[:, :, *block.window] += (mine @ some.reshape(len(some), -1)).reshape(len(mine), *some.shape[1:])
 
 
 @dataclass(frozen=True, eq=False)

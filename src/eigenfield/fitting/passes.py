@@ -66,25 +66,24 @@ def look(
     """
     for_mean, for_textures, for_weights = wanted
     blocks, size = model.blocks, shots.surface.size
-    total = np.zeros(model.mean.shape if for_mean else (0, 0, 0), np.float32)
     found = [np.zeros_like(block.textures) for block in blocks] if for_textures else []
     asked = [np.zeros((len(shots), block.count), np.float32) for block in blocks] if for_weights else []
     squares, pixels = np.zeros(len(shots)), np.zeros(len(shots))
     coarse = any(block.count for block in blocks)
-    summed, for_coarse = coarse and textures is not None, coarse and (for_textures or for_weights)
+    for_coarse = coarse and (for_textures or for_weights)
     matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
     batch = min(BATCH, len(shots))
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
     product = np.empty((max((block.count for block in blocks), default=0), COLUMNS), np.float32)
-    shares = np.zeros((len(pieces(batch, PIECE)), *total.shape), np.float32)
+    shares = np.zeros((len(pieces(batch, PIECE)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32)
     for first, last in pieces(len(shots), BATCH):
         some = slice(first, last)
-        sums = room[0, : last - first] if summed and textures is not None else None
-        if sums is not None and textures is not None:
+        sums, back = None, room[1, : last - first]
+        if coarse and textures is not None:
+            sums = room[0, : last - first]
             sum_up(model, textures, [rows[some] for rows in weights], sums)
-        back = room[1, : last - first]
 
         def piece(
             part: tuple[int, int],
@@ -130,9 +129,7 @@ def look(
                     into[:, left:right] += np.matmul(block.weights[some].T, inside[:, left:right], out=part)
             if for_weights and block.count:
                 asked[number][some] = inside @ block.textures.reshape(block.count, -1).T
-    for share in shares:
-        total += share
-    return Look(total, found, asked, squares, pixels)
+    return Look(shares.sum(axis=0), found, asked, squares, pixels)
 
 
 def psnr_of(squares: NDArray[np.float64], pixels: NDArray[np.float64], channels: int = 1) -> float:
