@@ -87,10 +87,10 @@ def frames(scene: Scene, filter: str, count: int = FRAMES) -> dict[str, Any]:
         at = (0.7 * np.cos(angle), 0.7 * np.sin(angle))
         started = time.perf_counter()
         camera = novel_camera(scene, at).resized(WIDTH, HEIGHT)
-        renderer.draw_uint8(camera, view_weights(scene, at), filter=filter, samples=1)
+        renderer.draw_uint8(camera, view_weights(scene, at), filter=filter)
         if number >= 0:
             taken.append(time.perf_counter() - started)
-    coverage = renderer.draw(camera, view_weights(scene, at), filter=filter, samples=1).coverage.mean()
+    coverage = renderer.draw(camera, view_weights(scene, at), filter=filter).coverage.mean()
     return {
         "fps": round(1 / float(np.median(taken)), 1),
         "fps_best": round(1 / min(taken), 1),

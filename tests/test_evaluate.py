@@ -38,11 +38,21 @@ def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
     assert figures["bytes"] is figures["ratio"] is None
     assert figures["missing"] == []
     assert "curve" not in figures
-    assert figures["uv"]["ssim"] > 0.9  # drawing and projecting back each resample once
     assert set(figures["image"]["encoded"]) == {
         "cameras", "psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "worst"
     }  # fmt: skip
     json.dumps(figures, allow_nan=False)
+
+
+def test_drawing_and_projecting_back_each_resample_once(scene, tmp_path):
+    """Pictures without smooth edges, whose pixels hold some of the background."""
+    renderer = Renderer(scene)
+
+    def plain(index, picture):
+        camera, row = scene.cameras[index], camera_weights(scene, index)
+        return renderer.draw_uint8(camera, row, samples=1)
+
+    assert evaluate(scene, write_capture(scene, tmp_path / "c", plain))["uv"]["ssim"] > 0.9
 
 
 @pytest.mark.parametrize(("at", "kind"), [(2, "encoded"), (HELD[0], "held_out")])

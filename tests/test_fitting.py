@@ -30,7 +30,7 @@ from eigenfield.fitting import (
     thinned,
 )
 from eigenfield.fitting.colour import LUMA, split_matrix, to_rgb
-from eigenfield.fitting.kernels import bend, distrust, draw, put_back, squares_of
+from eigenfield.fitting.kernels import aim, bend, distrust, draw, put_back, squares_of
 from eigenfield.fitting.model import Block, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
 from eigenfield.fitting.shots import doubtable
@@ -57,6 +57,20 @@ def true_model(cameras: int, seed: int = 0) -> Model:
     return Model(RGB, np.ascontiguousarray(mean.astype(np.float32)), GRID, [block])
 
 
+def whole(drawn):
+    """A picture whose pixels at the border show nothing but the surface, as a photograph's."""
+    return drawn.image / np.maximum(drawn.coverage, 0.25)[..., None]
+
+
+def middles(shots, index):
+    """(h, w, 2) of `Shots.places`: of each pixel's places the middle, -1 where there is none."""
+    many, places = shots.places(index)
+    pixels = np.repeat(np.arange(many.size), many.reshape(-1))
+    sums = np.stack([np.bincount(pixels, places[:, k], many.size) for k in range(2)], axis=1)
+    found = np.where(many.reshape(-1, 1) > 0, sums / np.maximum(many.reshape(-1, 1), 1), -1)
+    return found.reshape(*many.shape, 2)
+
+
 @pytest.fixture(scope="module")
 def world():
     """Nine cameras that see what `true_model` draws, rounded to codes."""
@@ -71,8 +85,8 @@ def world():
         composer.grid.up(model.sums(slice(index, index + 1))[0], texture)
         texture += model.mean
         plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
-        drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9), samples=1)
-        pictures.append(to_codes(drawn.image).astype(np.float32) / 255)
+        drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9))
+        pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
     with open_shots(CAMERAS, lambda index: (pictures[index], None), mesh, (SIDE, SIDE)) as shots:
         yield shots, composer, model
 
@@ -90,9 +104,12 @@ def test_thinned_pixels_are_some_of_all(world):
     with thinned(shots, 2) as some:
         assert len(some) == len(shots)
         for index in range(len(shots)):
-            all_places = {tuple(place) for place in shots.places(index).reshape(-1, 2)}
-            assert {tuple(place) for place in some.places(index).reshape(-1, 2)} <= all_places
-            assert some.photograph(index).shape[:2] == some.places(index).shape[:2]
+            (many, places), (fewer, left) = shots.places(index), some.places(index)
+            assert many.sum() == len(places) and fewer.sum() == len(left)
+            rows, columns = slice(7 * index // 2 % 2, None, 2), slice(index % 2, None, 2)
+            np.testing.assert_array_equal(some.photograph(index), shots.photograph(index)[rows, columns])
+            np.testing.assert_array_equal(fewer, many[rows, columns])
+            np.testing.assert_array_equal(middles(some, index), middles(shots, index)[rows, columns])
             assert 0.2 < np.prod(some.shapes[index]) / np.prod(shots.shapes[index]) < 0.3
     with thinned(shots, 1) as same:
         assert same is shots
@@ -103,23 +120,26 @@ def test_thinned_pixels_are_some_of_all(world):
 def test_drawing_and_its_transpose(height, width, channels, seed):
     random = np.random.default_rng(seed)
     size = (int(random.integers(2, 60)), int(random.integers(2, 60)))
-    places = random.uniform(0, 1, (7, 9, 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
-    places[random.random((7, 9)) < 0.2] = -1
-    covered = places[..., 0] >= 0
+    many = random.choice(np.array([0, 1, 1, 2, 3, 4], np.uint8), (7, 9))
+    places = random.uniform(0, 1, (int(many.sum()), 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
+    covered = many > 0
     texture = random.normal(size=(channels, height, width)).astype(np.float32)
     image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
     codes = random.integers(0, 256, (7, 9)).astype(np.uint8)
     weight = codes / np.float32(255)
     drawn, back = np.zeros_like(image), np.zeros_like(texture)
-    draw(places, size, texture, np.float32(1), drawn)
-    put_back(places, size, image, codes, back)
+    draw(many, places, size, texture, np.float32(1), drawn)
+    put_back(many, places, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
-    squares, total = squares_of(places, drawn, codes)
+    squares, total = squares_of(many, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
     ones = np.zeros_like(drawn)
-    draw(places, size, np.ones_like(texture), np.float32(1), ones)
-    np.testing.assert_allclose(ones, np.broadcast_to(covered, ones.shape), atol=1e-5)
+    draw(many, places, size, np.ones_like(texture), np.float32(1), ones)
+    np.testing.assert_allclose(ones, np.broadcast_to(np.where(many == 1, 4, many) / 4, ones.shape), atol=1e-5)
+    aimed = np.zeros((3, 7, 9), np.float32)
+    aim(many, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
+    np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4)
 
 
 def test_the_laplacian_is_that_of_a_quadratic():
@@ -187,8 +207,12 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
     assert uncoded > start + 1
     assert coded > 38
     scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=CAMERAS, planes=(plane,))
-    drawn = [Renderer(scene).draw(camera, np.eye(9)[i], samples=1) for i, camera in enumerate(CAMERAS)]
-    errors = [(d.image - shots.photograph(i) / np.float32(255))[d.coverage > 0] for i, d in enumerate(drawn)]
+    drawn = [Renderer(scene).draw(camera, np.eye(9)[i]) for i, camera in enumerate(CAMERAS)]
+    photographs = [shots.photograph(i) / np.float32(255) for i in range(9)]
+    errors = [
+        (d.image - d.coverage[..., None] * photograph)[d.coverage > 0.25]
+        for d, photograph in zip(drawn, photographs, strict=True)
+    ]
     assert np.mean([-10 * np.log10(np.square(e).mean()) for e in errors]) == pytest.approx(coded, abs=0.02)
 
 
@@ -198,7 +222,7 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
     lit = np.random.default_rng(4).uniform(0, 1, (len(shots), 2, 2, 3)).astype(np.float32)
     with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as plain:
         for index, picture in enumerate(pictures):
-            rows, columns = np.clip((plain.places(index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
+            rows, columns = np.clip((middles(plain, index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
             inside = (rows >= 0) & (rows < 2) & (columns >= 0) & (columns < 2)
             picture[inside] = lit[index][rows[inside], columns[inside]]
     with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as glitter:
@@ -230,7 +254,7 @@ def test_pixels_far_off_count_for_less(world):
         with doubtable(glinting) as doubted:
             robust = reached(doubted)
             weights = np.stack([doubted.weight(i) for i in range(9)])
-            covered = np.stack([doubted.places(i)[..., 0] >= 0 for i in range(9)])
+            covered = np.stack([doubted.places(i)[0] > 0 for i in range(9)])
         assert robust > reached(glinting) + 0.7
     glints = np.stack(spoiled)
     assert np.median(weights[glints & covered]) < 128 and np.median(weights[~glints & covered]) > 240

@@ -17,7 +17,7 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import set_threads
 from eigenfield.raster import rasterise_view
 from eigenfield.rendering import Renderer, draw_texture, path_points, view_weights
-from eigenfield.rendering.drawing import Frame, cover
+from eigenfield.rendering.drawing import STANDARD, Frame, choose_sampling, cover
 from eigenfield.scene import Basis, Plane
 
 SIZE = 32
@@ -208,22 +208,58 @@ def test_tiles_out_of_sight_are_not_needed():
     near = replace(
         camera, K=np.diag([6.0, 6, 1]) @ camera.K - np.array([[0, 0, 5.0 * 24], [0, 0, 5.0 * 20], [0, 0, 0]])
     )
-    frame = Frame(renderer._surface, near.height, near.width)
-    cover(renderer._surface, near, frame)
+    sampling = choose_sampling(renderer._surface, near)
+    frame = Frame(renderer._surface, near.height, near.width, sampling)
+    cover(renderer._surface, near, sampling, frame)
     assert 0 < frame.needed.sum() < 0.4 * frame.needed.size
     whole = draw_texture(scene.mesh, renderer.texture(weights), near, samples=1)
     np.testing.assert_allclose(renderer.draw(near, weights, samples=1).image, whole.image, atol=1e-6)
 
 
-def test_what_is_drawn_is_what_the_rasteriser_finds():
-    """On triangles that hide each other: the same coverage, and at each pixel the UV of the rasteriser's triangle."""
+def hidden_triangles(count=60):
+    """Triangles that hide each other, and a camera in front of them."""
     random = np.random.default_rng(5)
-    count = 60
     middle = random.uniform([-0.5, -0.4, 2], [0.5, 0.4, 5], (count, 1, 3))
     corners = (middle + random.uniform(-0.5, 0.5, (count, 3, 3))).reshape(-1, 3).astype(np.float32)
     uv = random.uniform(0.05, 0.95, (3 * count, 2)).astype(np.float32)
     mesh = Mesh(corners, np.arange(3 * count, dtype=np.int32).reshape(-1, 3), uv)
-    camera = Camera(np.array([[150.0, 0, 60], [0, 150, 45], [0, 0, 1]]), np.eye(3), np.zeros(3), 120, 90)
+    return mesh, Camera(np.array([[150.0, 0, 60], [0, 150, 45], [0, 0, 1]]), np.eye(3), np.zeros(3), 120, 90)
+
+
+@pytest.mark.parametrize("filter", ["bilinear", "bicubic"])
+def test_edges_are_the_mean_of_four_samples_and_the_rest_is_drawn_once(filter):
+    mesh, camera = hidden_triangles()
+    texture = np.random.default_rng(3).uniform(0.2, 0.8, (32, 32, 3)).astype(np.float32)
+    behind = (0.1, 0.9, 0.4)
+    smooth = draw_texture(mesh, texture, camera, filter=filter, background=behind)
+    middle = draw_texture(mesh, texture, camera, filter=filter, background=behind, samples=1)
+    four = []
+    for right, down in STANDARD:
+        shifted = replace(camera, K=camera.K - np.array([[0, 0, right], [0, 0, down], [0, 0, 0]]))
+        four.append(draw_texture(mesh, texture, shifted, filter=filter, background=behind, samples=1))
+    np.testing.assert_array_equal(smooth.coverage, np.mean([picture.coverage for picture in four], axis=0))
+    mean = np.mean([picture.image for picture in four], axis=0)
+    edge = (smooth.coverage > 0) & (smooth.coverage < 1)
+    assert edge.mean() > 0.03
+    np.testing.assert_allclose(smooth.image[edge], mean[edge], atol=2e-5)
+    # elsewhere either; what lies apart in the atlas and what does not is told by more than rounding
+    off = np.minimum(np.abs(smooth.image - mean).max(axis=2), np.abs(smooth.image - middle.image).max(axis=2))
+    assert (off[~edge] > 1e-3).mean() < 5e-3
+    inside = smooth.image[smooth.coverage == 1]
+    assert (np.abs(inside - middle.image[smooth.coverage == 1]).max(axis=1) < 1e-4).mean() > 0.3
+
+
+def test_a_picture_without_edges_is_drawn_once():
+    texture = np.random.default_rng(0).uniform(0, 1, (SIZE, SIZE, 3)).astype(np.float32)
+    smooth, middle = (draw_texture(SQUARE, texture, facing(), samples=samples) for samples in (None, 1))
+    np.testing.assert_allclose(smooth.image, middle.image, atol=1e-6)
+    assert (smooth.coverage == 1).all()
+
+
+def test_what_is_drawn_is_what_the_rasteriser_finds():
+    """On triangles that hide each other: the same coverage, and at each pixel the UV of the rasteriser's triangle."""
+    mesh, camera = hidden_triangles()
+    uv = mesh.uv
     raster = rasterise_view(mesh, camera)
     steps = (np.arange(256) + 0.5) / 256
     ramp = np.stack(np.broadcast_arrays(steps[None], steps[:, None], 0.5), axis=-1).astype(np.float32)

@@ -166,7 +166,11 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
     assert sizes["total"] == sum(count for name, count in sizes.items() if name != "total")
     gltf, _ = glb_surgery.split(data)
     extension = gltf["extensions"][limits.EXTENSION]
-    assert extension["version"] == "1.3" and "residual" not in extension["needs"]
+    assert (
+        extension["version"] == "1.5"
+        and extension["residual"]["smooth"] is True
+        and "residual" not in extension["needs"]
+    )
     assert gltf["bufferViews"][-1]["byteLength"] == len(exact.residual.film)  # the last thing in the file
 
 
@@ -286,6 +290,18 @@ def test_shots_that_are_drawn_otherwise_have_none(exact):
     for other in ({"resolution": (32, 32)}, {"filter": "bilinear"}, {"textures": 1}, {"samples": 2}):
         with pytest.raises(OptionError, match="other pictures"):
             captured_pixels(Shots(exact, **other), index, difference)
+
+
+def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
+    """Residuals of files before 1.5."""
+    older = replace(exact, residual=replace(exact.residual, smooth=False))
+    path = stored(encode_scene(older), tmp_path)
+    assert [one for one in validate(path) if one.severity != "information"] == []
+    found, difference = ef.load(path), difference_of(exact, 0)
+    plain, smooth = (ef.render(exact, camera="view_00.png", samples=samples) for samples in (1, None))
+    assert (plain.image != smooth.image).any()
+    expected = to_codes(corrected(plain, difference).image)
+    np.testing.assert_array_equal(captured_pixels(Shots(found), 0, difference), expected)
 
 
 def test_harmonised_scenes_have_their_own_exposure(capture):

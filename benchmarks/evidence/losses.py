@@ -24,7 +24,7 @@ from eigenfield.format.quantise import basis_scale, mean_codes, mean_values, pho
 from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, to_codes
 from eigenfield.rendering import camera_colour, draw_texture
 from eigenfield.rendering.colours import undo_colour
-from eigenfield.rendering.drawing import make_surface, median_footprint, sample_count
+from eigenfield.rendering.drawing import make_surface, median_footprint
 from eigenfield.scene import Basis, Plane, Scene
 from eigenfield.texturing import SIDE_CAP, Atlas, Spreader, make_atlas, make_spreader
 
@@ -211,8 +211,7 @@ def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
         camera = scene.cameras[index]
         values, seen = session.texture(index, session.photograph(index))
         texture = _whole(gutter, np.where(seen[:, None] > 0, values, mean))
-        samples = sample_count(surface, camera, None, detail)  # as many as the renderer takes
-        drawn = draw_texture(scene.mesh, texture, camera, samples=samples)
+        drawn = draw_texture(scene.mesh, texture, camera, detail=detail)  # sampled as the renderer does
         colour = camera_colour(scene, index)
         image = drawn.image
         if colour is not None:

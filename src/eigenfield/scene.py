@@ -81,7 +81,8 @@ class Residual:
 
     film: AV1, a frame for each encoded camera. size: (rows, columns) of the pictures in it, whose top left part a
     photograph is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma,
-    and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine.
+    and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine. smooth: what
+    the scene draws has smooth edges, not one sample a pixel (files before 1.5).
     """
 
     film: bytes
@@ -89,6 +90,7 @@ class Residual:
     order: NDArray[np.int64]
     scale: tuple[float, float]
     full: bool = False
+    smooth: bool = False
 
     @property
     def frame(self) -> tuple[int, int]:

@@ -26,7 +26,7 @@ def picture_options(function: F) -> F:
                      help="Texel filter."),
         click.option("--textures", "-n", type=int, metavar="N", help="Eigen textures to sum.  [default: all]"),
         click.option("--samples", type=int, metavar="K",
-                     help="K x K samples a pixel.  [default: as the density asks for]"),
+                     help="K x K samples a pixel.  [default: four at edges, more in small pictures]"),
         click.option("--renderer", default="software", show_default=True, metavar="software|opengl",
                      help="opengl: on the GPU, without a window; needs `pip install 'eigenfield[gpu]'`."),
     ]  # fmt: skip

@@ -17,7 +17,7 @@ from eigenfield.evaluation.exclusion import Circle
 from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapFigures, measure_map
 from eigenfield.rendering import Picture, Renderer, camera_colour, camera_weights
-from eigenfield.residual import corrected
+from eigenfield.residual import captured_samples, corrected
 from eigenfield.scene import Scene
 from eigenfield.texturing import FILTERS, Atlas, harmonised, make_atlas, texture_map
 
@@ -87,13 +87,13 @@ class Session:
         picture = self.picture(index)
         return picture.image, picture.covered
 
-    def picture(self, index: int) -> Picture:
+    def picture(self, index: int, samples: int | None = None) -> Picture:
         """As it is drawn from camera `index`. A harmonised scene gives an encoded camera its own exposure; a held-out
         one has none that may be known."""
         row = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         return self.renderer.draw(
-            self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], colour=colour
+            self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], samples=samples, colour=colour
         )
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -123,7 +123,9 @@ class Session:
         figures, outside = self._figures(index, drawn, photograph)
         residual = None
         if difference is not None:
-            residual = self._figures(index, corrected(drawn, difference), photograph)
+            samples = captured_samples(self.scene)
+            belongs = drawn if samples is None else self.picture(index, samples)
+            residual = self._figures(index, corrected(belongs, difference), photograph)
         texture = None
         if self.atlas is not None and not self.scene.held_out[index]:
             values, seen = self.texture(index, photograph)

@@ -11,33 +11,64 @@ from eigenfield.jit import kernel
 from eigenfield.rendering.kernels import filter_weights
 from eigenfield.rendering.simd import give_cubic, take_cubic
 
-
-@kernel()
-def place_pixels(near, column_of, row_of, height, width, places):
-    """places (h, w, 2) float32: column and row in an atlas of height x width that each pixel shows, -1 where it shows
-    none; near, column_of, row_of (h, at least w): of a covered `Frame`."""
-    for row in range(places.shape[0]):
-        for pixel in range(places.shape[1]):
-            inverse = near[row, pixel]
-            if inverse > 0:
-                x, y = column_of[row, pixel] / inverse, row_of[row, pixel] / inverse
-                places[row, pixel, 0] = min(max(x, np.float32(0)), np.float32(width - 1))
-                places[row, pixel, 1] = min(max(y, np.float32(0)), np.float32(height - 1))
-            else:
-                places[row, pixel, 0] = np.float32(-1)
-                places[row, pixel, 1] = np.float32(-1)
+# Where the pixels of a camera land: `many` (h, w) uint8 is how many places of the atlas a pixel shows, 0 to 4; places
+# (n, 2) float32 are their columns and rows, pixel by pixel. A single one is all that the pixel shows, each of several a
+# quarter of it.
 
 
 @kernel()
-def aim(places, codes, matrix, image):
-    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8 where a pixel is covered, else zero."""
-    for row in range(places.shape[0]):
-        for pixel in range(places.shape[1]):
-            covered = places[row, pixel, 0] >= 0
+def count_places(near, ends, many):
+    """Fill `many` from the samples of a covered `Frame`, near (h, n), ends (h, w); how many places that makes. Of a
+    pixel at the border of what there is, those samples that show something are counted, if there are two: a single
+    one tells too little of a photograph's pixel."""
+    total = 0
+    for row in range(many.shape[0]):
+        first = 0
+        for pixel in range(many.shape[1]):
+            hits = 0
+            for sample in range(first, ends[row, pixel]):
+                hits += near[row, sample] > 0
+            many[row, pixel] = 0 if hits == 1 and ends[row, pixel] > first + 1 else hits
+            total += many[row, pixel]
+            first = ends[row, pixel]
+    return total
+
+
+@kernel()
+def place_pixels(near, column_of, row_of, ends, height, width, many, places):
+    """Fill `places`, for `many` as `count_places` makes it, in an atlas of height x width. column_of, row_of: (h, n) of
+    the frame."""
+    at, right, bottom, zero = 0, np.float32(width - 1), np.float32(height - 1), np.float32(0)
+    for row in range(many.shape[0]):
+        first = 0
+        for pixel in range(many.shape[1]):
+            if many[row, pixel]:
+                for sample in range(first, ends[row, pixel]):
+                    inverse = near[row, sample]
+                    if inverse > 0:
+                        places[at, 0] = min(max(column_of[row, sample] / inverse, zero), right)
+                        places[at, 1] = min(max(row_of[row, sample] / inverse, zero), bottom)
+                        at += 1
+            first = ends[row, pixel]
+
+
+@kernel(inline=True)
+def share_of(count):
+    """What each place of a pixel that has `count` is of it."""
+    return np.float32(1) if count == 1 else np.float32(0.25)
+
+
+@kernel()
+def aim(many, codes, matrix, image):
+    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows what
+    there is."""
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            part = np.float32(many[row, pixel]) * share_of(many[row, pixel])
             for k in range(image.shape[0]):
                 value = np.float32(0)
-                if covered:
-                    value = (
+                if part > 0:
+                    value = part * (
                         matrix[k, 0] * np.float32(codes[row, pixel, 0])
                         + matrix[k, 1] * np.float32(codes[row, pixel, 1])
                         + matrix[k, 2] * np.float32(codes[row, pixel, 2])
@@ -55,8 +86,8 @@ def position(place, ratio, last):
 @kernel(inline=True)
 def footprint(place, across, down, width, height):
     """Column and row of the texel left above where a pixel lands in a texture of width x height, and Catmull-Rom's
-    weights of the columns and rows from the one before on. place (2,): of `place_pixels`; across, down: see `position`.
-    """
+    weights of the columns and rows from the one before on. place (2,): in the finest atlas; across, down: see
+    `position`."""
     x = position(place[0], across, np.float32(width - 1))
     y = position(place[1], down, np.float32(height - 1))
     left, top = np.int64(x), np.int64(y)
@@ -70,31 +101,31 @@ def tap(left, top, u, v, width, height):
 
 
 @kernel()
-def draw(places, size, texture, sign, image):
-    """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom, where covered.
-
-    places (h, w, 2): see `place_pixels`, in an atlas of `size` (H, W), which need not be the texture's.
-    """
+def draw(many, places, size, texture, sign, image):
+    """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom. places: in an atlas
+    of `size` (H, W), which need not be the texture's."""
     channels, height, width = texture.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = texture.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
-    for row in range(places.shape[0]):
-        for pixel in range(places.shape[1]):
-            if places[row, pixel, 0] < 0:
-                continue
-            left, top, a, d = footprint(places[row, pixel], across, down, width, height)
-            into = row * wide + pixel
-            if 1 <= left < width - 2 and 1 <= top < height - 2:
-                first = (top - 1) * width + left - 1
-                for k in range(channels):
-                    drawn[k * area + into] += sign * take_cubic(flat, first + k * plane, width, a, d)
-            else:
-                for k in range(channels):
-                    for v in range(4):
-                        for u in range(4):
-                            value = flat[k * plane + tap(left, top, u, v, width, height)]
-                            drawn[k * area + into] += sign * d[v] * a[u] * value
+    at = 0
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            count = many[row, pixel]
+            into, part = row * wide + pixel, sign * share_of(count)
+            for _ in range(count):
+                left, top, a, d = footprint(places[at], across, down, width, height)
+                at += 1
+                if 1 <= left < width - 2 and 1 <= top < height - 2:
+                    first = (top - 1) * width + left - 1
+                    for k in range(channels):
+                        drawn[k * area + into] += part * take_cubic(flat, first + k * plane, width, a, d)
+                else:
+                    for k in range(channels):
+                        for v in range(4):
+                            for u in range(4):
+                                value = flat[k * plane + tap(left, top, u, v, width, height)]
+                                drawn[k * area + into] += part * d[v] * a[u] * value
 
 
 @kernel(inline=True)
@@ -104,40 +135,44 @@ def part_of(weight, row, pixel):
 
 
 @kernel()
-def put_back(places, size, image, weight, out):
+def put_back(many, places, size, image, weight, out):
     """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
     channels, height, width = out.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = out.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
-    for row in range(places.shape[0]):
-        for pixel in range(places.shape[1]):
-            w = part_of(weight, row, pixel)
-            if places[row, pixel, 0] < 0 or w <= 0:
+    at = 0
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            count = many[row, pixel]
+            source, w = row * wide + pixel, part_of(weight, row, pixel) * share_of(count)
+            if w <= 0:
+                at += count
                 continue
-            left, top, a, d = footprint(places[row, pixel], across, down, width, height)
-            source = row * wide + pixel
-            if 1 <= left < width - 2 and 1 <= top < height - 2:
-                first = (top - 1) * width + left - 1
-                for k in range(channels):
-                    give_cubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
-            else:
-                for k in range(channels):
-                    for v in range(4):
-                        for u in range(4):
-                            at = k * plane + tap(left, top, u, v, width, height)
-                            flat[at] += d[v] * a[u] * w * drawn[k * area + source]
+            for _ in range(count):
+                left, top, a, d = footprint(places[at], across, down, width, height)
+                at += 1
+                if 1 <= left < width - 2 and 1 <= top < height - 2:
+                    first = (top - 1) * width + left - 1
+                    for k in range(channels):
+                        give_cubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
+                else:
+                    for k in range(channels):
+                        for v in range(4):
+                            for u in range(4):
+                                into = k * plane + tap(left, top, u, v, width, height)
+                                flat[into] += d[v] * a[u] * w * drawn[k * area + source]
 
 
 @kernel()
-def squares_of(places, image, weight):
+def squares_of(many, image, weight):
     """Over the covered pixels: the sum of w image^2, and of w. weight: see `part_of`."""
     squares, total = 0.0, 0.0
-    for row in range(places.shape[0]):
+    for row in range(many.shape[0]):
         line_squares, line_total = np.float32(0), np.float32(0)
-        for pixel in range(places.shape[1]):
+        for pixel in range(many.shape[1]):
             w = part_of(weight, row, pixel)
-            if places[row, pixel, 0] < 0 or w <= 0:
+            if many[row, pixel] == 0 or w <= 0:
                 continue
             for k in range(image.shape[0]):
                 line_squares += w * image[k, row, pixel] * image[k, row, pixel]

@@ -95,29 +95,29 @@ def look(
             for at in range(*part):
                 index = first + at
                 places, weight = shots.places(index), shots.weight(index)
-                image = np.zeros((model.channels, *places.shape[:2]), np.float32)
+                image = np.zeros((model.channels, *shots.shapes[index]), np.float32)
                 if photographs:
-                    aim(places, shots.photograph(index), matrix, image)
+                    aim(places[0], shots.photograph(index), matrix, image)
                 if composer is not None and fine_mean is not None:
                     texture = fine_mean
                     if sums is not None:
                         texture = np.zeros_like(fine_mean)
                         composer.grid.up(sums[at], texture, fine_mean)
-                    draw(places, size, texture, sign, image)
+                    draw(*places, size, texture, sign, image)
                 else:
                     if mean is not None:
-                        draw(places, size, mean, sign, image)
+                        draw(*places, size, mean, sign, image)
                     if sums is not None:
-                        draw(places, size, sums[at], sign, image)
+                        draw(*places, size, sums[at], sign, image)
                 if photographs:
-                    squares[index], pixels[index] = squares_of(places, image, shots.mask(index))
+                    squares[index], pixels[index] = squares_of(places[0], image, shots.mask(index))
                 if half is not None and shots.doubts is not None:
                     distrust(image, shots.mask(index), np.float32(max(half, 1e-12)), weight)
                 if for_mean:
-                    put_back(places, size, image, weight, added)
+                    put_back(*places, size, image, weight, added)
                 if for_coarse:
                     back[at] = 0
-                    put_back(places, size, image, weight, back[at])
+                    put_back(*places, size, image, weight, back[at])
 
         parallel_map(piece, pieces(last - first, PIECE))
         for number, block in enumerate(blocks if for_coarse else ()):

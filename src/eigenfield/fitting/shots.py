@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from eigenfield.camera import Camera
 from eigenfield.files import scratch_array
-from eigenfield.fitting.kernels import place_pixels
+from eigenfield.fitting.kernels import count_places, place_pixels
 from eigenfield.mesh import Mesh
 from eigenfield.metrics import to_codes
 from eigenfield.parallel import parallel_stream
 from eigenfield.progress import Progress, track
-from eigenfield.rendering.drawing import Frame, Surface, cover, make_surface
+from eigenfield.rendering.drawing import Frame, Surface, cover, make_surface, median_footprint, smooth_edges
 
 Decode = Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]]
 
@@ -29,16 +29,19 @@ Decode = Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]]
 class Shots:
     """Photographs of Ne cameras as 8-bit codes, which is what the measures compare with, and where their pixels land.
 
-    shapes: (h, w) of each camera. codes: a flat memory map of R, G, B, landed: one of columns and rows in the atlas,
-    both from pixel starts[c] for camera c. counts: likewise what each pixel counts for, 255 for whole; None: all do.
-    surface: the mesh under the finest atlas. doubts: what pixels count for instead, see `doubtable`.
+    shapes: (h, w) of each camera. codes: a flat memory map of R, G, B, from pixel starts[c] on for camera c. counts:
+    likewise what each pixel counts for, 255 for whole; None: all do. many, landed: likewise `many` and `places` of
+    `fitting.kernels`, the latter from begins[c] on. surface: the mesh under the finest atlas. doubts: what pixels
+    count for instead, see `doubtable`.
     """
 
     shapes: tuple[tuple[int, int], ...]
     codes: NDArray[np.uint8]
-    landed: NDArray[np.float32]
     starts: NDArray[np.int64]
     counts: NDArray[np.uint8] | None
+    many: NDArray[np.uint8]
+    landed: NDArray[np.float32]
+    begins: NDArray[np.int64]
     surface: Surface
     doubts: NDArray[np.uint8] | None = None
 
@@ -49,9 +52,11 @@ class Shots:
         """(h, w, 3) codes."""
         return self._part(self.codes, index)
 
-    def places(self, index: int) -> NDArray[np.float32]:
-        """(h, w, 2): column and row of the atlas that each pixel shows, -1 where it shows none."""
-        return self._part(self.landed, index)
+    def places(self, index: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+        """(h, w), (n, 2): of how many places each pixel is the mean, and their columns and rows in the atlas."""
+        return self._part(self.many, index)[..., 0], np.asarray(
+            self.landed[self.begins[index] : self.begins[index + 1]]
+        )
 
     def _part(self, of: NDArray[Any], index: int) -> NDArray[Any]:
         return np.asarray(of[self.starts[index] : self.starts[index + 1]]).reshape(*self.shapes[index], -1)
@@ -74,15 +79,14 @@ def open_shots(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Shots]:
-    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 12 bytes a pixel:
-    memory does not grow with their number. atlas: (rows, columns) of the finest texture. Raises CaptureError,
-    OutputError `disk-full`."""
+    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 12 bytes a pixel and
+    some more at edges: memory does not grow with their number. atlas: (rows, columns) of the finest texture. Raises
+    CaptureError, OutputError `disk-full`."""
     shapes = tuple((camera.height, camera.width) for camera in cameras)
-    starts, surface = _starts(shapes), make_surface(mesh, *atlas)
+    starts = _starts([h * w for h, w in shapes])
     total = int(starts[-1])
     with (
         scratch_array((total, 3), np.uint8, work) as codes,
-        scratch_array((total, 2), np.float32, work) as landed,
         scratch_array((total,), np.uint8, work) as counts,
     ):
 
@@ -90,33 +94,54 @@ def open_shots(
             pixels, mask = decode(index)
             part = slice(starts[index], starts[index + 1])
             codes[part] = to_codes(pixels).reshape(-1, 3)
-            landed[part] = _places(surface, cameras[index])
             counts[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
             return mask is not None
 
         masked = list(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
-        yield Shots(shapes, codes, landed, starts, counts if any(masked) else None, surface)
+        with _landed(make_surface(mesh, *atlas), cameras, starts, work) as landed:
+            yield Shots(shapes, codes, starts, counts if any(masked) else None, *landed)
 
 
-def on_mesh(shots: Shots, cameras: Sequence[Camera], mesh: Mesh) -> Shots:
-    """The photographs of `cameras` on another mesh; `shots`, whose places these replace, are of no use any more."""
+@contextlib.contextmanager
+def on_mesh(shots: Shots, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[Shots]:
+    """The photographs of `cameras` on another mesh."""
     surface = make_surface(mesh, *shots.surface.size)
+    with _landed(surface, cameras, shots.starts, work) as (many, landed, begins, _):
+        yield replace(shots, many=many, landed=landed, begins=begins, surface=surface)
+
+
+@contextlib.contextmanager
+def _landed(
+    surface: Surface, cameras: Sequence[Camera], starts: NDArray[np.int64], work: Path | None
+) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int64], Surface]]:
+    """`many`, `landed`, `begins` and `surface` of `Shots`, as the renderer samples pictures of the cameras' own size.
+
+    Each camera is rasterised twice, which costs less than room for four places of every pixel would."""
+
+    def drawn(index: int) -> tuple[Frame, NDArray[np.uint8]]:
+        camera = cameras[index]
+        sampling = smooth_edges(median_footprint(surface, camera))
+        frame = Frame(surface, camera.height, camera.width, sampling)
+        cover(surface, camera, sampling, frame)
+        return frame, many[starts[index] : starts[index + 1]].reshape(camera.height, camera.width)
+
+    def count(index: int) -> int:
+        frame, part = drawn(index)
+        return int(count_places(frame.inverse_depth, frame.ends, part))
 
     def put(index: int) -> None:
-        shots.landed[shots.starts[index] : shots.starts[index + 1]] = _places(surface, cameras[index])
+        frame, part = drawn(index)
+        into = places[begins[index] : begins[index + 1]]
+        place_pixels(
+            frame.inverse_depth, frame.column_of, frame.row_of, frame.ends, *surface.size, part, into
+        )  # fmt: skip
 
-    for _ in parallel_stream(put, range(len(cameras))):
-        pass
-    return replace(shots, surface=surface)
-
-
-def _places(surface: Surface, camera: Camera) -> NDArray[np.float32]:
-    """(pixels, 2) of `Shots.landed` for one camera."""
-    frame = Frame(surface, camera.height, camera.width)
-    cover(surface, camera, frame)
-    places = np.zeros((camera.height, camera.width, 2), np.float32)
-    place_pixels(frame.inverse_depth, frame.column_of, frame.row_of, *surface.size, places)
-    return places.reshape(-1, 2)
+    with scratch_array((int(starts[-1]),), np.uint8, work) as many:
+        begins = _starts(list(parallel_stream(count, range(len(cameras)))))
+        with scratch_array((int(begins[-1]), 2), np.float32, work) as places:
+            for _ in parallel_stream(put, range(len(cameras))):
+                pass
+            yield many, places, begins, surface
 
 
 @contextlib.contextmanager
@@ -129,27 +154,27 @@ def thinned(shots: Shots, step: int, work: Path | None = None) -> Iterator[Shots
     def corner(index: int) -> tuple[slice, slice]:
         return slice(7 * index // step % step, None, step), slice(index % step, None, step)
 
-    def size(length: int, part: slice) -> int:
-        return len(range(length)[part])
-
-    shapes = tuple(
-        (size(h, rows), size(w, columns))
-        for (h, w), (rows, columns) in zip(shots.shapes, map(corner, range(len(shots))), strict=True)
-    )
-    starts = _starts(shapes)
+    fewer = [shots.places(index)[0][corner(index)] for index in range(len(shots))]
+    shapes = tuple(count.shape for count in fewer)
+    starts, begins = _starts([h * w for h, w in shapes]), _starts([int(count.sum()) for count in fewer])
     total = int(starts[-1])
     with (
         scratch_array((total, 3), np.uint8, work) as codes,
-        scratch_array((total, 2), np.float32, work) as landed,
         scratch_array((total,), np.uint8, work) as counts,
+        scratch_array((total,), np.uint8, work) as many,
+        scratch_array((int(begins[-1]), 2), np.float32, work) as landed,
     ):
         for index in range(len(shots)):
-            part, taken = slice(starts[index], starts[index + 1]), corner(index)
+            part, taken, (count, places) = slice(starts[index], starts[index + 1]), corner(index), shots.places(index)
             codes[part] = shots.photograph(index)[taken].reshape(-1, 3)
-            landed[part] = shots.places(index)[taken].reshape(-1, 2)
+            many[part] = count[taken].reshape(-1)
+            kept = np.zeros(count.shape, np.bool_)
+            kept[taken] = True
+            landed[begins[index] : begins[index + 1]] = places[np.repeat(kept.reshape(-1), count.reshape(-1))]
             if shots.counts is not None:
                 counts[part] = shots.weight(index)[taken].reshape(-1)
-        yield Shots(shapes, codes, landed, starts, None if shots.counts is None else counts, shots.surface)
+        weighed = None if shots.counts is None else counts
+        yield Shots(shapes, codes, starts, weighed, many, landed, begins, shots.surface)
 
 
 @contextlib.contextmanager
@@ -160,5 +185,5 @@ def doubtable(shots: Shots, work: Path | None = None) -> Iterator[Shots]:
         yield replace(shots, doubts=doubts)
 
 
-def _starts(shapes: Sequence[tuple[int, int]]) -> NDArray[np.int64]:
-    return np.concatenate([[0], np.cumsum([h * w for h, w in shapes])]).astype(np.int64)
+def _starts(sizes: Sequence[int]) -> NDArray[np.int64]:
+    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)

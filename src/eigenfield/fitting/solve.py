@@ -51,8 +51,8 @@ def measure_scales(shots: Shots, model: Model) -> Scales:
         mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
         for index in range(*part):
             ones = np.ones((1, *shots.shapes[index]), np.float32)
-            put_back(shots.places(index), size, ones, shots.weight(index), mean)
-            put_back(shots.places(index), size, ones, shots.weight(index), grid)
+            put_back(*shots.places(index), size, ones, shots.weight(index), mean)
+            put_back(*shots.places(index), size, ones, shots.weight(index), grid)
         return mean, grid
 
     for mean, grid in parallel_map(piece, pieces(len(shots), PIECE)):

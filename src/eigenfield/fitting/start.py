@@ -68,7 +68,7 @@ def residual_energy(shots: Shots, model: Model) -> tuple[NDArray[np.float32], ND
         for index in range(*part):
             image = _residual_image(shots, model, index)
             both = np.stack([np.square(image).sum(axis=0), np.ones(image.shape[1:], np.float32)])
-            put_back(shots.places(index), shots.surface.size, both, shots.weight(index), added)
+            put_back(*shots.places(index), shots.surface.size, both, shots.weight(index), added)
         return added
 
     total = np.zeros((2, *model.grid), np.float32)
@@ -81,11 +81,11 @@ def residual_energy(shots: Shots, model: Model) -> tuple[NDArray[np.float32], ND
 def _residual_image(shots: Shots, model: Model, index: int) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph."""
     places, size = shots.places(index), shots.surface.size
-    image = np.zeros((model.channels, *places.shape[:2]), np.float32)
-    aim(places, shots.photograph(index), (model.matrix / np.float32(255)).astype(np.float32), image)
-    draw(places, size, model.mean, MINUS, image)
+    image = np.zeros((model.channels, *shots.shapes[index]), np.float32)
+    aim(places[0], shots.photograph(index), (model.matrix / np.float32(255)).astype(np.float32), image)
+    draw(*places, size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
-        draw(places, size, model.sums(slice(index, index + 1))[0], MINUS, image)
+        draw(*places, size, model.sums(slice(index, index + 1))[0], MINUS, image)
     return image
 
 
@@ -94,6 +94,6 @@ def _residual_map(shots: Shots, model: Model, index: int, floor: np.float32) -> 
     places, weight, size = shots.places(index), shots.weight(index), shots.surface.size
     image = _residual_image(shots, model, index)
     back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
-    put_back(places, size, image, weight, back)
-    put_back(places, size, np.ones((1, *places.shape[:2]), np.float32), weight, part)
+    put_back(*places, size, image, weight, back)
+    put_back(*places, size, np.ones((1, *shots.shapes[index]), np.float32), weight, part)
     return np.asarray(back / np.maximum(part, floor), np.float32)

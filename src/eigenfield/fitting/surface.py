@@ -121,7 +121,7 @@ def fit_surface(
         for number in range(ROUNDS + 1):
             if progress is not None:
                 progress("fit surface", number, ROUNDS + 1)
-            with thinned(every, step, work) as shots:
+            with on_mesh(every, used, mesh, work) as placed, thinned(placed, step, work) as shots:
                 model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
                 left = fit_mean(shots, model, measure_scales(shots, model))
                 if not left.pixels.any():
@@ -138,7 +138,6 @@ def fit_surface(
                 break
             off += further
             mesh = sheet.moved(off)
-            every = on_mesh(every, used, mesh)
     if progress is not None:
         progress("fit surface", ROUNDS + 1, ROUNDS + 1)
     return best
@@ -193,12 +192,12 @@ def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], mo
     def look(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
         places, weight = shots.places(index), shots.weight(index)
         image = np.zeros((1, *shots.shapes[index]), np.float32)
-        aim(places, shots.photograph(index), matrix, image)
-        draw(places, size, model.mean, MINUS, image)
+        aim(places[0], shots.photograph(index), matrix, image)
+        draw(*places, size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
-        put_back(places, size, image, weight, asked)
-        put_back(places, size, np.ones_like(image), weight, seen)
-        put_back(places, size, np.square(image), weight, errors)
+        put_back(*places, size, image, weight, asked)
+        put_back(*places, size, np.ones_like(image), weight, seen)
+        put_back(*places, size, np.square(image), weight, errors)
         return asked[0][covered], seen[0][covered], errors[0]
 
     sums, squares = np.zeros((5, len(points))), np.zeros_like(mean)

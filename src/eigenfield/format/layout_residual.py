@@ -30,7 +30,7 @@ def read_residual(
     luma, chroma = (item.number(1) for item in entry["scale"].items(2, 2))
     if min(luma, chroma) <= 0:
         entry["scale"].fail("residual-scale", "a scale is not positive")
-    full = entry.has("full") and entry["full"].boolean()
+    full, smooth = (entry.has(key) and entry[key].boolean() for key in ("full", "smooth"))
     film = bytes(document.data(entry["bufferView"]))
     if cameras is None:  # only while validating a file whose cameras are damaged
         return None
@@ -47,4 +47,4 @@ def read_residual(
         order = document.array(entry["order"], "SCALAR", (UINT16, UINT32), limits.MAX_CAMERAS).astype(np.int64)
         if not np.array_equal(np.sort(order), np.arange(len(sizes))):
             entry["order"].fail("residual-order", f"is no order of {len(sizes)} encoded cameras")
-    return Residual(film, (rows, columns), order, (luma, chroma), full)
+    return Residual(film, (rows, columns), order, (luma, chroma), full, smooth)

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.4"  # a reader takes any 1.x
+VERSION = "1.5"  # a residual of smooth pictures; a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
 THIRD = "1.2"  # what "needs" may name, but for `precision`
 FOURTH = "1.3"  # a residual
+FIFTH = "1.4"  # `precision`
 FEATURES = frozenset(
     {
         "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "precision",

@@ -226,8 +226,10 @@ def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[
 
 def _version(scene: Scene, coded: Coded, needs: bool) -> str:
     """The first version that has all that the file uses."""
-    if any(plane.mean.precision is not None for plane in coded.planes):
+    if scene.residual is not None and scene.residual.smooth:
         return limits.VERSION
+    if any(plane.mean.precision is not None for plane in coded.planes):
+        return limits.FIFTH
     if scene.residual is not None:
         return limits.FOURTH
     return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
@@ -313,6 +315,8 @@ def _residual(residual: Residual, buffer: _Buffer) -> dict[str, Any]:
     made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
     if residual.full:
         made["full"] = True
+    if residual.smooth:
+        made["smooth"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
     return made | {"bufferView": buffer.view(residual.film)}

@@ -20,12 +20,13 @@ from eigenfield.rendering.colours import camera_colour, undo_colour
 from eigenfield.rendering.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.drawing import (
     Frame,
+    Sampling,
     Surface,
     check_filter,
+    choose_sampling,
     cover,
     make_surface,
     median_footprint,
-    sample_count,
     shade,
 )
 from eigenfield.rendering.novel import novel_camera
@@ -71,9 +72,10 @@ class Renderer:
         """The view of `camera` with view weights (Ne,) over the encoded cameras.
 
         filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
-        textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel, None to choose k from
-        the texels a pixel covers. colour: (2, 3) gain and offset of R, G, B that harmonised a captured camera
-        (`camera_colour`): its own exposure is given back to the surface; None leaves it as the scene keeps it.
+        textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel; None: one, but four at
+        edges (decision 24), or more in a picture smaller than the photographs. colour: (2, 3) gain and offset of R, G,
+        B that harmonised a captured camera (`camera_colour`): its own exposure is given back to the surface; None
+        leaves it as the scene keeps it.
         Raises OptionError (`filter`, `samples`, `textures`, `background`).
         """
         image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
@@ -119,29 +121,29 @@ class Renderer:
         if textures is not None and textures < 0:
             raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
         behind = background_of(background, self.channels)
-        k = sample_count(self._surface, camera, samples, self._detail)
+        sampling = choose_sampling(self._surface, camera, samples, self._detail)
         height, width = camera.height, camera.width
-        buffers = self._take((height * k, width * k))
+        buffers = self._take(height, width, sampling)
         frame = buffers.frame
-        cover(self._surface, camera.resized(width * k, height * k) if k > 1 else camera, frame)
+        cover(self._surface, camera, sampling, frame)
         compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
         image = np.empty((height, width, self.channels), dtype)
         coverage = np.empty((height, width), np.float32)
-        shade(self._surface, frame, buffers.layers, filter, behind, k, image, coverage)
+        shade(self._surface, frame, buffers.layers, filter, behind, image, coverage)
         self._spare.append(buffers)
         return image, coverage
 
-    def _take(self, shape: tuple[int, int]) -> Buffers:
-        """Buffers for a picture of `shape`: spare ones of that size, or new ones."""
+    def _take(self, height: int, width: int, sampling: Sampling) -> Buffers:
+        """Buffers for a picture of that size: spare ones, or new ones."""
         for _ in range(len(self._spare)):
             try:
                 spare = self._spare.pop()
             except IndexError:  # another thread was faster
                 break
-            if spare.frame.size == shape:
+            if spare.frame.fits(height, width, sampling):
                 return spare
         layers = empty_layers(*self._surface.size, self.channels)
-        return Buffers(Frame(self._surface, *shape), make_buffers(self._composite), layers)
+        return Buffers(Frame(self._surface, height, width, sampling), make_buffers(self._composite), layers)
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
@@ -164,19 +166,21 @@ def draw_texture(
     filter: str = "bicubic",
     background: Sequence[float] = BLACK,
     samples: int | None = None,
+    detail: float = 1.0,
 ) -> Picture:
-    """One plain texture (H, W, C) float32 on a mesh with UVs: a camera's own texture map, or the mean."""
+    """One plain texture (H, W, C) float32 on a mesh with UVs: a camera's own texture map, or the mean. detail: of
+    `choose_sampling`."""
     check_filter(filter)
     height, width, channels = texture.shape
     surface: Surface = make_surface(mesh, height, width)
-    k = sample_count(surface, camera, samples)
-    frame = Frame(surface, camera.height * k, camera.width * k)
-    cover(surface, camera.resized(camera.width * k, camera.height * k) if k > 1 else camera, frame)
+    sampling = choose_sampling(surface, camera, samples, detail)
+    frame = Frame(surface, camera.height, camera.width, sampling)
+    cover(surface, camera, sampling, frame)
     image = np.empty((camera.height, camera.width, channels), np.float32)
     coverage = np.empty((camera.height, camera.width), np.float32)
     layers = empty_layers(height, width, channels)
     fill_layers(texture, layers)
-    shade(surface, frame, layers, filter, background_of(background, channels), k, image, coverage)
+    shade(surface, frame, layers, filter, background_of(background, channels), image, coverage)
     return Picture(image, coverage)
 
 

@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 from eigenfield.residual.make import DEFAULT_QUALITY, check_residual, with_residual
-from eigenfield.residual.views import captured_pixels, corrected, difference_of, differences, with_differences
+from eigenfield.residual.views import (
+    captured_pixels,
+    captured_samples,
+    corrected,
+    difference_of,
+    differences,
+    with_differences,
+)
 
 __all__ = [
     "DEFAULT_QUALITY",
     "captured_pixels",
+    "captured_samples",
     "check_residual",
     "corrected",
     "difference_of",

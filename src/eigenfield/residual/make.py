@@ -60,7 +60,7 @@ def with_residual(
 
     way = film_order(cameras)
     frames = track(parallel_stream(planes, way.tolist()), "residual", len(way), progress)
-    made = Residual(b"", (rows, columns), way, scale, full)
+    made = Residual(b"", (rows, columns), way, scale, full, smooth=True)
     film = encode_film(frames, made.frame, crf_of(quality), PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
     return replace(scene, residual=replace(made, film=film), settings=settings)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,6 +69,11 @@ def corrected(picture: Picture, difference: NDArray[np.float32], background: Seq
     return Picture(np.clip(own, 0, 1) * part + behind, picture.coverage)
 
 
+def captured_samples(scene: Scene) -> int | None:
+    """`samples` of a renderer for the pictures that the scene's residual belongs to."""
+    return None if _residual(scene).smooth else 1
+
+
 def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
     """`Shots.pixels` of a captured camera with its residual. Raises OptionError `residual` where the shots are not
     drawn as those that it was taken from."""
@@ -86,6 +92,7 @@ def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -
                 f"--{name} draws other pictures than the residual belongs to",
                 remedy="leave one of them out",
             )
+    shots = replace(shots, samples=captured_samples(scene))
     picture = shots.picture(scene.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
     return shots.pixels_of(corrected(picture, difference, shots.background or (0.0,)))
 
