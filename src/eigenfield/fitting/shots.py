@@ -79,7 +79,7 @@ def open_shots(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Shots]:
-    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 12 bytes a pixel and
+    """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 13 bytes a pixel and
     some more at edges: memory does not grow with their number. atlas: (rows, columns) of the finest texture. Raises
     CaptureError, OutputError `disk-full`."""
     shapes = tuple((camera.height, camera.width) for camera in cameras)
