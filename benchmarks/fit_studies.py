@@ -34,7 +34,7 @@ from eigenfield.format.geometry import coded_mesh
 from eigenfield.metrics import to_codes
 from eigenfield.parallel import parallel_map
 from eigenfield.pipeline import Options, open_fitted
-from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering import Renderer, camera_weights, drawing
 
 QUALITIES = (80, 88, 94)
 NO_OPTIONS = Options()
@@ -97,6 +97,10 @@ LEVERS = {
     "unseen": Lever("texels that no photograph sees left as they are", lambda: patch.object(fit, "fill_unseen")),
     "surface": Lever(
         "the proxy's surface as it was given", lambda: patch.object(draft, "fit_surface", lambda mesh, *_: mesh)
+    ),
+    "edges": Lever(
+        "one sample a pixel at edges too, in the fit and in drawing",
+        lambda: patch.object(drawing, "STANDARD", drawing.CENTRE),
     ),
     "relief": Lever("the relief not simplified", lambda: patch.object(draft, "slim_mesh", _whole)),
     "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
