@@ -90,7 +90,7 @@ def of_capture(
         print(f"{capture.name}: {one['preset']}, quality {one['parameter']}: {line(one)}", flush=True)
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
     if others:
-        contact_sheet(ready, mine["points"], others[0], photographs)
+        contact_sheet(ready, mine["points"], others[0], photographs, covered)
     some = evenly(views, 16)
     there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
     names = [ready.light_field.names[i] for i in some]
@@ -141,7 +141,11 @@ def shown_view(ready: Prepared) -> int:
 
 
 def contact_sheet(
-    ready: Prepared, mine: list[dict[str, Any]], film: dict[str, Any], photographs: list[NDArray[np.uint8]]
+    ready: Prepared,
+    mine: list[dict[str, Any]],
+    film: dict[str, Any],
+    photographs: list[NDArray[np.uint8]],
+    covered: list[NDArray[np.bool_]],
 ) -> Path:
     """WORK/crops.png: where a view is hardest, the photograph, ours and the film nearest to ours in bytes."""
     index = shown_view(ready)
@@ -157,7 +161,7 @@ def contact_sheet(
         f"{name}: {one['bytes'] / 1000:.1f} kB, {one['psnr']:.2f} / {one['psnr_luma']:.2f} dB"
         for name, one in (("eigenfield", own), (film["name"], other))
     ]
-    corners = pictures.busiest([shown[0]] * 2, shown[1:], 3)
+    corners = pictures.busiest([shown[0]] * 2, shown[1:], 3, covered[index])
     columns = []
     for picture, caption in zip(shown, words, strict=True):
         crops = [np.repeat(np.repeat(pictures.crop(picture, corner), 2, axis=0), 2, axis=1) for corner in corners]

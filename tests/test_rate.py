@@ -5,9 +5,10 @@ from __future__ import annotations
 import dataclasses
 
 import cv2
+import numpy as np
 import pytest
 from captures import write_capture
-from evidence import codecs
+from evidence import codecs, pictures
 from evidence.captures import Capture
 
 import rate
@@ -66,3 +67,15 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     assert [point["preset"] for point in found["best"]["points"]] == ["best"]
     assert (tmp_path / "work" / "best-70.glb").exists() and "| `nine`, `best` | 70 |" in text
     assert "| `nine` | 90 |" in text and film["order"] in text
+
+
+def test_crops_are_taken_where_the_surface_covers():
+    photograph = np.zeros((300, 300, 3), np.uint8)
+    drawing = photograph.copy()
+    drawing[:120, :120] = 255  # most of the error, but nothing is drawn there
+    drawing[200:260, 200:260] = 90
+    covered = np.ones((300, 300), np.bool_)
+    covered[:120, :120] = False
+    anywhere, there = (pictures.busiest([photograph], [drawing], 1, which)[0] for which in (None, covered))
+    assert max(anywhere) < 120
+    assert min(there) > 260 - pictures.CROP - 1

@@ -166,7 +166,8 @@ def _crops(
         f"eigenfield, quality {own['parameter']}": (drawn(Renderer(scene), scene, views.order[views.middle])[0], own),
         f"{film['name']}, crf {other['parameter']}": (pictures.read(prepared.work / "peers" / other["middle"]), other),
     }
-    corners = pictures.busiest([photograph] * 2, [picture for picture, point in shown.values() if point])
+    drawings = [picture for picture, point in shown.values() if point]
+    corners = pictures.busiest([photograph] * 2, drawings, covered=views.covered[views.middle])
     return [
         {
             "label": label, "camera": views.names[views.middle],

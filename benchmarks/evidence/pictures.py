@@ -98,10 +98,13 @@ def heat(a: Picture, b: Picture, covered: NDArray[np.bool_]) -> Picture:
     return picture
 
 
-def busiest(photographs: list[Picture], others: list[Picture], count: int = 2) -> list[tuple[int, int]]:
+def busiest(
+    photographs: list[Picture], others: list[Picture], count: int = 2, covered: NDArray[np.bool_] | None = None
+) -> list[tuple[int, int]]:
     """Top-left corners of the CROP squares where `others` are farthest from the photographs, away from each other:
-    where a judgement by eye has something to see."""
+    where a judgement by eye has something to see. covered: (H, W), what counts; None: all."""
     error = sum(cv2.absdiff(a, b).astype(np.float32).mean(axis=2) for a, b in zip(photographs, others, strict=True))
+    error = error if covered is None else error * covered
     side = min(CROP, *np.shape(error))
     score = cv2.boxFilter(np.asarray(error), -1, (side, side), anchor=(0, 0), borderType=cv2.BORDER_ISOLATED)
     score = score[: score.shape[0] - side + 1, : score.shape[1] - side + 1].copy()
