@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from eigenfield.format import load as load
     from eigenfield.mesh import Mesh as Mesh
     from eigenfield.parallel import set_threads as set_threads
+    from eigenfield.pipeline import Target as Target
     from eigenfield.pipeline import encode as encode
     from eigenfield.progress import Progress as Progress
     from eigenfield.reconstruction import Reconstruction as Reconstruction
@@ -55,6 +56,7 @@ _HOME = {
     "ProxyError": "errors",
     "Reconstruction": "reconstruction",
     "Scene": "scene",
+    "Target": "pipeline",
     "encode": "pipeline",
     "evaluate": "evaluation",
     "load": "format",

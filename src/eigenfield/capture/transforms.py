@@ -1,7 +1,7 @@
 """nerfstudio's and instant-ngp's `transforms.json`, and the original NeRF's.
 
 World: the file's own, unless it names an `applied_transform` (nerfstudio): then that is undone, and the world is the
-one from before, in which COLMAP, Metashape and `ns-export --save-world-frame` write their meshes.
+one from before, in which COLMAP and Metashape write their meshes.
 Camera axes: OpenGL (x right, y up, z back), camera-to-world; pixel centres at +0.5.
 """
 

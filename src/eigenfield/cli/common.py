@@ -62,7 +62,8 @@ def reconstruction_options(function: F) -> F:
         click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
                      help="relief: two layers seen from the array's centre; poisson: a surface from all sides."),
         click.option("--refine/--no-refine", default=None,
-                     help="Correct an array's cameras together with its depth.  [default: where it is dense]"),
+                     help="Correct an array's cameras together with its depth.  "
+                     "[default: where none are given, or 25 or more]"),
         click.option("--fill-background/--no-fill-background", "background", default=None,
                      help="Close the view behind what was reconstructed.  [default: unless there are masks]"),
         click.option("--primitive", "primitives", multiple=True, metavar="SHAPE",

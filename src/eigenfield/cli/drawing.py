@@ -51,7 +51,8 @@ def flight_options(function: F) -> F:
 def residual_option(function: F) -> F:
     """Add --residual."""
     option = click.option("--residual", is_flag=True,
-                          help="Captured views as they were photographed, where the file has a residual.")  # fmt: skip
+                          help="Put the file's residual on captured views: nearer to the photographs, up to nearly "
+                          "lossless.")  # fmt: skip
     return option(function)
 
 

@@ -62,7 +62,8 @@ Examples:
     "--proxy",
     type=click.Path(path_type=Path),
     metavar="MESH",
-    help="Triangle mesh in the cameras' world: .ply, .obj or .glb.  [default: made from the photographs]",
+    help="Triangle mesh in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.  "
+    "[default: made from the photographs]",
 )
 @click.option(
     "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb to write."
@@ -73,10 +74,14 @@ Examples:
     "-n",
     type=int,
     metavar="N",
-    help="Eigen textures to keep; at most one less than there are cameras.  [default: by the cameras; unfitted 15]",
+    help="Eigen textures, at most one less than there are cameras. A fit keeps those that are worth their bytes, and "
+    "regions of much error may get as many again.  [default: half as many as cameras, 20 to 96; unfitted 15]",
 )
 @click.option(
-    "--uv-ssim", type=float, metavar="S", help="Instead, without a fit: as few as reach this SSIM in UV space (0.98)."
+    "--uv-ssim",
+    type=float,
+    metavar="S",
+    help="As few eigen textures as reach this SSIM in UV space, for example 0.98; without a fit.",
 )
 @click.option(
     "--density",
@@ -90,8 +95,8 @@ Examples:
     "--triangles",
     type=int,
     metavar="N",
-    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is, but that a fit "
-    "simplifies a relief by what its pictures lose]",
+    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is, but a fit "
+    "simplifies reliefs as far as the pictures allow]",
 )
 @click.option(
     "--align",
@@ -120,7 +125,8 @@ Examples:
 @click.option(
     "--hold-out",
     metavar="RULE",
-    help="Cameras to leave out and measure later: odd, every:K, or names with commas between.",
+    help="Cameras to leave out and measure later: odd (those in odd rows or odd columns of a grid, counted from 0: "
+    "three quarters), every:K (every K-th), or names with commas between.",
 )
 @click.option(
     "--resampling",
@@ -149,8 +155,9 @@ Examples:
 @click.option(
     "--preset",
     type=click.Choice(["small", "balanced", "best"]),
-    help="Of a fit: how finely it is coded and how long it may take; --quality or a target instead of the first. best "
-    "codes with libaom, in about 10 % fewer bytes and far more time, where there is an ffmpeg program that has it.  "
+    help="Of a fit: how finely it is coded (quality 79, 89, 95) and how long it may take; --quality or a target "
+    "instead of the first. best codes with libaom, in about 10 % fewer bytes and far more time, where there is an "
+    "ffmpeg program that has it.  "
     "[default: balanced]",
 )
 @click.option(
@@ -190,7 +197,7 @@ Examples:
     type=click.Path(path_type=Path),
     metavar="DIR",
     help="Folder that keeps finished stages of the reconstruction; the same command goes on from there. "
-    "[default: OUTPUT.work]",
+    "[default: OUTPUT with the ending .work; with --proxy its folder, for scratch files]",
 )
 @reconstruction_options
 @click.option(

@@ -27,8 +27,8 @@ def _place(context: click.Context, parameter: click.Parameter, value: str | None
 Examples:
   eigenfield render scene.glb -o view.png
   eigenfield render scene.glb --at 0.3,-0.2 --resolution 1024x768 -o view.png
-  eigenfield render scene.glb --camera out_08_08 --background transparent -o view.png
-  eigenfield render archive.glb --camera out_08_08 --residual -o view.png
+  eigenfield render scene.glb --camera out_08_08.jpg --background transparent -o view.png
+  eigenfield render archive.glb --camera out_08_08.jpg --residual -o view.png
   eigenfield render scene.glb --path circle --frames 240 -o around.mp4
   eigenfield render scene.glb --path grid --frames 25 -o 'frames/%04d.png'"""
 )

@@ -58,8 +58,8 @@ def command(
 ) -> None:
     """Look around in SCENE, in a browser, beside the photographs of CAPTURE if it is given.
 
-    The address goes to standard output. Nobody but this machine can open it, and nothing is fetched from elsewhere.
-    Ctrl-C ends it, with exit code 0.
+    The address goes to standard output. Only this machine can open it, unless --host says otherwise, and
+    nothing is fetched from elsewhere. Ctrl-C ends it, with exit code 0.
     """
     from eigenfield.format import file_bytes, outline, without_residual
     from eigenfield.scene import check_scale

@@ -168,7 +168,7 @@ def start_session(
         )
     photographs = match_photographs(scene, capture)
     resampling, align = _recorded(scene)
-    maps = len(scene.planes) == 1 and scene.to_rgb is None  # a fit makes none
+    maps = len(scene.planes) == 1 and scene.to_rgb is None and "fitted" not in scene.settings  # a fit makes none
     if curve != "none" and not maps:
         raise OptionError(
             "curve",

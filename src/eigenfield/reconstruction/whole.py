@@ -78,11 +78,11 @@ def reconstruct(
 
     surface: "relief" for arrays that look one way (two layers seen from the centre), "poisson" for everything else,
     "auto" to choose. refine: correct the cameras of an array together with its depth; None: where no calibration was
-    given and they are not exact. triangles: of the proxy, about so many at most. background: close the frustum behind
-    what was reconstructed; None: unless there are masks. primitives: `sphere:...` or `plane:...`, put in by hand.
-    fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline.
-    blind: a rule of `hold_out` (see `encode`): these views take no part, each only registers its own camera; arrays
-    only. work: the folder of finished stages; None keeps none.
+    given or there are 25 views or more, unless they are exact. triangles: of the proxy, about so many at most.
+    background: close the frustum behind what was reconstructed; None: unless there are masks. primitives: `sphere:...`
+    or `plane:...`, put in by hand. fit_spheres: `VIEW:X,Y,W,H`, spheres fitted to an outline. blind: a rule of
+    `hold_out` (see `encode`): these views take no part, each only registers its own camera; arrays only. work: the
+    folder of finished stages; None keeps none.
 
     Raises CaptureError, ProxyError, OptionError, OutputError, each naming the file and the remedy.
     """
