@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -17,7 +19,15 @@ from eigenfield.mesh import Mesh
 from eigenfield.parallel import set_threads
 from eigenfield.raster import rasterise_view
 from eigenfield.rendering import Renderer, draw_texture, path_points, view_weights
-from eigenfield.rendering.drawing import STANDARD, Frame, choose_sampling, cover
+from eigenfield.rendering.drawing import (
+    STANDARD,
+    Frame,
+    choose_sampling,
+    cover,
+    make_surface,
+    median_footprint,
+    smooth_edges,
+)
 from eigenfield.scene import Basis, Plane
 
 SIZE = 32
@@ -146,6 +156,7 @@ def test_resolution_crops_to_cover():
         ({"filter": "best"}, "bicubic"),
         ({"resolution": (0, 5)}, "16384"),
         ({"samples": 99}, "1 to 16"),
+        ({"samples": 2.0}, "1 to 16"),
         ({"textures": -1}, "0 or more"),
         ({"background": (1, 2)}, "3 finite"),
     ],
@@ -254,6 +265,66 @@ def test_a_picture_without_edges_is_drawn_once():
     smooth, middle = (draw_texture(SQUARE, texture, facing(), samples=samples) for samples in (None, 1))
     np.testing.assert_allclose(smooth.image, middle.image, atol=1e-6)
     assert (smooth.coverage == 1).all()
+
+
+def flat(rows, columns, low, high):
+    """A grid of triangles between two corners, (x, y, z), z running with y; its UVs are its rows and columns."""
+    v, u = (part.reshape(-1) for part in np.mgrid[0 : 1 : (rows + 1) * 1j, 0 : 1 : (columns + 1) * 1j])
+    shares = np.stack([u, v, v], axis=1)
+    vertices = (np.array(low) + shares * (np.array(high) - low)).astype(np.float32)
+    corner = (np.arange(rows)[:, None] * (columns + 1) + np.arange(columns)).reshape(-1)
+    right, below = corner + 1, corner + columns + 1
+    faces = np.stack([corner, below, right, right, below, below + 1], axis=1).reshape(-1, 3)
+    return Mesh(vertices, faces.astype(np.int32), np.stack([u, v], axis=1).astype(np.float32))
+
+
+@pytest.mark.parametrize("behind", [0.4, -0.5])
+def test_a_slanted_floor_is_no_edge(behind):
+    """Foreshortened, its pixels hold many times the texels of a usual one: still one place each. `behind`: where the
+    floor ends, the second time behind the camera."""
+    mesh = flat(40, 40, (-4, 0.5, behind), (4, 0.5, 12))
+    camera = Camera(np.array([[100.0, 0, 64], [0, 100, 8], [0, 0, 1]]), np.eye(3), np.zeros(3), 128, 96)
+    surface = make_surface(mesh, 512, 512)
+    sampling = smooth_edges(2.0)
+    frame = Frame(surface, camera.height, camera.width, sampling)
+    cover(surface, camera, sampling, frame)
+    shown = frame.inverse_depth[:, : camera.width] > 0
+    parted = np.zeros_like(shown)
+    for row, (first, last) in enumerate(frame.spans):
+        parted[row, frame.parted[first:last]] = True
+    assert shown.mean() > 0.5
+    # below the far end's line, and inside the sides
+    near = np.zeros_like(shown)
+    near[24:-1, 40:88] = True
+    assert shown[near].all() and not parted[near].any()
+    assert parted.any()
+
+
+def test_a_close_up_of_large_triangles_has_a_footprint():
+    """No middle is in view, or none of those that are looked at first."""
+    mesh = flat(1, 1, (-40, -40, 1), (40, 40, 1))
+    fine = flat(300, 300, (-40, -40, 1), (40, 40, 1))
+    camera = Camera(np.array([[300.0, 0, 64], [0, 300, 48], [0, 0, 1]]), np.eye(3), np.array([-0.6, 0.9, 0]), 128, 96)
+    assert median_footprint(make_surface(fine, 512, 512), camera) == pytest.approx(512 / 80 / 300, rel=1e-3)
+    for one in (mesh, fine):
+        texture = np.random.default_rng(0).uniform(0, 1, (512, 512, 3)).astype(np.float32)
+        smooth, middle = (draw_texture(one, texture, camera, samples=samples) for samples in (None, 1))
+        np.testing.assert_allclose(smooth.image, middle.image, atol=1e-6)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="/proc")
+def test_room_for_edges_takes_memory_only_where_they_are():
+    surface = make_surface(SQUARE, SIZE, SIZE)
+    before = resident()
+    frame = Frame(surface, 4096, 4096, smooth_edges(1.0))
+    assert frame.finer.nbytes > 7e8 and frame.parted.nbytes > 6e7
+    frame.finer[:, ::1000000] = 1
+    assert resident() - before < 1e8
+
+
+def resident():
+    """Bytes of memory that this process holds."""
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096
 
 
 def test_what_is_drawn_is_what_the_rasteriser_finds():

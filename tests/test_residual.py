@@ -28,6 +28,7 @@ from eigenfield.rendering import Shots, camera_colour, camera_weights
 from eigenfield.residual import captured_pixels, check_residual, corrected, difference_of, differences, with_residual
 from eigenfield.residual.make import crf_of
 from eigenfield.residual.orders import film_order
+from eigenfield.residual.views import captured_samples
 
 FINE = 100
 WHERE = f"/extensions/{limits.EXTENSION}/residual"
@@ -293,15 +294,19 @@ def test_shots_that_are_drawn_otherwise_have_none(exact):
 
 
 def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
-    """Residuals of files before 1.5."""
-    older = replace(exact, residual=replace(exact.residual, smooth=False))
+    """Residuals of files before 1.5; of cameras half as fine as the reference, from 2 x 2."""
+    smaller = replace(exact.mesh, vertices=exact.mesh.vertices * np.array([0.7, 0.7, 1], np.float32))
+    cameras = tuple(one.resized(32, 28) if index == 3 else one for index, one in enumerate(exact.cameras))
+    older = replace(exact, mesh=smaller, cameras=cameras, residual=replace(exact.residual, smooth=False))
     path = stored(encode_scene(older), tmp_path)
     assert [one for one in validate(path) if one.severity != "information"] == []
     found, difference = ef.load(path), difference_of(exact, 0)
-    plain, smooth = (ef.render(exact, camera="view_00.png", samples=samples) for samples in (1, None))
+    plain, smooth = (ef.render(found, camera="view_00.png", samples=samples) for samples in (1, None))
     assert (plain.image != smooth.image).any()
     expected = to_codes(corrected(plain, difference).image)
     np.testing.assert_array_equal(captured_pixels(Shots(found), 0, difference), expected)
+    assert [captured_samples(found, index) for index in (0, 3)] == [1, 2]
+    assert captured_samples(exact, 3) is None
 
 
 def test_harmonised_scenes_have_their_own_exposure(capture):

@@ -196,6 +196,11 @@ class Draft:
         return [self.cameras[index] for index in self.encoded]
 
     @property
+    def encoded_reference(self) -> int:
+        """The reference camera, counted among the encoded ones."""
+        return int(np.searchsorted(self.encoded, self.reference))
+
+    @property
     def encoded_names(self) -> list[str]:
         return [self.capture.names[index] for index in self.encoded]
 

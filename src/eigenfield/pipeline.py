@@ -176,7 +176,7 @@ def _fitted(
     asked = fitted_textures(len(used)) if options.textures is None else options.textures
     atlas = draft.atlas[1], draft.atlas[0]
     with (
-        open_shots(used, draft.photograph, draft.mesh, atlas, work, progress) as shots,
+        open_shots(used, draft.photograph, draft.mesh, atlas, work, progress, draft.encoded_reference) as shots,
         open_fits(
             shots,
             draft.density,
@@ -241,7 +241,7 @@ def _decompose(
     maps: TextureMaps, draft: Draft, work: Path | None, progress: Progress | None
 ) -> tuple[Basis, Mean, Spreader]:
     options, names = draft.options, draft.encoded_names
-    reference = int(np.searchsorted(draft.encoded, draft.reference))
+    reference = draft.encoded_reference
     if options.align is not None:
         align_maps(maps, reference, options.align, progress)
     mean = mean_map(maps, progress)

@@ -123,7 +123,7 @@ class Session:
         figures, outside = self._figures(index, drawn, photograph)
         residual = None
         if difference is not None:
-            samples = captured_samples(self.scene)
+            samples = captured_samples(self.scene, index)
             belongs = drawn if samples is None else self.picture(index, samples)
             residual = self._figures(index, corrected(belongs, difference), photograph)
         texture = None

@@ -17,39 +17,49 @@ from eigenfield.rendering.simd import give_cubic, take_cubic
 
 
 @kernel()
-def count_places(near, ends, many):
-    """Fill `many` from the samples of a covered `Frame`, near (h, n), ends (h, w); how many places that makes. Of a
-    pixel at the border of what there is, those samples that show something are counted, if there are two: a single
-    one tells too little of a photograph's pixel."""
+def count_places(near, spans, parted, finer, many):
+    """Fill `many` from a covered `Frame`; how many places that makes. Of a pixel at the border of what there is, those
+    samples that show something are counted, if there are two: a single one tells too little of a photograph's pixel."""
     total = 0
     for row in range(many.shape[0]):
-        first = 0
         for pixel in range(many.shape[1]):
+            many[row, pixel] = near[row, pixel] > 0
+        for at in range(spans[row, 0], spans[row, 1]):
             hits = 0
-            for sample in range(first, ends[row, pixel]):
-                hits += near[row, sample] > 0
-            many[row, pixel] = 0 if hits == 1 and ends[row, pixel] > first + 1 else hits
+            for sample in range(4 * at, 4 * at + 4):
+                hits += finer[0, sample] > 0
+            many[row, parted[at]] = 0 if hits == 1 else hits
+        for pixel in range(many.shape[1]):
             total += many[row, pixel]
-            first = ends[row, pixel]
     return total
 
 
+@kernel(inline=True)
+def put_place(near, column, row, right, bottom, places, at):
+    """places[at] = a sample's column and row, if it shows something, which is returned."""
+    if near > 0:
+        places[at, 0] = min(max(column / near, np.float32(0)), right)
+        places[at, 1] = min(max(row / near, np.float32(0)), bottom)
+    return near > 0
+
+
 @kernel()
-def place_pixels(near, column_of, row_of, ends, height, width, many, places):
-    """Fill `places`, for `many` as `count_places` makes it, in an atlas of height x width. column_of, row_of: (h, n) of
-    the frame."""
-    at, right, bottom, zero = 0, np.float32(width - 1), np.float32(height - 1), np.float32(0)
+def place_pixels(near, column_of, row_of, spans, parted, finer, height, width, many, places):
+    """Fill `places`, for `many` as `count_places` makes it, in an atlas of height x width."""
+    right, bottom = np.float32(width - 1), np.float32(height - 1)
+    count = 0
     for row in range(many.shape[0]):
-        first = 0
+        at = spans[row, 0]
         for pixel in range(many.shape[1]):
-            if many[row, pixel]:
-                for sample in range(first, ends[row, pixel]):
-                    inverse = near[row, sample]
-                    if inverse > 0:
-                        places[at, 0] = min(max(column_of[row, sample] / inverse, zero), right)
-                        places[at, 1] = min(max(row_of[row, sample] / inverse, zero), bottom)
-                        at += 1
-            first = ends[row, pixel]
+            if at < spans[row, 1] and parted[at] == pixel:
+                if many[row, pixel]:
+                    for s in range(4 * at, 4 * at + 4):
+                        count += put_place(finer[0, s], finer[1, s], finer[2, s], right, bottom, places, count)
+                at += 1
+            elif many[row, pixel]:
+                count += put_place(
+                    near[row, pixel], column_of[row, pixel], row_of[row, pixel], right, bottom, places, count
+                )  # fmt: skip
 
 
 @kernel(inline=True)

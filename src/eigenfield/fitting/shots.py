@@ -31,8 +31,8 @@ class Shots:
 
     shapes: (h, w) of each camera. codes: a flat memory map of R, G, B, from pixel starts[c] on for camera c. counts:
     likewise what each pixel counts for, 255 for whole; None: all do. many, landed: likewise `many` and `places` of
-    `fitting.kernels`, the latter from begins[c] on. surface: the mesh under the finest atlas. doubts: what pixels
-    count for instead, see `doubtable`.
+    `fitting.kernels`, the latter from begins[c] on. surface: the mesh under the finest atlas. detail: texels for one
+    pixel of the reference camera. doubts: what pixels count for instead, see `doubtable`.
     """
 
     shapes: tuple[tuple[int, int], ...]
@@ -43,6 +43,7 @@ class Shots:
     landed: NDArray[np.float32]
     begins: NDArray[np.int64]
     surface: Surface
+    detail: float
     doubts: NDArray[np.uint8] | None = None
 
     def __len__(self) -> int:
@@ -78,10 +79,11 @@ def open_shots(
     atlas: tuple[int, int],
     work: Path | None = None,
     progress: Progress | None = None,
+    reference: int = 0,
 ) -> Iterator[Shots]:
     """Decode every photograph once, and rasterise the mesh in its camera, into scratch files of 13 bytes a pixel and
-    some more at edges: memory does not grow with their number. atlas: (rows, columns) of the finest texture. Raises
-    CaptureError, OutputError `disk-full`."""
+    some more at edges: memory does not grow with their number. atlas: (rows, columns) of the finest texture.
+    reference: index of the scene's reference camera. Raises CaptureError, OutputError `disk-full`."""
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     starts = _starts([h * w for h, w in shapes])
     total = int(starts[-1])
@@ -98,42 +100,45 @@ def open_shots(
             return mask is not None
 
         masked = list(track(parallel_stream(put, range(len(cameras))), "photographs", len(cameras), progress))
-        with _landed(make_surface(mesh, *atlas), cameras, starts, work) as landed:
-            yield Shots(shapes, codes, starts, counts if any(masked) else None, *landed)
+        surface = make_surface(mesh, *atlas)
+        detail = median_footprint(surface, cameras[reference])
+        with _landed(surface, cameras, starts, detail, work) as landed:
+            yield Shots(shapes, codes, starts, counts if any(masked) else None, *landed, surface, detail)
 
 
 @contextlib.contextmanager
 def on_mesh(shots: Shots, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[Shots]:
     """The photographs of `cameras` on another mesh."""
     surface = make_surface(mesh, *shots.surface.size)
-    with _landed(surface, cameras, shots.starts, work) as (many, landed, begins, _):
+    with _landed(surface, cameras, shots.starts, shots.detail, work) as (many, landed, begins):
         yield replace(shots, many=many, landed=landed, begins=begins, surface=surface)
 
 
 @contextlib.contextmanager
 def _landed(
-    surface: Surface, cameras: Sequence[Camera], starts: NDArray[np.int64], work: Path | None
-) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int64], Surface]]:
-    """`many`, `landed`, `begins` and `surface` of `Shots`, as the renderer samples pictures of the cameras' own size.
+    surface: Surface, cameras: Sequence[Camera], starts: NDArray[np.int64], detail: float, work: Path | None
+) -> Iterator[tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.int64]]]:
+    """`many`, `landed` and `begins` of `Shots`, with smooth edges, as the renderer draws cameras as near as the
+    reference; in those of half its size and less it takes more samples.
 
     Each camera is rasterised twice, which costs less than room for four places of every pixel would."""
 
     def drawn(index: int) -> tuple[Frame, NDArray[np.uint8]]:
-        camera = cameras[index]
-        sampling = smooth_edges(median_footprint(surface, camera))
+        camera, sampling = cameras[index], smooth_edges(detail)
         frame = Frame(surface, camera.height, camera.width, sampling)
         cover(surface, camera, sampling, frame)
         return frame, many[starts[index] : starts[index + 1]].reshape(camera.height, camera.width)
 
     def count(index: int) -> int:
         frame, part = drawn(index)
-        return int(count_places(frame.inverse_depth, frame.ends, part))
+        return int(count_places(frame.inverse_depth, frame.spans, frame.parted, frame.finer, part))
 
     def put(index: int) -> None:
         frame, part = drawn(index)
         into = places[begins[index] : begins[index + 1]]
         place_pixels(
-            frame.inverse_depth, frame.column_of, frame.row_of, frame.ends, *surface.size, part, into
+            frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.parted, frame.finer, *surface.size,
+            part, into,
         )  # fmt: skip
 
     with scratch_array((int(starts[-1]),), np.uint8, work) as many:
@@ -141,7 +146,7 @@ def _landed(
         with scratch_array((int(begins[-1]), 2), np.float32, work) as places:
             for _ in parallel_stream(put, range(len(cameras))):
                 pass
-            yield many, places, begins, surface
+            yield many, places, begins
 
 
 @contextlib.contextmanager
@@ -174,7 +179,7 @@ def thinned(shots: Shots, step: int, work: Path | None = None) -> Iterator[Shots
             if shots.counts is not None:
                 counts[part] = shots.weight(index)[taken].reshape(-1)
         weighed = None if shots.counts is None else counts
-        yield Shots(shapes, codes, starts, weighed, many, landed, begins, shots.surface)
+        yield Shots(shapes, codes, starts, weighed, many, landed, begins, shots.surface, shots.detail)
 
 
 @contextlib.contextmanager

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+import mmap
 from collections import deque
 from dataclasses import dataclass
 from typing import Any
@@ -24,7 +26,18 @@ from eigenfield.raster import (
     edge_functions,
     sort_into_bands,
 )
-from eigenfield.rendering.kernels import DEPTH, TILE, draw_texels, gather_samples, mark_tiles, shade_rows
+from eigenfield.rendering.kernels import (
+    BLOCK,
+    DEPTH,
+    TILE,
+    draw_samples,
+    draw_texels,
+    find_bends,
+    keep_parted,
+    mark_ends,
+    mark_tiles,
+    shade_rows,
+)
 from eigenfield.rendering.simd import RUN
 
 FILTERS = ("bilinear", "bicubic")
@@ -34,14 +47,15 @@ ONE_SAMPLE = 1.5  # photograph pixels a pixel up to which one sample is enough
 FOOTPRINTS = 256  # triangles from which the median footprint is taken
 CENTRE = np.zeros((1, 2))
 STANDARD = np.array([[-2, -6], [6, -2], [-6, 2], [2, 6]]) / 16  # where GPUs put four samples of a pixel
-APART = 1.0  # of the length of a usual pixel in texels: samples farther from each other show different things
+APART = 1.0  # photograph's pixels in texels: what bends by more within a pixel is not one piece of the atlas
+LOOKED_AT = 0.5  # of that, between neighbouring pixels: enough to look at a pixel's samples
 
 
 @dataclass(frozen=True, eq=False)
 class Sampling:
     """Where a picture is sampled. side: k, a pixel being the mean of k x k samples. Or, with k = 1, of those at
-    `offsets` (s, 2) from its middle, pixels right and down; where all of them show places within `limit` texels of the
-    atlas, what they show on average, as the middle would, is looked at once."""
+    `offsets` (s, 2) from its middle, pixels right and down; where they lie on one piece of the atlas, as far as `limit`
+    texels tell, its middle is looked at once."""
 
     side: int
     offsets: NDArray[np.float64]
@@ -55,6 +69,7 @@ class Surface:
     vertices: (n, 3) float64. faces: (m, 3) int32. texels: (n, 2) float64, UV in texels, whole at texel centres.
     reach: (m, 4) int32, the tiles [top, bottom] x [left, right] that a triangle's filter touches.
     used: (tile rows, tile columns) bool, whether any does.
+    rims: (m,) bool, whether a triangle has an edge that it shares with no other, in space or in the atlas.
     size: H, W.
     """
 
@@ -63,6 +78,7 @@ class Surface:
     texels: NDArray[np.float64]
     reach: NDArray[np.int32]
     used: NDArray[np.bool_]
+    rims: NDArray[np.bool_]
     size: tuple[int, int]
 
 
@@ -79,24 +95,54 @@ def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
     for top, bottom, left, right in np.unique(reach, axis=0):
         used[top : bottom + 1, left : right + 1] = True
     faces = np.ascontiguousarray(mesh.faces, dtype=np.int32)
-    return Surface(mesh.vertices.astype(np.float64), faces, texels, np.ascontiguousarray(reach), used, (height, width))
+    vertices = mesh.vertices.astype(np.float64)
+    return Surface(vertices, faces, texels, np.ascontiguousarray(reach), used, _rims(faces), (height, width))
+
+
+def _rims(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """(m,) whether a triangle has an edge whose two vertices no other has."""
+    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).astype(np.int64)
+    keys = ends[..., 0] << 32 | ends[..., 1]
+    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
+    return np.asarray((counts[inverse.reshape(keys.shape)] == 1).any(axis=1))
+
+
+def sparse_zeros(shape: tuple[int, ...], dtype: type[np.float32] | type[np.int32]) -> NDArray[Any]:
+    """Pages that nobody writes to take no memory; NumPy asks Linux for huge ones, of which a few places fill many."""
+    return np.frombuffer(mmap.mmap(-1, max(1, 4 * math.prod(shape))), dtype, math.prod(shape)).reshape(shape)
+
+
+class Scratch:
+    """Room for what a thread finds out about a band's edges."""
+
+    def __init__(self, width: int) -> None:
+        blocks = -(-width // BLOCK)
+        self.flat = np.empty((2, BAND + 2, width), np.float32)
+        self.marks = np.empty((BAND, width), np.bool_)
+        self.places = np.empty(BAND * width, np.int32)
+        self.starts = np.empty((BAND, blocks + 1), np.int64)
+        self.sums = np.empty((BAND + 1, blocks + 1), np.int64)
+        self.samples = np.empty((BAND * width, 3, 4), np.float32)
 
 
 class Frame:
-    """The buffers of one picture in the making, used again for the next."""
+    """The buffers of one picture in the making, used again for the next.
+
+    inverse_depth, column_of, row_of: (H k, W k + RUN), see `draw_texels`. spans, parted, finer: see `keep_parted`.
+    """
 
     def __init__(self, surface: Surface, height: int, width: int, sampling: Sampling) -> None:
         count, k = len(surface.faces), sampling.side
         self.size, self.sampling = (height, width), sampling
         self.edges = np.empty((count, 3, 3))
         self.bounds = np.empty((count, 4), np.int32)
-        # The samples that are looked at, see `shade_rows`; `RUN` more columns than needed, and never NaN, even where
-        # nothing was drawn yet. Pages of samples that no pixel needs take no memory
-        shape = height * k, width * k * len(sampling.offsets) + RUN
-        self.inverse_depth, self.column_of, self.row_of = np.zeros((3, *shape), np.float32)
-        self.ends = np.empty((height, width), np.int32)
-        self.ends[:] = np.arange(1, width + 1) * k
-        self.bands: deque[NDArray[np.float32]] = deque()  # room for all samples of a band
+        # Never NaN, even where nothing was drawn yet
+        self.inverse_depth, self.column_of, self.row_of = np.zeros((3, height * k, width * k + RUN), np.float32)
+        most = height * width if len(sampling.offsets) > 1 else 0
+        self.spans = np.zeros((height, 2), np.int64)
+        self.parted = sparse_zeros((most,), np.int32)
+        self.finer = sparse_zeros((3, 4 * most), np.float32)
+        self.scratch: deque[Scratch] = deque()
         self.seen = np.empty(count, np.uint8)
         self.needed = np.empty(surface.used.shape, np.uint8)
 
@@ -124,24 +170,33 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
     bands = pieces(height, BAND)
     starts = np.empty(len(bands) + 1, np.int64)
     listing = sort_into_bands(frame.bounds, BAND, starts)
-    kept = frame.inverse_depth, frame.column_of, frame.row_of
+    middles = frame.inverse_depth, frame.column_of, frame.row_of
+
+    def triangles_of(band: int) -> tuple[NDArray[Any], ...]:
+        some = listing[starts[band] : starts[band + 1]]
+        return surface.faces, surface.texels, frame.edges, frame.bounds, some
 
     def draw(band: int) -> None:
-        first, last = bands[band]
-        triangles = surface.faces, surface.texels, frame.edges, frame.bounds, listing[starts[band] : starts[band + 1]]
-        if len(offsets) == 1:
-            whole = (part[None] for part in kept)
-            draw_texels(*triangles, first, last, EDGE_SLACK, offsets, 0, *whole, frame.seen)
-            return
+        draw_texels(*triangles_of(band), *bands[band], EDGE_SLACK, *middles, frame.seen)
+
+    def smooth(band: int) -> None:
         try:
-            room = frame.bands.pop()
+            room = frame.scratch.pop()
         except IndexError:  # this thread is the first, or another was faster
-            room = np.zeros((3, len(offsets), BAND, width + RUN), np.float32)
-        draw_texels(*triangles, first, last, EDGE_SLACK, offsets, first, *room, frame.seen)
-        gather_samples(*room, np.float32(sampling.limit), first, last, *kept, frame.ends)
-        frame.bands.append(room)
+            room = Scratch(width)
+        triangles, rows, limit = triangles_of(band), bands[band], np.float32(sampling.limit)
+        mark_ends(*triangles[2:], surface.rims, *rows, EDGE_SLACK, offsets, room.marks)
+        listed = room.places, room.starts, room.sums
+        find_bends(*middles, *rows, limit * np.float32(LOOKED_AT), *room.flat, room.marks, *listed)
+        draw_samples(*triangles, *rows, EDGE_SLACK, offsets, *listed, room.samples, frame.seen)
+        keep_parted(
+            *middles, room.places, room.starts, room.samples, limit, *rows, frame.spans, frame.parted, frame.finer
+        )
+        frame.scratch.append(room)
 
     parallel_map(draw, range(len(bands)))
+    if len(offsets) > 1:
+        parallel_map(smooth, range(len(bands)))
     mark_tiles(frame.seen, surface.reach, frame.needed)
 
 
@@ -161,8 +216,9 @@ def shade(
     behind.reshape(-1)[: len(background)] = background
     parallel_map(
         lambda rows: shade_rows(
-            frame.inverse_depth, frame.column_of, frame.row_of, frame.ends, layers, width, height, filter == "bicubic",
-            frame.sampling.side, behind, picture.dtype == np.uint8, *rows, picture, coverage,
+            frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.parted, frame.finer, layers,
+            width, height, filter == "bicubic", frame.sampling.side, behind, picture.dtype == np.uint8, *rows, picture,
+            coverage,
         ),
         pieces(picture.shape[0], BAND),
     )  # fmt: skip
@@ -176,33 +232,43 @@ def check_filter(filter: str) -> None:
 
 def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, detail: float = 1.0) -> Sampling:
     """k x k samples a pixel if k is asked for. Else from the median footprint of the triangles in view: smooth edges
-    in a picture as large as the photographs or larger, k x k samples in a smaller one.
+    in a picture as large as the photographs or larger, `grid_side` samples in a smaller one.
 
-    detail: texels for one pixel of the photographs. Where it is above 1 the atlas is denser than what it holds, and a
-    captured view drawn at its own size needs one sample however many texels a pixel covers: more would blur what the
-    photograph's own pixels have averaged already. Smaller pictures take as many samples as photograph pixels, at most
-    `SAMPLES_LIMIT`. Raises OptionError `samples` outside 1..16.
+    detail: texels for one pixel of the photographs. Raises OptionError `samples` but for whole numbers from 1 to 16.
     """
     if asked is not None:
-        if not 1 <= asked <= 16:
+        if not isinstance(asked, int | np.integer) or not 1 <= asked <= 16:
             raise OptionError("samples", f"{asked} x {asked} samples a pixel", remedy="ask for 1 to 16")
-        return Sampling(asked, CENTRE, 0)
-    texels = median_footprint(surface, camera)
-    footprint = texels / max(detail, 1.0)
-    if footprint <= ONE_SAMPLE:
-        return smooth_edges(texels)
-    return Sampling(min(int(np.ceil(footprint - 0.5)), SAMPLES_LIMIT), CENTRE, 0)
+        return Sampling(int(asked), CENTRE, 0)
+    side = grid_side(surface, camera, detail)
+    return smooth_edges(detail) if side == 1 else Sampling(side, CENTRE, 0)
 
 
-def smooth_edges(footprint: float) -> Sampling:
-    """One sample a pixel, but four where they show different things. footprint: see `median_footprint`."""
-    return Sampling(1, STANDARD, APART * footprint)
+def grid_side(surface: Surface, camera: Camera, detail: float) -> int:
+    """k of the k x k samples a pixel that a picture takes by itself.
+
+    Where `detail` is above 1 the atlas is denser than what it holds, and a captured view drawn at its own size needs
+    one sample however many texels a pixel covers: more would blur what the photograph's own pixels have averaged
+    already. Smaller pictures take as many samples as photograph pixels, at most `SAMPLES_LIMIT`.
+    """
+    footprint = median_footprint(surface, camera) / max(detail, 1.0)
+    return 1 if footprint <= ONE_SAMPLE else min(int(np.ceil(footprint - 0.5)), SAMPLES_LIMIT)
+
+
+def smooth_edges(detail: float) -> Sampling:
+    """One sample a pixel, but four where they show different things. detail: texels for one pixel of the photographs;
+    0 if nobody knows."""
+    return Sampling(1, STANDARD, APART * (detail or 1.0))
 
 
 def median_footprint(surface: Surface, camera: Camera) -> float:
     """Texels a pixel along a side, the median over picture area of (some of) the triangles in view; 0 if there are
     none."""
-    faces = surface.faces[:: max(1, len(surface.faces) // FOOTPRINTS)]
+    some = surface.faces[:: max(1, len(surface.faces) // FOOTPRINTS)]
+    return _footprint(surface, camera, some) or _footprint(surface, camera, surface.faces)
+
+
+def _footprint(surface: Surface, camera: Camera, faces: NDArray[np.int32]) -> float:
     pixels, depth = camera.project(surface.vertices[faces].reshape(-1, 3))
     corners = np.where((depth > 0)[:, None], pixels, np.nan).reshape(-1, 3, 2)
     middle = corners.mean(axis=1)

@@ -18,52 +18,189 @@ TILE = 16  # texels along a side of a tile
 AREA = TILE * TILE
 LANES = 16  # texels whose codes of four components lie together
 AHEAD = 32  # samples before it is needed that a texel is asked for
+BLOCK = 8  # pixels of a row whose edges are found without a search
+NOWHERE = np.float32(1e6)  # texels
 DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 
 
 @kernel()
 def draw_texels(
-    faces, texels, edges, bounds, listing, first, last, slack, offsets, above, inverse_depth, column_of, row_of, seen
+    faces, texels, edges, bounds, listing, first, last, slack, inverse_depth, column_of, row_of, seen
 ):  # fmt: skip
-    """As `eigenfield.raster.draw_band`, keeping where in the atlas each sample lands instead of its triangle.
+    """As `eigenfield.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
 
-    texels (n, 2): texel coordinates of the vertices. offsets (s, 2): where the samples of a pixel are, right of and
-    below its centre. inverse_depth, column_of, row_of (s, rows, at least W + RUN) float32 out, from row `above` of the
-    picture on: 1 / depth, and texel coordinates over depth, which are linear functions of the pixel; RUN columns are
-    room for vectors. seen (m,): set to 1 for triangles that were nearest for a while; threads share it, and only ever
-    write ones.
+    texels (n, 2): texel coordinates of the vertices. inverse_depth, column_of, row_of (H, W + RUN) float32 out: 1 /
+    depth, and texel coordinates over depth, which are linear functions of the pixel; RUN columns are room for vectors.
+    seen (m,): set to 1 for triangles that were nearest for a while; threads share it, and only ever write ones.
     """
-    inverse_depth[:, first - above : last - above] = 0
-    e = np.empty((3, 3))
+    inverse_depth[first:last] = 0
     for f in listing:
+        e = edges[f]
+        a, b, c, q = run_ends(e, slack)
         u0, u1, u2 = texels[faces[f, 0], 0], texels[faces[f, 1], 0], texels[faces[f, 2], 0]
         v0, v1, v2 = texels[faces[f, 0], 1], texels[faces[f, 1], 1], texels[faces[f, 2], 1]
+        ux, vx = u0 * e[0, 0] + u1 * e[1, 0] + u2 * e[2, 0], v0 * e[0, 0] + v1 * e[1, 0] + v2 * e[2, 0]
+        uy, vy = u0 * e[0, 1] + u1 * e[1, 1] + u2 * e[2, 1], v0 * e[0, 1] + v1 * e[1, 1] + v2 * e[2, 1]
+        uc, vc = u0 * e[0, 2] + u1 * e[1, 2] + u2 * e[2, 2], v0 * e[0, 2] + v1 * e[1, 2] + v2 * e[2, 2]
+        q_step, u_step, v_step = np.float32(q[0]), np.float32(ux), np.float32(vx)
         drawn = False
+        for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
+            y = row + 0.5
+            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            x = left + 0.5
+            q_start = np.float32(q[0] * x + (q[1] * y + q[2]))
+            u_start, v_start = np.float32(ux * x + (uy * y + uc)), np.float32(vx * x + (vy * y + vc))
+            nearest, columns, rows = inverse_depth[row], column_of[row], row_of[row]
+            for step in range(0, right - left, RUN):
+                along = np.float32(np.int32(step))
+                drawn |= draw_lanes(
+                    nearest, columns, rows, left + step, np.int32(right - left - step),
+                    q_start + along * q_step, q_step,
+                    u_start + along * u_step, u_step,
+                    v_start + along * v_step, v_step,
+                )  # fmt: skip
+        if drawn:
+            seen[f] = 1
+
+
+@kernel(inline=True)
+def bent(a, b, c, limit):
+    """Whether b is off the middle between a and c: by more than half of `limit`, as where one lies off by `limit`."""
+    return abs((a + c) - np.float32(2) * b) > limit
+
+
+@kernel()
+def flatten(near, column, row, columns, rows):
+    """columns, rows (W,): texel coordinates; far away from all where there is nothing."""
+    for i in range(columns.shape[0]):
+        shows = near[i] > 0
+        inverse = np.float32(1) / (near[i] if shows else np.float32(1))
+        columns[i] = column[i] * inverse if shows else NOWHERE
+        rows[i] = row[i] * inverse if shows else NOWHERE
+
+
+@kernel()
+def mark_ends(edges, bounds, listing, rims, first, last, slack, offsets, marks):
+    """marks (at least last - first rows, W) out: the pixels of rows [first, last) of which some samples, but not all,
+    lie in one of the triangles in `listing` that have a rim, rims (m,) bool: what is thinner than a pixel is seen by
+    no neighbour's middle. edges, bounds, slack: see `draw_texels`; offsets: `draw_samples`."""
+    marks[: last - first] = False
+    e = np.empty((3, 3))
+    outer, inner = np.empty((last - first, 2), np.int64), np.empty((last - first, 2), np.int64)
+    for f in listing:
+        if not rims[f]:
+            continue
+        top, bottom = max(first, bounds[f, 0]), min(last, bounds[f, 1])
+        outer[:, 0], outer[:, 1] = bounds[f, 3], bounds[f, 2]
+        inner[:, 0], inner[:, 1] = bounds[f, 2], bounds[f, 3]
         for s in range(offsets.shape[0]):
             for i in range(3):  # seen from the sample: as if the triangle had moved
                 e[i, 0], e[i, 1] = edges[f, i, 0], edges[f, i, 1]
                 e[i, 2] = edges[f, i, 2] + e[i, 0] * offsets[s, 0] + e[i, 1] * offsets[s, 1]
-            a, b, c, q = run_ends(e, slack)
-            ux, vx = u0 * e[0, 0] + u1 * e[1, 0] + u2 * e[2, 0], v0 * e[0, 0] + v1 * e[1, 0] + v2 * e[2, 0]
-            uy, vy = u0 * e[0, 1] + u1 * e[1, 1] + u2 * e[2, 1], v0 * e[0, 1] + v1 * e[1, 1] + v2 * e[2, 1]
-            uc, vc = u0 * e[0, 2] + u1 * e[1, 2] + u2 * e[2, 2], v0 * e[0, 2] + v1 * e[1, 2] + v2 * e[2, 2]
-            q_step, u_step, v_step = np.float32(q[0]), np.float32(ux), np.float32(vx)
-            for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
-                y = row + 0.5
-                left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
-                x = left + 0.5
-                q_start = np.float32(q[0] * x + (q[1] * y + q[2]))
-                u_start, v_start = np.float32(ux * x + (uy * y + uc)), np.float32(vx * x + (vy * y + vc))
-                into = row - above
-                nearest, columns, rows = inverse_depth[s, into], column_of[s, into], row_of[s, into]
-                for step in range(0, right - left, RUN):
-                    along = np.float32(np.int32(step))
-                    drawn |= draw_lanes(
-                        nearest, columns, rows, left + step, np.int32(right - left - step),
-                        q_start + along * q_step, q_step,
-                        u_start + along * u_step, u_step,
-                        v_start + along * v_step, v_step,
-                    )  # fmt: skip
+            a, b, c, _ = run_ends(e, slack)
+            for row in range(top, bottom):
+                left, right = run_of(a, b, c, row + 0.5, bounds[f, 2], bounds[f, 3])
+                line = row - first
+                if left < right:
+                    outer[line, 0], outer[line, 1] = min(outer[line, 0], left), max(outer[line, 1], right)
+                inner[line, 0], inner[line, 1] = max(inner[line, 0], left), min(inner[line, 1], right)
+        for row in range(top, bottom):
+            line = row - first
+            if inner[line, 0] < inner[line, 1]:
+                marks[line, outer[line, 0] : inner[line, 0]] = True
+                marks[line, inner[line, 1] : outer[line, 1]] = True
+            else:
+                marks[line, outer[line, 0] : outer[line, 1]] = True
+
+
+@kernel()
+def find_bends(near, column, row, first, last, limit, columns, rows, marks, places, starts, sums):
+    """Which pixels of rows [first, last) to look at closer: those in `marks`, those that lie in the atlas not about
+    half way between their neighbours, left and right or above and below, and all at the picture's border.
+
+    near, column, row (H, at least W): middles of pixels, see `draw_texels`. columns, rows (at least last - first + 2,
+    W): scratch. marks (at least last - first, W): of `mark_ends`; changed. places out: their columns, row by row.
+    starts (last - first, blocks + 1) out: how many there are before a row's column BLOCK b; at the end, to the row's
+    end. sums (last - first + 1, blocks + 1) out: how many lie above a row and left of a block.
+    """
+    height, width, found = near.shape[0], columns.shape[1], 0
+    blocks = -(-width // BLOCK)
+    for line in range(max(first - 1, 0), min(last + 1, height)):
+        at = line - first + 1
+        flatten(near[line], column[line], row[line], columns[at], rows[at])
+    sums[0] = 0
+    for line in range(first, last):
+        at = line - first
+        mark = marks[at]
+        if line == 0 or line == height - 1:
+            mark[:] = True
+        else:
+            u, v, u_up, v_up, u_down, v_down = (
+                columns[at + 1], rows[at + 1], columns[at], rows[at], columns[at + 2], rows[at + 2]
+            )  # fmt: skip
+            mark[0], mark[width - 1] = True, True
+            for i in range(1, width - 1):
+                mark[i] |= (
+                    bent(u[i - 1], u[i], u[i + 1], limit) | bent(v[i - 1], v[i], v[i + 1], limit)
+                    | bent(u_up[i], u[i], u_down[i], limit) | bent(v_up[i], v[i], v_down[i], limit)
+                )  # fmt: skip
+        sums[at + 1, 0] = 0
+        for block in range(blocks):
+            starts[at, block] = found
+            for i in range(block * BLOCK, min(block * BLOCK + BLOCK, width)):
+                if mark[i]:
+                    places[found] = i
+                    found += 1
+            sums[at + 1, block + 1] = sums[at, block + 1] + found - starts[at, 0]
+        starts[at, blocks] = found
+
+
+@kernel()
+def draw_samples(
+    faces, texels, edges, bounds, listing, first, last, slack, offsets, places, starts, sums, samples, seen
+):  # fmt: skip
+    """As `draw_texels`, the four samples of some pixels: places, starts, sums as `find_bends` makes them, offsets
+    (4, 2) right of and below the pixel's middle. samples (at least as many as places, 3, 4) out: 1 / depth and texel
+    coordinates over depth."""
+    samples[: starts[last - first - 1, starts.shape[1] - 1]] = 0
+    for f in listing:
+        left, right = bounds[f, 2], bounds[f, 3]
+        low, high = left // BLOCK, (right - 1) // BLOCK + 1
+        top, bottom = max(first, bounds[f, 0]), min(last, bounds[f, 1])
+        above, below = sums[top - first], sums[bottom - first]
+        if below[high] - below[low] == above[high] - above[low]:
+            continue  # most triangles have no such pixel anywhere near
+        i, j, k = faces[f]
+        ax, ay, ac = edges[f, 0, 0], edges[f, 0, 1], edges[f, 0, 2]
+        bx, by, bc = edges[f, 1, 0], edges[f, 1, 1], edges[f, 1, 2]
+        cx, cy, cc = edges[f, 2, 0], edges[f, 2, 1], edges[f, 2, 2]
+        # how much more than in its middle an edge function can be within a pixel
+        a_more, b_more, c_more = (abs(ax) + abs(ay)) / 2, (abs(bx) + abs(by)) / 2, (abs(cx) + abs(cy)) / 2
+        drawn = False
+        for row in range(top, bottom):
+            at, end = starts[row - first, low], starts[row - first, high]
+            while at < end and places[at] < left:
+                at += 1
+            y = row + 0.5
+            a_row, b_row, c_row = ay * y + ac, by * y + bc, cy * y + cc
+            while at < end and places[at] < right:
+                x = places[at] + 0.5
+                a_here, b_here, c_here = ax * x + a_row, bx * x + b_row, cx * x + c_row
+                least = -slack * (a_here + b_here + c_here)
+                if (a_here + a_more >= least) & (b_here + b_more >= least) & (c_here + c_more >= least):
+                    pixel = samples[at]
+                    for s in range(4):
+                        over, down = offsets[s, 0], offsets[s, 1]
+                        a = a_here + (ax * over + ay * down)
+                        b = b_here + (bx * over + by * down)
+                        c = c_here + (cx * over + cy * down)
+                        near, least = np.float32(a + b + c), -slack * (a + b + c)
+                        if (a >= least) & (b >= least) & (c >= least) & (near > pixel[0, s]):
+                            pixel[0, s] = near
+                            pixel[1, s] = a * texels[i, 0] + b * texels[j, 0] + c * texels[k, 0]
+                            pixel[2, s] = a * texels[i, 1] + b * texels[j, 1] + c * texels[k, 1]
+                            drawn = True
+                at += 1
         if drawn:
             seen[f] = 1
 
@@ -163,19 +300,19 @@ def locate(taps, near, place, size, per_tile, per_texel, address, weight):
 
 
 @kernel(fastmath=True, inline=True)
-def sample_line(taps, texture, near, rows, columns, down, across, ends, background, line):
+def sample_line(taps, texture, near, rows, columns, down, across, many, background, line):
     """Add the mean of each pixel's filtered samples to line (pixels * DEPTH,); background where uncovered.
 
-    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`. ends
-    (pixels,): a pixel's samples are those before its entry, from the entry before on. Texels as vectors save 30 % of
-    the time of 4 x 4 taps, and cost 15 % with 2 x 2.
+    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`. many: of
+    the samples of a row belong to one pixel. Texels as vectors save 30 % of the time of 4 x 4 taps, and cost 15 % with
+    2 x 2.
     """
-    one, two, ahead = np.uintp(1), np.uintp(2), np.uintp(AHEAD)
-    first = 0
-    for pixel in range(ends.shape[0]):
+    one, two, ahead, count = np.uintp(1), np.uintp(2), np.uintp(AHEAD), np.uintp(many)
+    share = np.float32(1) / np.float32(many)
+    for pixel in range(near.shape[0] // many):
         red, green, blue = np.float32(0), np.float32(0), np.float32(0)
-        for sample in range(first, ends[pixel]):
-            i = np.uintp(sample)
+        for sample in range(many):
+            i = np.uintp(pixel) * count + np.uintp(sample)
             fetch_early(texture, rows[taps - 1, i + ahead] + columns[0, i + ahead])
             if near[i] > 0:
                 if taps == 2:
@@ -205,8 +342,6 @@ def sample_line(taps, texture, near, rows, columns, down, across, ends, backgrou
                 red += background[0]
                 green += background[1]
                 blue += background[2]
-        share = np.float32(1) / np.float32(ends[pixel] - first)
-        first = ends[pixel]
         place = np.uintp(pixel * DEPTH)
         line[place] += share * red
         line[place + one] += share * green
@@ -225,107 +360,116 @@ def store_line(line, scale, eight_bit, out):
 
 
 @kernel(fastmath=True)
-def cover_line(near, ends, sources, coverage):
-    """coverage (pixels,): the share of samples near (sources, n) that show surface. ends: see `sample_line`."""
-    first = 0
-    for pixel in range(ends.shape[0]):
+def cover_line(near, many, coverage):
+    """coverage (pixels,): the share of samples near (rows, pixels * many) that show surface."""
+    for pixel in range(coverage.shape[0]):
         hits = 0
-        for source in range(sources):
-            for sample in range(first, ends[pixel]):
-                hits += near[source, sample] > 0
-        coverage[pixel] = np.float32(hits) / np.float32((ends[pixel] - first) * sources)
-        first = ends[pixel]
+        for row in range(near.shape[0]):
+            for sample in range(pixel * many, pixel * many + many):
+                hits += near[row, sample] > 0
+        coverage[pixel] = np.float32(hits) / np.float32(near.shape[0] * many)
 
 
 @kernel(inline=True)
-def apart(a, b, c, d, limit):
-    """Whether any two of four numbers differ by more. As comparisons, which become vectors, unlike min and max."""
-    one = (abs(a - b) > limit) | (abs(a - c) > limit) | (abs(a - d) > limit)
-    return one | (abs(b - c) > limit) | (abs(b - d) > limit) | (abs(c - d) > limit)
+def is_parted(near, column, row, samples, limit):
+    """Whether a pixel's four samples (3, 4) and its middle do not lie on one piece of the atlas: the middle is not half
+    way between two opposite ones, by `limit` texels along a side, or some show something and some nothing."""
+    shown = 0
+    for s in range(4):
+        shown += samples[0, s] > 0
+    if near <= 0 or shown < 4:
+        return shown + (near > 0) > 0
+    x, y = column / near, row / near
+    for s in range(2):  # 0 and 3 lie opposite each other, 1 and 2 too
+        one, other = samples[0, s], samples[0, 3 - s]
+        if bent(samples[1, s] / one, x, samples[1, 3 - s] / other, limit):
+            return True
+        if bent(samples[2, s] / one, y, samples[2, 3 - s] / other, limit):
+            return True
+    return False
 
 
 @kernel()
-def part_samples(near, column, row, line, limit, parted):
-    """parted (n,) uint8: whether what the four samples of a pixel show lies apart in the atlas, by more than `limit`
-    texels along a side, or some show something and some nothing; near, column, row (4, lines, at least n): 1 / depth
-    and texel coordinates over depth."""
-    n0, n1, n2, n3 = near[0, line], near[1, line], near[2, line], near[3, line]
-    x0, x1, x2, x3 = column[0, line], column[1, line], column[2, line], column[3, line]
-    y0, y1, y2, y3 = row[0, line], row[1, line], row[2, line], row[3, line]
-    zero, one = np.float32(0), np.float32(1)
-    for i in range(parted.shape[0]):
-        all_show = (n0[i] > zero) & (n1[i] > zero) & (n2[i] > zero) & (n3[i] > zero)
-        some_show = (n0[i] > zero) | (n1[i] > zero) | (n2[i] > zero) | (n3[i] > zero)
-        a, b, c, d = one / n0[i], one / n1[i], one / n2[i], one / n3[i]
-        across = apart(x0[i] * a, x1[i] * b, x2[i] * c, x3[i] * d, limit)
-        down = apart(y0[i] * a, y1[i] * b, y2[i] * c, y3[i] * d, limit)
-        parted[i] = (all_show & (across | down)) | (some_show & ~all_show)
+def keep_parted(near, column, row, places, starts, samples, limit, first, last, spans, parted, finer):
+    """Of the pixels of rows [first, last) that were looked at, the parted ones.
 
-
-@kernel()
-def gather_samples(near, column, row, limit, first, last, near_out, column_out, row_out, ends):
-    """Of rows [first, last) of a picture the samples that are looked at, pixel by pixel: all of a parted pixel's, else
-    what they show on average, which is what the middle of the pixel shows.
-
-    near, column, row (4, rows, at least W), limit: see `part_samples`. *_out (H, 4 W at least), ends (H, W): see
-    `shade_rows`.
+    near, column, row, places, starts: see `find_bends`; samples: `draw_samples`; limit: `parted`. parted (n,) int32
+    out: their columns, finer (3, 4 n) their samples, row by row; spans (H, 2) out: where a row's begin and end. Rows
+    have W numbers of their own.
     """
-    parted, share = np.empty(ends.shape[1], np.uint8), np.float32(0.25)
     for line in range(first, last):
-        here = line - first
-        part_samples(near, column, row, here, limit, parted)
-        q_out, u_out, v_out = near_out[line], column_out[line], row_out[line]
-        at = 0
-        for i in range(ends.shape[1]):
-            if parted[i]:
+        found = first * parted.shape[0] // near.shape[0] if line == first else spans[line - 1, 1]
+        spans[line, 0] = found
+        for at in range(starts[line - first, 0], starts[line - first, starts.shape[1] - 1]):
+            i = places[at]
+            if is_parted(near[line, i], column[line, i], row[line, i], samples[at], limit):
+                parted[found] = i
                 for s in range(4):
-                    q_out[at], u_out[at], v_out[at] = near[s, here, i], column[s, here, i], row[s, here, i]
-                    at += 1
-            else:
-                q_out[at] = share * ((near[0, here, i] + near[1, here, i]) + (near[2, here, i] + near[3, here, i]))
-                u_out[at] = share * (
-                    (column[0, here, i] + column[1, here, i]) + (column[2, here, i] + column[3, here, i])
-                )
-                v_out[at] = share * ((row[0, here, i] + row[1, here, i]) + (row[2, here, i] + row[3, here, i]))
-                at += 1
-            ends[line, i] = at
+                    for part in range(3):
+                        finer[part, 4 * found + s] = samples[at, part, s]
+                found += 1
+        spans[line, 1] = found
+
+
+@kernel(fastmath=True)
+def shade_line(near, u, v, many, texture, width, height, bicubic, background, room, line):
+    """As `sample_line`, for the samples near, u, v of a row. room: for rows, columns, down, across."""
+    rows, columns, down, across = room
+    tile_row = -(-width // TILE) * AREA * 4
+    if bicubic:
+        locate(4, near, u, width, AREA * 4, 4, columns, across)
+        locate(4, near, v, height, tile_row, TILE * 4, rows, down)
+        sample_line(4, texture, near, rows, columns, down, across, many, background, line)
+    else:
+        locate(2, near, u, width, AREA * 4, 4, columns, across)
+        locate(2, near, v, height, tile_row, TILE * 4, rows, down)
+        sample_line(2, texture, near, rows, columns, down, across, many, background, line)
 
 
 @kernel(fastmath=True)
 def shade_rows(
-    inverse_depth, column_of, row_of, ends, layers, width, height, bicubic, samples, background, eight_bit, first,
-    last, picture, coverage,
+    inverse_depth, column_of, row_of, spans, parted, finer, layers, width, height, bicubic, samples, background,
+    eight_bit, first, last, picture, coverage,
 ):  # fmt: skip
-    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples (H k, n), k being
-    `samples`.
+    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples (H k, at least W k),
+    k being `samples`: each pixel is the mean of k x k, a parted one of its four; see `keep_parted`.
 
-    layers (L, tiles, AREA, 4): a texture of `height` x `width`. Each pixel is the mean of its samples in k rows: those
-    before its entry of ends (H, W), from the entry before on. Uncovered ones count as `background` (L, DEPTH).
+    layers (L, tiles, AREA, 4): a texture of `height` x `width`. Uncovered samples count as `background` (L, DEPTH).
     eight_bit: times 255, rounded half to even and clipped.
     """
     pixels, channels = picture.shape[1], picture.shape[2]
-    most = inverse_depth.shape[1]
-    tile_row = -(-width // TILE) * AREA * 4
+    most = pixels * samples
+    for row in range(first, last):
+        most = max(most, 4 * (spans[row, 1] - spans[row, 0]))
     rows, columns = np.zeros((4, most + AHEAD), np.int32), np.zeros((4, most + AHEAD), np.int32)
     down, across = np.empty((4, most), np.float32), np.empty((4, most), np.float32)
-    line = np.empty(pixels * DEPTH, np.float32)
+    room = rows, columns, down, across
+    line, edges = np.empty(pixels * DEPTH, np.float32), np.empty(pixels * DEPTH, np.float32)
     scale = np.float32((255.0 if eight_bit else 1.0) / samples)
     for row in range(first, last):
-        upto, count = ends[row], ends[row, pixels - 1]
-        cover_line(inverse_depth[row * samples : row * samples + samples], upto, samples, coverage[row])
+        sources = range(row * samples, row * samples + samples)
+        one, end = spans[row]
+        four, covered = slice(4 * one, 4 * end), coverage[row]
+        cover_line(inverse_depth[row * samples : row * samples + samples], samples, covered)
+        for at in range(one, end):
+            cover_line(finer[:1, 4 * at : 4 * at + 4], 4, covered[parted[at] : parted[at] + 1])
         for layer in range(layers.shape[0]):
             texture, behind = layers[layer].reshape(-1), background[layer]
             line[:] = 0
-            for source in range(row * samples, row * samples + samples):
-                near, u, v = inverse_depth[source, :count], column_of[source, :count], row_of[source, :count]
-                if bicubic:
-                    locate(4, near, u, width, AREA * 4, 4, columns, across)
-                    locate(4, near, v, height, tile_row, TILE * 4, rows, down)
-                    sample_line(4, texture, near, rows, columns, down, across, upto, behind, line)
-                else:
-                    locate(2, near, u, width, AREA * 4, 4, columns, across)
-                    locate(2, near, v, height, tile_row, TILE * 4, rows, down)
-                    sample_line(2, texture, near, rows, columns, down, across, upto, behind, line)
+            for source in sources:
+                near, u, v = (
+                    inverse_depth[source, : pixels * samples],
+                    column_of[source, : pixels * samples],
+                    row_of[source, : pixels * samples],
+                )
+                shade_line(near, u, v, samples, texture, width, height, bicubic, behind, room, line)
+            if one < end:
+                edges[: DEPTH * (end - one)] = 0
+                near, u, v = finer[0, four], finer[1, four], finer[2, four]
+                shade_line(near, u, v, 4, texture, width, height, bicubic, behind, room, edges)
+                for at in range(end - one):
+                    for k in range(DEPTH):
+                        line[parted[one + at] * DEPTH + k] = edges[at * DEPTH + k]
             if channels == DEPTH:
                 store_line(line, scale, eight_bit, picture[row].reshape(-1))
             else:

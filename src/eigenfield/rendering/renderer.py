@@ -25,6 +25,7 @@ from eigenfield.rendering.drawing import (
     check_filter,
     choose_sampling,
     cover,
+    grid_side,
     make_surface,
     median_footprint,
     shade,
@@ -100,6 +101,10 @@ class Renderer:
             return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
         image: NDArray[np.uint8] = self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
         return image
+
+    def grid_side(self, camera: Camera) -> int:
+        """k of the k x k samples a pixel that a picture takes by itself, 1 for smooth edges."""
+        return grid_side(self._surface, camera, self._detail)
 
     def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
         """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""

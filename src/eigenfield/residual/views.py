@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eigenfield.errors import OptionError
 from eigenfield.format.film import residual_frames
-from eigenfield.rendering import Picture, Shots, camera_colour, camera_weights
+from eigenfield.rendering import Picture, Shots, camera_colour, camera_weights, renderer_of
 from eigenfield.residual.colour import to_difference
 from eigenfield.scene import Residual, Scene
 
@@ -69,9 +69,9 @@ def corrected(picture: Picture, difference: NDArray[np.float32], background: Seq
     return Picture(np.clip(own, 0, 1) * part + behind, picture.coverage)
 
 
-def captured_samples(scene: Scene) -> int | None:
-    """`samples` of a renderer for the pictures that the scene's residual belongs to."""
-    return None if _residual(scene).smooth else 1
+def captured_samples(scene: Scene, index: int) -> int | None:
+    """`samples` of a renderer for the picture of a camera that the scene's residual belongs to."""
+    return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.cameras[index])
 
 
 def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
@@ -92,7 +92,7 @@ def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -
                 f"--{name} draws other pictures than the residual belongs to",
                 remedy="leave one of them out",
             )
-    shots = replace(shots, samples=captured_samples(scene))
+    shots = replace(shots, samples=captured_samples(scene, index))
     picture = shots.picture(scene.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
     return shots.pixels_of(corrected(picture, difference, shots.background or (0.0,)))
 
