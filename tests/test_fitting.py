@@ -360,7 +360,11 @@ def test_one_plane_of_red_green_and_blue(fitted, tmp_path):
     assert validate(tmp_path / "rgb.glb") == []
     again = ef.load(tmp_path / "rgb.glb")
     assert [plane.mean.shape[2] for plane in again.planes] == [3] and again.to_rgb is None
-    reached = [evaluate(one, capture)["image"]["encoded"]["psnr"] for one in (again, ef.load(output))]
+    figures = evaluate(again, capture)
+    assert figures["uv"] is None, "a fit's textures are of no photograph's maps, of one plane or of two"
+    with pytest.raises(OptionError, match="no texture maps"):
+        evaluate(again, capture, curve="all")
+    reached = [one["image"]["encoded"]["psnr"] for one in (figures, evaluate(ef.load(output), capture))]
     assert reached[0] > 40 and parts(tmp_path / "rgb.glb")["total"] > parts(output)["total"], reached
 
 

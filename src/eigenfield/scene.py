@@ -82,7 +82,7 @@ class Residual:
     film: AV1, a frame for each encoded camera. size: (rows, columns) of the pictures in it, whose top left part a
     photograph is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma,
     and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine. smooth: what
-    the scene draws has smooth edges, not one sample a pixel (files before 1.5).
+    the scene draws has smooth edges, not one sample a pixel, or k x k (files before 1.5).
     """
 
     film: bytes

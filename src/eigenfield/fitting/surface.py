@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -121,7 +122,8 @@ def fit_surface(
         for number in range(ROUNDS + 1):
             if progress is not None:
                 progress("fit surface", number, ROUNDS + 1)
-            with on_mesh(every, used, mesh, work) as placed, thinned(placed, step, work) as shots:
+            drawn = on_mesh(every, used, mesh, work) if number else nullcontext(every)
+            with drawn as placed, thinned(placed, step, work) as shots:
                 model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
                 left = fit_mean(shots, model, measure_scales(shots, model))
                 if not left.pixels.any():
