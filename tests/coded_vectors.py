@@ -3,8 +3,10 @@ NAME.bin and NAME.json, whose lists a decoder must find, or null where it must r
 
 from __future__ import annotations
 
+import base64
 import json
 import sys
+import zlib
 from pathlib import Path
 
 import coded_meshes
@@ -13,6 +15,7 @@ import numpy as np
 from eigenfield.errors import FormatError
 from eigenfield.format.camera_coder import code_cameras, decode_cameras
 from eigenfield.format.mesh_coder import decode_mesh, encode_mesh
+from eigenfield.format.name_coder import code_names, decode_names
 from eigenfield.format.triangle_coder import code_triangles, decode_triangles, sorted_triangles
 from eigenfield.format.weight_coder import code_weights, decode_weights
 from test_table_coders import GRID, array_cameras, array_triangles, smooth_weights
@@ -52,7 +55,36 @@ def decoded(kind, stream):
     return {name: part.astype(np.float64).reshape(-1).tolist() for name, part in parts.items()}
 
 
+def names_of(stream, count):
+    """The names, or None where the bytes are refused."""
+    try:
+        return decode_names(stream, count)
+    except FormatError:
+        return None
+
+
+def coded_names():
+    """Base64, count and names of streams, whole and damaged."""
+    random = np.random.default_rng(5)
+    measured = [f"out_{k // 9:02d}_{k % 9:02d}_{random.normal():.6f}_{random.normal():.6f}.jpg" for k in range(81)]
+    for names in (measured, ["ä", "猫.png", "c"], ["\ufeffone"]):
+        stream, count = code_names(names), len(names)
+        variants = [(stream, count), (stream, count + 1), (stream, 2 * count), (stream[:-3], count)]
+        for _ in range(DAMAGED):
+            damaged = bytearray(stream)
+            damaged[random.integers(len(stream))] = random.integers(256)
+            variants.append((bytes(damaged), count))
+        variants += [
+            (zlib.compress(bytes(range(128, 248))), 60),
+            (zlib.compress(b""), 1),
+            (zlib.compress(bytes(2**25 + 1)), 9000),
+        ]
+        for data, number in variants:
+            yield base64.b64encode(data).decode(), number, names_of(data, number)
+
+
 def write(folder):
+    (folder / "names.json").write_text(json.dumps(list(coded_names())), encoding="utf-8")
     random = np.random.default_rng(11)
     for name, stream in streams():
         variants = [(name, stream)]

@@ -20,7 +20,10 @@ from eigenfield.format.coarse import coarse_mesh, shown_mesh
 from eigenfield.format.container import parse_glb, read_file
 from eigenfield.format.deep import svt
 from eigenfield.format.deep_code import coded_plane
+from eigenfield.format.document import Document
+from eigenfield.format.findings import Findings
 from eigenfield.format.geometry import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
+from eigenfield.format.layout import read_layout
 from eigenfield.format.relief_lattice import _spacing, relief_lattice
 from eigenfield.format.stored import cameras_stream, stream_of
 from eigenfield.mesh import Mesh
@@ -183,6 +186,46 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
         assert mesh.visual.material.baseColorTexture.size == (side, side)
 
 
+def measured_scene() -> Scene:
+    """Names with measured positions, as Stanford's have, of which no pattern is short."""
+    scene = coded_scene()
+    places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)
+    return replace(scene, names=tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places))
+
+
+def test_names_with_measured_positions_are_coded(tmp_path):
+    path = tmp_path / "measured.glb"
+    measured_scene().save(path)
+    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    assert extension["version"] == "1.6" and "codedNames" in extension["needs"]
+    assert "names" not in extension["cameras"] and "pattern" not in extension["cameras"]
+    assert ef.load(path).names == measured_scene().names
+    assert not [finding for finding in validate(path) if finding.severity == "error"]
+    coded_scene().save(path, overwrite=True)
+    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    assert extension["version"] < "1.6" and "pattern" in extension["cameras"]
+
+
+@pytest.mark.parametrize(
+    ("change", "codes"),
+    [
+        (lambda e: e["codedNames"].update(bufferView=e["coded"]), {"coded-damaged", "coded-truncated"}),
+        (lambda e: e["codedNames"].update(count=8), {"coded-damaged"}),
+        (lambda e: e["codedNames"].update(count=18), {"camera-count", "camera-name", "coded-damaged"}),
+        (lambda e: e["codedNames"].update(count=0), {"json-value"}),
+        (lambda e: e["codedNames"].pop("count"), {"json-missing"}),
+    ],
+)
+def test_coded_names_that_cannot_be_are_refused(tmp_path, change, codes):
+    path = tmp_path / "measured.glb"
+    measured_scene().save(path)
+    glb = parse_glb(read_file(path))
+    change(glb.json["extensions"]["EIGENFIELD_eigen_textures"]["cameras"])
+    with pytest.raises(FormatError) as caught:
+        read_layout(Document(glb), Findings(strict=True))
+    assert caught.value.code in codes
+
+
 @pytest.mark.parametrize(
     ("change", "codes"),
     [
@@ -198,10 +241,6 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
     ],
 )  # fmt: skip
 def test_streams_that_do_not_belong_are_refused(tmp_path, change, codes):
-    from eigenfield.format.document import Document
-    from eigenfield.format.findings import Findings
-    from eigenfield.format.layout import read_layout
-
     path = tmp_path / "coded.glb"
     coded_scene().save(path)
     glb = parse_glb(read_file(path))

@@ -83,6 +83,21 @@ test("damaged bytes give what Python makes of them, or an error of ours", async 
   assert.ok(read > 20 && refused > 20, `${read} read, ${refused} refused`);
 });
 
+test("names decode to the same names, damaged ones too or to an error of ours", async () => {
+  let [read, refused] = [0, 0];
+  for (const [text, count, expected] of JSON.parse(await readFile(join(folder, "names.json"), "utf8"))) {
+    const found = decoders.decodeNames(Uint8Array.from(Buffer.from(text, "base64")), count);
+    if (expected === null) {
+      await assert.rejects(found, (error) => error.name === "SceneError", `${count} names of ${text.slice(0, 80)}`);
+      refused += 1;
+    } else {
+      assert.deepEqual(await found, expected);
+      read += 1;
+    }
+  }
+  assert.ok(read >= 3 && refused > 20, `${read} read, ${refused} refused`);
+});
+
 test("large numbers in few bytes allocate nothing", async () => {
   for (const [name, at] of [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6], ["triangles-grid", 1]]) {
     const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));

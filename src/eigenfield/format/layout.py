@@ -72,7 +72,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     if extension is None:
         return None
     version = extension["version"].text()
-    if version not in (limits.FIRST, limits.SECOND, limits.THIRD, limits.FOURTH, limits.FIFTH, limits.VERSION):
+    if version not in limits.VERSIONS:
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )

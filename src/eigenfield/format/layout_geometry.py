@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.camera import Camera
 from eigenfield.format import limits
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document, all_finite
+from eigenfield.format.name_coder import decode_names
 from eigenfield.format.name_pattern import read_pattern
 from eigenfield.format.stored import keep_cameras, keep_stream
 from eigenfield.format.strict_json import Value, printable, quoted
@@ -69,7 +70,7 @@ def read_coded_mesh(document: Document, entry: Value) -> Mesh:
 
 def read_cameras(document: Document, entry: Value) -> CameraList:
     """FormatError: `camera-*`, `accessor-*`."""
-    names = _read_names(entry)
+    names = _read_names(document, entry)
     count = len(names)
     held_out = np.zeros(count, bool)
     if entry.has("heldOut"):
@@ -108,16 +109,22 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
     return CameraList(tuple(names), cameras, held_out, colours)
 
 
-def _read_names(entry: Value) -> list[str]:
-    """One by one, or by what they have in common."""
-    given = entry["pattern"] if entry.has("pattern") else entry["names"]
-    if entry.has("pattern"):
+def _read_names(document: Document, entry: Value) -> list[str]:
+    """One by one, by what they have in common, or coded."""
+    given = entry[next((key for key in ("codedNames", "pattern") if entry.has(key)), "names")]
+    listed = isinstance(given.value, list)
+    if entry.has("codedNames"):
+        count = given["count"].integer(1, limits.MAX_CAMERAS)
+        names = decode_names(bytes(document.data(given["bufferView"])), count, given.where)
+        if max(map(len, names)) > limits.MAX_NAME:
+            given.fail("coded-damaged", f"names of more than {limits.MAX_NAME} characters")
+    elif entry.has("pattern"):
         names = read_pattern(given)
     else:
         names = [name.text() for name in given.items(limits.MAX_CAMERAS, 1)]
     for index, name in enumerate(names):
         if not printable(name):
-            where = given if entry.has("pattern") else given.at(index)
+            where = given.at(index) if listed else given
             where.fail("camera-name", "a name with control characters")
     if len(set(names)) < len(names):
         given.fail("camera-name", "two cameras have one name")

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.5"  # a residual of smooth pictures; a reader takes any 1.x
+VERSION = "1.6"  # `codedNames`; a reader takes any 1.x
 FIRST = "1.0"  # what a file says that needs nothing of later versions
 SECOND = "1.1"  # colours of cameras
-THIRD = "1.2"  # what "needs" may name, but for `precision`
+THIRD = "1.2"  # what "needs" may name, but for `precision` and `codedNames`
 FOURTH = "1.3"  # a residual
 FIFTH = "1.4"  # `precision`
+SIXTH = "1.5"  # a residual of smooth pictures
+VERSIONS = (FIRST, SECOND, THIRD, FOURTH, FIFTH, SIXTH, VERSION)
 FEATURES = frozenset(
     {
-        "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "precision",
-        "regions", "sharedPicture", "stacks", "toRGB",
+        "bits", "codedCameras", "codedMesh", "codedNames", "codedTriangles", "codedWeights", "namePattern",
+        "precision", "regions", "sharedPicture", "stacks", "toRGB",
     }
 )  # fmt: skip  # what an entry of "needs" may be
 
@@ -36,6 +38,7 @@ MAX_CAMERAS = 100_000
 MAX_CAMERA_SIDE = 65_535  # pixels
 MAX_CAMERA_PIXELS = 2**29
 MAX_NAME = 1_024  # characters of a camera's name
+MAX_NAMES = 2**25  # bytes of coded names, inflated
 MAX_VERTICES = 2**26
 MAX_TRIANGLES = 2**27
 MAX_WEIGHTS = 2**28

@@ -23,6 +23,7 @@ from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_by
 from eigenfield.format.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.format.findings import Findings
 from eigenfield.format.layout import read_layout
+from eigenfield.format.name_coder import code_names
 from eigenfield.format.name_pattern import name_pattern
 from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
 from eigenfield.format.strict_json import printable
@@ -32,6 +33,7 @@ from eigenfield.scene import Plane, Residual, Scene
 
 QUALITY = 70  # of the eigen textures, for avif
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
+CODED_NAMES = 256  # bytes that coded names must save, and their two entries in the JSON
 
 
 @dataclass
@@ -146,13 +148,14 @@ def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
     ]
     cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
     used = {
+        "codedNames": "codedNames" in cameras,
         "namePattern": "pattern" in cameras,
         "codedTriangles": "codedTriangles" in view_plane,
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
     }
     needs = _needs(scene, coded, mesh is not None, poses is not None, used)
     extension: dict[str, Any] = {
-        "version": _version(scene, coded, bool(needs)),
+        "version": _version(scene, coded, needs),
         "needs": needs,
         **proxy,
         "planes": planes,
@@ -224,10 +227,12 @@ def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[
     return found
 
 
-def _version(scene: Scene, coded: Coded, needs: bool) -> str:
+def _version(scene: Scene, coded: Coded, needs: Sequence[str]) -> str:
     """The first version that has all that the file uses."""
-    if scene.residual is not None and scene.residual.smooth:
+    if "codedNames" in needs:
         return limits.VERSION
+    if scene.residual is not None and scene.residual.smooth:
+        return limits.SIXTH
     if any(plane.mean.precision is not None for plane in coded.planes):
         return limits.FIFTH
     if scene.residual is not None:
@@ -341,7 +346,8 @@ def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool, used: Mapping[
 
 def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, Any]:
     sizes = np.array([[c.width, c.height] for c in scene.cameras])
-    made = _names(scene.names, stream is not None) | {"heldOut": np.flatnonzero(scene.held_out).tolist()}
+    made = _names(scene.names, None if stream is None else buffer)
+    made["heldOut"] = np.flatnonzero(scene.held_out).tolist()
     if stream is not None:
         made["coded"] = buffer.view(stream)
     else:
@@ -359,10 +365,16 @@ def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, A
     return made
 
 
-def _names(names: Sequence[str], short: bool) -> dict[str, Any]:
-    """short: whether a pattern may stand for them, which readers of 1.1 do not know."""
-    pattern = name_pattern(names) if short else None
-    return {"names": list(names)} if pattern is None else {"pattern": pattern}
+def _names(names: Sequence[str], buffer: _Buffer | None) -> dict[str, Any]:
+    """One by one, by a pattern or coded, whichever is shortest; without a buffer as readers of 1.1 know them."""
+    plain: dict[str, Any] = {"names": list(names)}
+    if buffer is None:
+        return plain
+    pattern, stream = name_pattern(names), code_names(names)
+    told = plain if pattern is None else {"pattern": pattern}
+    if stream is None or len(stream) + CODED_NAMES >= len(json_bytes(told)):
+        return told
+    return {"codedNames": {"bufferView": buffer.view(stream), "count": len(names)}}
 
 
 def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:

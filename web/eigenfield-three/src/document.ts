@@ -32,7 +32,7 @@ export interface SceneDocument {
   generator: string;
   planes: Plane[];
   colours: [number, number, number][]; // R, G, B of the value 1 of each channel of all planes
-  names: string[];
+  names: string[] | Stream; // as many as `heldOut`
   heldOut: boolean[];
   reference: number;
   calibration: Stream | { intrinsics: Accessor; poses: Accessor };
@@ -84,12 +84,11 @@ export function readDocument(json: Json): SceneDocument {
   checkNodes(root);
   const preview = previewOf(root, viewOf);
   const cameras = extension.key("cameras");
-  const names = namesOf(cameras);
-  const heldOut = heldOutOf(cameras, names.length);
+  const { count, names } = namesOf(cameras, viewOf);
+  const heldOut = heldOutOf(cameras, count);
   const encoded = heldOut.filter((out) => !out).length;
   const planes = readPlanes(extension, encoded, preview, accessor, viewOf);
   const colours = readColours(extension, planes);
-  const count = names.length;
   const colour = cameras.key("colour");
   if (colour.exists && colours.length < 3) throw colour.wrong("needs three channels");
 
@@ -240,16 +239,28 @@ function previewOf(root: Value, viewOf: ViewReader): number | null {
   return view.exists ? viewOf(view) : null;
 }
 
-function namesOf(cameras: Value): string[] {
+/** How many cameras there are, and their names or where those are coded. */
+function namesOf(cameras: Value, viewOf: ViewReader): { count: number; names: string[] | Stream } {
+  const coded = cameras.key("codedNames");
+  if (coded.exists) {
+    const count = coded.key("count").integer(1, limits.MAX_CAMERAS);
+    return { count, names: streamOf(coded, coded.key("bufferView"), viewOf) };
+  }
   const pattern = cameras.key("pattern");
   const given = pattern.exists ? pattern : cameras.key("names");
   const names = pattern.exists
     ? patternNames(pattern)
     : given.items(limits.MAX_CAMERAS).map((name) => name.text(limits.MAX_NAME));
   if (!names.length) throw given.wrong("no cameras");
-  if (new Set(names).size !== names.length) throw given.wrong("a name stands twice");
-  if (names.some((name) => /[\u0000-\u001f\u007f-\u009f]/.test(name))) throw given.wrong("control characters");
-  return names;
+  const wrong = wrongIn(names);
+  if (wrong) throw given.wrong(wrong);
+  return { count: names.length, names };
+}
+
+/** What is wrong with the names of cameras, if anything is. */
+export function wrongIn(names: string[]): string | null {
+  if (new Set(names).size !== names.length) return "a name stands twice";
+  return names.some((name) => /[\u0000-\u001f\u007f-\u009f]/.test(name)) ? "control characters" : null;
 }
 
 /** Names of which the pieces are the same in all, along rows or along columns. */

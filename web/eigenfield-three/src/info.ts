@@ -1,11 +1,12 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
 import { decodeCameras } from "./camera-decoder.js";
-import type { Accessor, SceneDocument, Stream } from "./document.js";
+import { type Accessor, type SceneDocument, type Stream, wrongIn } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
+import { decodeNames } from "./name-decoder.js";
 import type { Basis } from "./planes.js";
 import { decodeTriangles } from "./triangle-decoder.js";
 import { decodeWeights } from "./weight-decoder.js";
@@ -89,12 +90,13 @@ function limited<T extends Numbers>(numbers: T, where: string): T {
 }
 
 export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promise<CaptureCamera[]> {
-  const [{ lenses, poses }, sizes, colour] = await Promise.all([
+  const [names, { lenses, poses }, sizes, colour] = await Promise.all([
+    readNames(scene, bytes),
     readCalibration(scene, bytes),
     readSizes(scene, bytes),
     scene.colour ? readNumbers(scene.colour, scene, bytes) : null,
   ]);
-  return scene.names.map((name, i) => {
+  return names.map((name, i) => {
     const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
     if (!(fx > SHORTEST && fy > SHORTEST)) throw damaged(lenses.where, `focal lengths of "${name}"`);
     const { R, t } = poseOf([...poses.numbers.subarray(12 * i, 12 * i + 12)], poses.where, name);
@@ -109,6 +111,14 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
   });
 }
 
+async function readNames({ names, heldOut }: SceneDocument, bytes: ViewBytes): Promise<string[]> {
+  if (Array.isArray(names)) return names;
+  const found = await decodeNames(new Uint8Array(await bytes(names.view)), heldOut.length, names.where);
+  const wrong = found.some((name) => name.length > limits.MAX_NAME) ? "names that are too long" : wrongIn(found);
+  if (wrong) throw damaged(names.where, wrong);
+  return found;
+}
+
 /** Numbers and where the file has them. */
 interface Table {
   numbers: Numbers;
@@ -121,7 +131,7 @@ async function readTable(accessor: Accessor, scene: SceneDocument, bytes: ViewBy
 
 /** Five numbers of each camera's lens, twelve of its pose. */
 async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<{ lenses: Table; poses: Table }> {
-  const { calibration, names } = scene;
+  const { calibration, heldOut } = scene;
   if ("intrinsics" in calibration) {
     const { intrinsics, poses } = calibration;
     return { lenses: await readTable(intrinsics, scene, bytes), poses: await readTable(poses, scene, bytes) };
@@ -129,7 +139,7 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
   const { view, where } = calibration;
   const coded = decodeCameras(new Uint8Array(await bytes(view)), where);
   const count = coded.poses.length / 12;
-  if (count !== names.length) throw damaged(where, `${count} cameras in it, and ${names.length} names`);
+  if (count !== heldOut.length) throw damaged(where, `${count} cameras in it, and ${heldOut.length} names`);
   const table = (numbers: Float32Array): Table => ({ numbers: limited(numbers, where), where });
   return { lenses: table(coded.intrinsics), poses: table(coded.poses) };
 }
@@ -138,7 +148,7 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
 async function readSizes(scene: SceneDocument, bytes: ViewBytes): Promise<Table> {
   if (!Array.isArray(scene.sizes)) return readTable(scene.sizes, scene, bytes);
   const [width, height] = scene.sizes;
-  const numbers = Uint32Array.from({ length: 2 * scene.names.length }, (_, i) => (i % 2 ? height : width));
+  const numbers = Uint32Array.from({ length: 2 * scene.heldOut.length }, (_, i) => (i % 2 ? height : width));
   return { numbers, where: "its cameras' size" };
 }
 
@@ -248,7 +258,7 @@ export function sceneInfo(
   return {
     version: scene.version,
     generator: scene.generator,
-    names: scene.names,
+    names: cameras.map(({ name }) => name),
     heldOut: scene.heldOut,
     reference: scene.reference,
     cameras,

@@ -2,8 +2,8 @@
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
 export const KNOWN_NEEDS: ReadonlySet<string> = new Set([
-  "bits", "codedCameras", "codedMesh", "codedTriangles", "codedWeights", "namePattern", "precision", "regions",
-  "sharedPicture", "stacks", "toRGB",
+  "bits", "codedCameras", "codedMesh", "codedNames", "codedTriangles", "codedWeights", "namePattern", "precision",
+  "regions", "sharedPicture", "stacks", "toRGB",
 ]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes
@@ -23,6 +23,7 @@ export const MAX_CAMERAS = 100_000;
 export const MAX_CAMERA_SIDE = 65_535;
 export const MAX_CAMERA_PIXELS = 2 ** 29;
 export const MAX_NAME = 1_024;
+export const MAX_NAMES = 2 ** 25; // bytes of coded names, inflated
 export const MAX_VERTICES = 2 ** 26;
 export const MAX_TRIANGLES = 2 ** 27;
 export const MAX_WEIGHTS = 2 ** 28;
