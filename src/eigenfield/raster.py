@@ -78,31 +78,47 @@ def edge_functions(corners, faces, first, last, edges):
 
 
 @kernel()
-def bound_faces(corners, faces, edges, width, height, slack, first, last, bounds):
+def find_pixels(corners, pixels):
+    """pixels (n, 2) out: where homogeneous corners (n, 3) lie in the picture; of no use at depths of 0 and less."""
+    for i in range(corners.shape[0]):
+        pixels[i, 0] = corners[i, 0] / corners[i, 2]
+        pixels[i, 1] = corners[i, 1] / corners[i, 2]
+
+
+@kernel(inline=True)
+def first_from(low, size):
+    """`low` rounded up, within 0 and `size`."""
+    return np.int32(np.ceil(min(max(low, 0.0), size)))
+
+
+@kernel(inline=True)
+def end_at(high, size):
+    """`high` rounded down, within 0 and `size`."""
+    return np.int32(np.floor(min(max(high, 0.0), size)))
+
+
+@kernel()
+def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last, bounds):
     """bounds (m, 4) int32 of triangles [first, last): the pixels [top, bottom) x [left, right) they may cover.
 
-    A triangle that reaches behind the camera is bounded by the picture; one that covers nothing gets zeros.
+    pixels: of `find_pixels`, so that no corner is divided for each of its triangles. A triangle that reaches behind the
+    camera is bounded by the picture; one that covers nothing gets zeros.
     """
+    columns, rows, more = float(width), float(height), 0.5 + slack
     for f in range(first, last):
-        bounds[f, 0], bounds[f, 1], bounds[f, 2], bounds[f, 3] = 0, 0, 0, 0
-        e = edges[f]
-        if e[0, 0] == 0 and e[0, 1] == 0 and e[0, 2] == 0:
-            continue
-        i0, i1, i2 = faces[f]
-        w0, w1, w2 = corners[i0, 2], corners[i1, 2], corners[i2, 2]
-        if w0 > 0 and w1 > 0 and w2 > 0:
-            y0, y1, y2 = corners[i0, 1] / w0, corners[i1, 1] / w1, corners[i2, 1] / w2
-            x0, x1, x2 = corners[i0, 0] / w0, corners[i1, 0] / w1, corners[i2, 0] / w2
-            low, high = min(y0, y1, y2), max(y0, y1, y2)
-            top = int(np.ceil(min(max(low - 0.5 - slack, 0.0), float(height))))
-            bottom = int(np.floor(min(max(high + 0.5 + slack, 0.0), float(height))))
-            low, high = min(x0, x1, x2), max(x0, x1, x2)
-            left = int(np.ceil(min(max(low - 0.5 - slack, 0.0), float(width))))
-            right = int(np.floor(min(max(high + 0.5 + slack, 0.0), float(width))))
-            if top < bottom and left < right:
-                bounds[f, 0], bounds[f, 1], bounds[f, 2], bounds[f, 3] = top, bottom, left, right
-        else:
-            bounds[f, 1], bounds[f, 3] = height, width
+        i, j, k = np.uintp(faces[f, 0]), np.uintp(faces[f, 1]), np.uintp(faces[f, 2])
+        top, bottom, left, right = np.int32(0), np.int32(0), np.int32(0), np.int32(0)
+        if not ((edges[f, 0, 0] == 0) & (edges[f, 0, 1] == 0) & (edges[f, 0, 2] == 0)):
+            if (corners[i, 2] > 0) & (corners[j, 2] > 0) & (corners[k, 2] > 0):
+                x0, x1, x2 = pixels[i, 0], pixels[j, 0], pixels[k, 0]
+                y0, y1, y2 = pixels[i, 1], pixels[j, 1], pixels[k, 1]
+                top, bottom = first_from(min(y0, y1, y2) - more, rows), end_at(max(y0, y1, y2) + more, rows)
+                left, right = first_from(min(x0, x1, x2) - more, columns), end_at(max(x0, x1, x2) + more, columns)
+                if (top >= bottom) | (left >= right):
+                    top, bottom, left, right = np.int32(0), np.int32(0), np.int32(0), np.int32(0)
+            else:
+                bottom, right = np.int32(height), np.int32(width)
+        bounds[f, 0], bounds[f, 1], bounds[f, 2], bounds[f, 3] = top, bottom, left, right
 
 
 @kernel()
@@ -196,12 +212,13 @@ def homogeneous_corners(camera: Camera, vertices: NDArray[np.float32]) -> NDArra
 
 def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int, height: int) -> Raster:
     """Draw triangles given by (n, 3) homogeneous pixel corners; see `Raster` for what comes back."""
-    edges = np.empty((len(faces), 3, 3))
+    edges, pixels = np.empty((len(faces), 3, 3)), np.empty((len(corners), 2))
     bounds = np.empty((len(faces), 4), np.int32)
+    find_pixels(corners, pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, faces, *part, edges)
-        bound_faces(corners, faces, edges, width, height, BOUND_SLACK, *part, bounds)
+        bound_faces(corners, pixels, faces, edges, width, height, BOUND_SLACK, *part, bounds)
 
     parallel_map(set_up, pieces(len(faces), SET_UP))
     bands = pieces(height, BAND)

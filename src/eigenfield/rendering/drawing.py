@@ -24,6 +24,7 @@ from eigenfield.raster import (
     SET_UP,
     bound_faces,
     edge_functions,
+    find_pixels,
     sort_into_bands,
 )
 from eigenfield.rendering.kernels import (
@@ -118,7 +119,7 @@ class Scratch:
     def __init__(self, width: int) -> None:
         blocks = -(-width // BLOCK)
         self.flat = np.empty((2, BAND + 2, width), np.float32)
-        self.marks = np.empty((BAND, width), np.bool_)
+        self.marks = np.empty((BAND, blocks * BLOCK), np.bool_)
         self.places = np.empty(BAND * width, np.int32)
         self.starts = np.empty((BAND, blocks + 1), np.int64)
         self.sums = np.empty((BAND + 1, blocks + 1), np.int64)
@@ -135,7 +136,7 @@ class Frame:
         count, k = len(surface.faces), sampling.side
         self.size, self.sampling = (height, width), sampling
         self.edges = np.empty((count, 3, 3))
-        self.bounds = np.empty((count, 4), np.int32)
+        self.bounds, self.pixels = np.empty((count, 4), np.int32), np.empty((len(surface.vertices), 2))
         # Never NaN, even where nothing was drawn yet
         self.inverse_depth, self.column_of, self.row_of = np.zeros((3, height * k, width * k + RUN), np.float32)
         most = height * width if len(sampling.offsets) > 1 else 0
@@ -161,10 +162,11 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
     height, width = camera.height * k, camera.width * k
     slack = BOUND_SLACK + float(np.abs(offsets).max())
     frame.seen[:] = 0
+    find_pixels(corners, frame.pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, surface.faces, *part, frame.edges)
-        bound_faces(corners, surface.faces, frame.edges, width, height, slack, *part, frame.bounds)
+        bound_faces(corners, frame.pixels, surface.faces, frame.edges, width, height, slack, *part, frame.bounds)
 
     parallel_map(set_up, pieces(len(surface.faces), SET_UP))
     bands = pieces(height, BAND)
@@ -185,7 +187,7 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
         except IndexError:  # this thread is the first, or another was faster
             room = Scratch(width)
         triangles, rows, limit = triangles_of(band), bands[band], np.float32(sampling.limit)
-        mark_ends(*triangles[2:], surface.rims, *rows, EDGE_SLACK, offsets, room.marks)
+        mark_ends(*triangles[2:], surface.rims, middles[0], *rows, EDGE_SLACK, offsets, room.marks)
         listed = room.places, room.starts, room.sums
         find_bends(*middles, *rows, limit * np.float32(LOOKED_AT), *room.flat, room.marks, *listed)
         draw_samples(*triangles, *rows, EDGE_SLACK, offsets, *listed, room.samples, frame.seen)

@@ -12,14 +12,15 @@ import numpy as np
 
 from eigenfield.jit import kernel
 from eigenfield.raster import run_ends, run_of
-from eigenfield.rendering.simd import RUN, blend_texels, draw_lanes, fetch_early
+from eigenfield.rendering.simd import RUN, SAMPLES, blend_texels, draw_four, draw_lanes, fetch_early
 
 TILE = 16  # texels along a side of a tile
 AREA = TILE * TILE
 LANES = 16  # texels whose codes of four components lie together
 AHEAD = 32  # samples before it is needed that a texel is asked for
-BLOCK = 8  # pixels of a row whose edges are found without a search
+BLOCK = 8  # pixels of a row whose edges are found without a search; bytes of a word
 NOWHERE = np.float32(1e6)  # texels
+NEARER = 1 + 1e-6  # times an inverse depth: more than its rounding
 DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 
 
@@ -79,38 +80,48 @@ def flatten(near, column, row, columns, rows):
         rows[i] = row[i] * inverse if shows else NOWHERE
 
 
+@kernel(inline=True)
+def mark_near(near, start, step, first, end, mark):
+    """mark (at least W,) is set in columns [first, end) where an inverse depth, start + column step, is not below near
+    (at least W,)."""
+    for i in range(first, end):
+        mark[i] |= start + step * i >= near[i]
+
+
 @kernel()
-def mark_ends(edges, bounds, listing, rims, first, last, slack, offsets, marks):
-    """marks (at least last - first rows, W) out: the pixels of rows [first, last) of which some samples, but not all,
-    lie in one of the triangles in `listing` that have a rim, rims (m,) bool: what is thinner than a pixel is seen by
-    no neighbour's middle. edges, bounds, slack: see `draw_texels`; offsets: `draw_samples`."""
+def mark_ends(edges, bounds, listing, rims, near, first, last, slack, offsets, marks):
+    """marks (at least last - first rows, at least W) out: the pixels of rows [first, last) through which an edge of a
+    triangle in `listing` runs as near to the middle as samples lie, if the triangle has a rim, rims (m,) bool: what is
+    thinner than a pixel is seen by no neighbour's middle. Not where the triangle lies behind what the middle shows:
+    that ends within the pixel too, if the triangle is to be seen. edges, bounds, slack: see `draw_texels`, near: its
+    inverse_depth; offsets: `draw_samples`."""
     marks[: last - first] = False
-    e = np.empty((3, 3))
-    outer, inner = np.empty((last - first, 2), np.int64), np.empty((last - first, 2), np.int64)
+    wide, narrow = np.empty((3, 3)), np.empty((3, 3))
     for f in listing:
         if not rims[f]:
             continue
-        top, bottom = max(first, bounds[f, 0]), min(last, bounds[f, 1])
-        outer[:, 0], outer[:, 1] = bounds[f, 3], bounds[f, 2]
-        inner[:, 0], inner[:, 1] = bounds[f, 2], bounds[f, 3]
-        for s in range(offsets.shape[0]):
-            for i in range(3):  # seen from the sample: as if the triangle had moved
-                e[i, 0], e[i, 1] = edges[f, i, 0], edges[f, i, 1]
-                e[i, 2] = edges[f, i, 2] + e[i, 0] * offsets[s, 0] + e[i, 1] * offsets[s, 1]
-            a, b, c, _ = run_ends(e, slack)
-            for row in range(top, bottom):
-                left, right = run_of(a, b, c, row + 0.5, bounds[f, 2], bounds[f, 3])
-                line = row - first
-                if left < right:
-                    outer[line, 0], outer[line, 1] = min(outer[line, 0], left), max(outer[line, 1], right)
-                inner[line, 0], inner[line, 1] = max(inner[line, 0], left), min(inner[line, 1], right)
-        for row in range(top, bottom):
-            line = row - first
-            if inner[line, 0] < inner[line, 1]:
-                marks[line, outer[line, 0] : inner[line, 0]] = True
-                marks[line, inner[line, 1] : outer[line, 1]] = True
+        e, columns = edges[f], (bounds[f, 2], bounds[f, 3])
+        for i in range(3):
+            more = 0.0  # than in the pixel's middle, in one of its samples
+            for s in range(offsets.shape[0]):
+                more = max(more, abs(e[i, 0] * offsets[s, 0] + e[i, 1] * offsets[s, 1]))
+            for k in range(3):
+                wide[i, k] = narrow[i, k] = e[i, k]
+            wide[i, 2] += more
+            narrow[i, 2] -= more
+        a, b, c, _ = run_ends(wide, slack)
+        a_in, b_in, c_in, q = run_ends(narrow, slack)
+        x, y = q[0] * NEARER, q[1] * NEARER  # 1 / depth is linear; the most of it within a pixel, and its rounding
+        one = (e[0, 2] + e[1, 2] + e[2, 2]) * NEARER + (x + y + abs(x) + abs(y)) / 2
+        for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
+            left, right = run_of(a, b, c, row + 0.5, *columns)
+            inner = run_of(a_in, b_in, c_in, row + 0.5, *columns)
+            start, mark = y * row + one, marks[row - first]
+            if inner[0] < inner[1]:
+                mark_near(near[row], start, x, left, inner[0], mark)
+                mark_near(near[row], start, x, inner[1], right, mark)
             else:
-                marks[line, outer[line, 0] : outer[line, 1]] = True
+                mark_near(near[row], start, x, left, right, mark)
 
 
 @kernel()
@@ -119,12 +130,12 @@ def find_bends(near, column, row, first, last, limit, columns, rows, marks, plac
     half way between their neighbours, left and right or above and below, and all at the picture's border.
 
     near, column, row (H, at least W): middles of pixels, see `draw_texels`. columns, rows (at least last - first + 2,
-    W): scratch. marks (at least last - first, W): of `mark_ends`; changed. places out: their columns, row by row.
-    starts (last - first, blocks + 1) out: how many there are before a row's column BLOCK b; at the end, to the row's
-    end. sums (last - first + 1, blocks + 1) out: how many lie above a row and left of a block.
+    W): scratch. marks (at least last - first, BLOCK blocks): of `mark_ends`; changed. places out: their columns, row by
+    row. starts (last - first, blocks + 1) out: how many there are before a row's column BLOCK b; at the end, to the
+    row's end. sums (last - first + 1, blocks + 1) out: how many lie above a row and left of a block.
     """
     height, width, found = near.shape[0], columns.shape[1], 0
-    blocks = -(-width // BLOCK)
+    blocks, words = marks.shape[1] // BLOCK, marks.view(np.uint64)  # a word is a block
     for line in range(max(first - 1, 0), min(last + 1, height)):
         at = line - first + 1
         flatten(near[line], column[line], row[line], columns[at], rows[at])
@@ -133,7 +144,7 @@ def find_bends(near, column, row, first, last, limit, columns, rows, marks, plac
         at = line - first
         mark = marks[at]
         if line == 0 or line == height - 1:
-            mark[:] = True
+            mark[:width] = True
         else:
             u, v, u_up, v_up, u_down, v_down = (
                 columns[at + 1], rows[at + 1], columns[at], rows[at], columns[at + 2], rows[at + 2]
@@ -147,10 +158,11 @@ def find_bends(near, column, row, first, last, limit, columns, rows, marks, plac
         sums[at + 1, 0] = 0
         for block in range(blocks):
             starts[at, block] = found
-            for i in range(block * BLOCK, min(block * BLOCK + BLOCK, width)):
-                if mark[i]:
-                    places[found] = i
-                    found += 1
+            if words[at, block]:
+                for i in range(block * BLOCK, block * BLOCK + BLOCK):
+                    if mark[i]:
+                        places[found] = i
+                        found += 1
             sums[at + 1, block + 1] = sums[at, block + 1] + found - starts[at, 0]
         starts[at, blocks] = found
 
@@ -163,6 +175,7 @@ def draw_samples(
     (4, 2) right of and below the pixel's middle. samples (at least as many as places, 3, 4) out: 1 / depth and texel
     coordinates over depth."""
     samples[: starts[last - first - 1, starts.shape[1] - 1]] = 0
+    flat, more = samples.reshape(-1), np.empty(3 * SAMPLES)
     for f in listing:
         left, right = bounds[f, 2], bounds[f, 3]
         low, high = left // BLOCK, (right - 1) // BLOCK + 1
@@ -171,11 +184,17 @@ def draw_samples(
         if below[high] - below[low] == above[high] - above[low]:
             continue  # most triangles have no such pixel anywhere near
         i, j, k = faces[f]
+        u, v = (texels[i, 0], texels[j, 0], texels[k, 0]), (texels[i, 1], texels[j, 1], texels[k, 1])
         ax, ay, ac = edges[f, 0, 0], edges[f, 0, 1], edges[f, 0, 2]
         bx, by, bc = edges[f, 1, 0], edges[f, 1, 1], edges[f, 1, 2]
         cx, cy, cc = edges[f, 2, 0], edges[f, 2, 1], edges[f, 2, 2]
         # how much more than in its middle an edge function can be within a pixel
         a_more, b_more, c_more = (abs(ax) + abs(ay)) / 2, (abs(bx) + abs(by)) / 2, (abs(cx) + abs(cy)) / 2
+        for s in range(SAMPLES):
+            over, down = offsets[s, 0], offsets[s, 1]
+            more[s] = ax * over + ay * down
+            more[SAMPLES + s] = bx * over + by * down
+            more[2 * SAMPLES + s] = cx * over + cy * down
         drawn = False
         for row in range(top, bottom):
             at, end = starts[row - first, low], starts[row - first, high]
@@ -185,21 +204,10 @@ def draw_samples(
             a_row, b_row, c_row = ay * y + ac, by * y + bc, cy * y + cc
             while at < end and places[at] < right:
                 x = places[at] + 0.5
-                a_here, b_here, c_here = ax * x + a_row, bx * x + b_row, cx * x + c_row
-                least = -slack * (a_here + b_here + c_here)
-                if (a_here + a_more >= least) & (b_here + b_more >= least) & (c_here + c_more >= least):
-                    pixel = samples[at]
-                    for s in range(4):
-                        over, down = offsets[s, 0], offsets[s, 1]
-                        a = a_here + (ax * over + ay * down)
-                        b = b_here + (bx * over + by * down)
-                        c = c_here + (cx * over + cy * down)
-                        near, least = np.float32(a + b + c), -slack * (a + b + c)
-                        if (a >= least) & (b >= least) & (c >= least) & (near > pixel[0, s]):
-                            pixel[0, s] = near
-                            pixel[1, s] = a * texels[i, 0] + b * texels[j, 0] + c * texels[k, 0]
-                            pixel[2, s] = a * texels[i, 1] + b * texels[j, 1] + c * texels[k, 1]
-                            drawn = True
+                a, b, c = ax * x + a_row, bx * x + b_row, cx * x + c_row
+                least = -slack * (a + b + c)
+                if (a + a_more >= least) & (b + b_more >= least) & (c + c_more >= least):
+                    drawn |= draw_four(flat, 3 * SAMPLES * at, more, a, b, c, slack, u, v)
                 at += 1
         if drawn:
             seen[f] = 1

@@ -14,8 +14,16 @@ from numba import types
 from numba.extending import intrinsic
 
 LANES = 4  # of a texel
+SAMPLES = 4  # of a pixel at an edge
 RUN = 8  # pixels drawn at once
 FAST = ("fast",)
+
+
+def _repeated(builder, scalar, kind):
+    """A vector of `kind` with a number in all its lanes."""
+    index = ir.IntType(32)
+    first = builder.insert_element(ir.Constant(kind, ir.Undefined), scalar, ir.Constant(index, 0))
+    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(index, kind.count), [0] * kind.count))
 
 
 @intrinsic
@@ -35,10 +43,6 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
             for value, kind in zip(arguments[1:], signature.args[1:], strict=True)
         )
 
-        def repeated(scalar):
-            first = builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, ir.Constant(ir.IntType(32), 0))
-            return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(ir.IntType(32), LANES), [0] * LANES))
-
         def weighted(terms, weights):
             products = [builder.fmul(term, weight, flags=FAST) for term, weight in zip(terms, weights, strict=True)]
             total = products[0]
@@ -50,7 +54,7 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
             pointer = builder.gep(data, [builder.zext(builder.add(row, column), whole)])
             return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=4)
 
-        horizontal, vertical = [repeated(weight) for weight in across], [repeated(weight) for weight in down]
+        horizontal, vertical = ([_repeated(builder, weight, vector) for weight in of] for of in (across, down))
         lines = [weighted([texel(row, column) for column in columns], horizontal) for row in rows]
         total = weighted(lines, vertical)
         lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(LANES)]
@@ -61,14 +65,10 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
 
 def _square_of_taps(context, builder, signature, arguments):
     """What both cubic intrinsics need: four pointers to a row's four texels each, their weights across as a vector,
-    weights down as vectors of one number each, and how to make such."""
+    weights down as vectors of one number each."""
     vector, index = ir.VectorType(ir.FloatType(), LANES), ir.IntType(32)
     data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
     place, line, across, down = arguments[1:5]
-
-    def repeated(scalar):
-        lane = builder.insert_element(ir.Constant(vector, ir.Undefined), scalar, ir.Constant(index, 0))
-        return builder.shuffle_vector(lane, lane, ir.Constant(ir.VectorType(index, LANES), [0] * LANES))
 
     horizontal = ir.Constant(vector, ir.Undefined)
     for i in range(LANES):
@@ -78,7 +78,7 @@ def _square_of_taps(context, builder, signature, arguments):
     for _ in range(LANES):
         pointers.append(builder.bitcast(builder.gep(data, [place]), vector.as_pointer()))
         place = builder.add(place, line)
-    return pointers, horizontal, [repeated(builder.extract_value(down, i)) for i in range(LANES)], repeated
+    return pointers, horizontal, [_repeated(builder, builder.extract_value(down, i), vector) for i in range(LANES)]
 
 
 @intrinsic
@@ -90,7 +90,7 @@ def take_cubic(typing_context, texture, first, line, across, down):
     """
 
     def generate(context, builder, signature, arguments):
-        pointers, horizontal, vertical, _ = _square_of_taps(context, builder, signature, arguments)
+        pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)
         rows = [builder.fmul(builder.load(p, align=4), w) for p, w in zip(pointers, vertical, strict=True)]
         total = builder.fadd(builder.fadd(rows[0], rows[1]), builder.fadd(rows[2], rows[3]))
         total = builder.fmul(total, horizontal)
@@ -105,8 +105,8 @@ def give_cubic(typing_context, texture, first, line, across, down, value):
     """The transpose of `take_cubic`: texture[first + v line + u] += down[v] across[u] value."""
 
     def generate(context, builder, signature, arguments):
-        pointers, horizontal, vertical, repeated = _square_of_taps(context, builder, signature, arguments)
-        share = builder.fmul(horizontal, repeated(arguments[5]))
+        pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)
+        share = builder.fmul(horizontal, _repeated(builder, arguments[5], horizontal.type))
         for pointer, weight in zip(pointers, vertical, strict=True):
             found = builder.fadd(builder.load(pointer, align=4), builder.fmul(share, weight))
             builder.store(found, pointer, align=4)
@@ -141,12 +141,7 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
     """
 
     def generate(context, builder, signature, arguments):
-        vector, mask = ir.VectorType(ir.FloatType(), RUN), ir.VectorType(ir.IntType(32), RUN)
-        index = ir.IntType(32)
-
-        def repeated(scalar, kind):
-            lane = builder.insert_element(ir.Constant(kind, ir.Undefined), scalar, ir.Constant(index, 0))
-            return builder.shuffle_vector(lane, lane, ir.Constant(mask, [0] * RUN))
+        vector, whole = ir.VectorType(ir.FloatType(), RUN), ir.VectorType(ir.IntType(32), RUN)
 
         def pointer(position):
             data = context.make_array(signature.args[position])(context, builder, arguments[position]).data
@@ -155,12 +150,12 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
         steps = ir.Constant(vector, [float(i) for i in range(RUN)])
 
         def along(position):
-            product = builder.fmul(steps, repeated(arguments[position + 1], vector), flags=FAST)
-            return builder.fadd(repeated(arguments[position], vector), product, flags=FAST)
+            product = builder.fmul(steps, _repeated(builder, arguments[position + 1], vector), flags=FAST)
+            return builder.fadd(_repeated(builder, arguments[position], vector), product, flags=FAST)
 
         place, depth = pointer(0), along(5)
         before = builder.load(place, align=4)
-        meant = builder.icmp_signed("<", ir.Constant(mask, list(range(RUN))), repeated(arguments[4], mask))
+        meant = builder.icmp_signed("<", ir.Constant(whole, list(range(RUN))), _repeated(builder, arguments[4], whole))
         drawn = builder.and_(meant, builder.fcmp_ordered(">", depth, before))
         builder.store(builder.select(drawn, depth, before), place, align=4)
         for array, value in ((1, along(7)), (2, along(9))):
@@ -170,3 +165,49 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
 
     number = types.float32
     return types.boolean(nearest, first, second, types.intp, types.int32, *[number] * 6), generate
+
+
+@intrinsic
+def draw_four(typing_context, samples, at, more, a, b, c, slack, u, v):
+    """A triangle in the four samples of a pixel; whether any of them was drawn.
+
+    samples: flat float32, from `at` on four of 1 / depth, then of two texture coordinates over depth. a, b, c: the edge
+    functions in the pixel's middle; more: flat float64, by how much each is more in the four samples, a's first.
+    u, v: tuples of three float64, what stands at the corners. As `eigenfield.raster.draw_band` decides: the first
+    triangle of equals stays, sums in one order on every machine.
+    """
+
+    def generate(context, builder, signature, arguments):
+        double, single = ir.VectorType(ir.DoubleType(), SAMPLES), ir.VectorType(ir.FloatType(), SAMPLES)
+        whole, bits = ir.IntType(64), ir.IntType(SAMPLES)
+        data, offsets = (
+            context.make_array(signature.args[i])(context, builder, arguments[i]).data for i in (0, 2)
+        )  # fmt: skip
+
+        def four(pointer, place, kind):
+            return builder.bitcast(builder.gep(pointer, [place]), kind.as_pointer())
+
+        def added(terms):
+            return builder.fadd(builder.fadd(terms[0], terms[1]), terms[2])
+
+        here = []
+        for i, value in enumerate(arguments[3:6]):
+            more = builder.load(four(offsets, whole(SAMPLES * i), double), align=8)
+            here.append(builder.fadd(_repeated(builder, value, double), more))
+        depth = added(here)
+        least = builder.fmul(_repeated(builder, builder.fneg(arguments[6]), double), depth)
+        places = [four(data, builder.add(arguments[1], whole(SAMPLES * part)), single) for part in range(3)]
+        near, before = builder.fptrunc(depth, single), builder.load(places[0], align=4)
+        drawn = builder.fcmp_ordered(">", near, before)
+        for value in here:
+            drawn = builder.and_(drawn, builder.fcmp_ordered(">=", value, least))
+        builder.store(builder.select(drawn, near, before), places[0], align=4)
+        for place, corners in zip(places[1:], arguments[7:], strict=True):
+            ends = [_repeated(builder, builder.extract_value(corners, i), double) for i in range(3)]
+            value = added([builder.fmul(weight, end) for weight, end in zip(here, ends, strict=True)])
+            kept = builder.load(place, align=4)
+            builder.store(builder.select(drawn, builder.fptrunc(value, single), kept), place, align=4)
+        return builder.icmp_unsigned("!=", builder.bitcast(drawn, bits), ir.Constant(bits, 0))
+
+    real = types.float64
+    return types.boolean(samples, types.intp, more, real, real, real, real, u, v), generate
