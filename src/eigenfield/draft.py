@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -27,7 +27,7 @@ from eigenfield.progress import Progress
 from eigenfield.proxy import prepare_proxy
 from eigenfield.rendering import delaunay_triangles
 from eigenfield.scene import Plane, Scene, check_scale
-from eigenfield.simplification import slim_mesh
+from eigenfield.simplification import slim_mesh, triangles_worth
 from eigenfield.texturing import (
     FILTERS,
     SIDE_LIMIT,
@@ -169,15 +169,13 @@ def check_options(capture: LightField | PhotoSet, options: Options) -> None:
 class Draft:
     """A scene without its textures.
 
-    whole: the proxy as it was prepared; simplify: whether a quality decides what the mesh keeps of it. cameras: all, as
-    the file keeps them. coordinates: (Nc, 2) on the view plane. held_out: (Nc,) bool. reference: index of the reference
-    camera. atlas: width and height.
+    again: the same with other options. cameras: all, as the file keeps them. coordinates: (Nc, 2) on the view plane.
+    held_out: (Nc,) bool. reference: index of the reference camera. atlas: width and height.
     """
 
     capture: LightField
     options: Options
-    whole: Mesh
-    simplify: bool
+    again: Callable[[Options], Draft]
     mesh: Mesh
     cameras: tuple[Camera, ...]
     view_plane: ViewPlane
@@ -220,8 +218,7 @@ class Draft:
 
     def at_quality(self, quality: int) -> Draft:
         """The same with the mesh and the atlas that it has at another quality."""
-        options = replace(self.options, quality=quality, target=None)
-        return _draft(self.capture, self.whole, options, self.held_out, self.reference, self.simplify)
+        return self.again(replace(self.options, quality=quality, target=None))
 
     @cached_property
     def density(self) -> float:
@@ -287,30 +284,46 @@ def make_draft(
     held = held_out_cameras(options.hold_out, names, coordinates)
     encoded = np.flatnonzero(~held)
     centre = _reference(options.reference, names, coordinates, encoded)
-    mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    shown, used = capture.subset(encoded.tolist()), [cameras[index] for index in encoded]
+    simplify = options.fit != "none" and triangles is None
+
+    def worth(mesh: Mesh) -> int | None:
+        relief = mesh.uv is not None and relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
+        price = byte_price(options.fit_quality) / options.atlas_density**2
+        return None if relief else triangles_worth(mesh, used, partial(_grey, shown), price)
+
+    mesh = prepare_proxy(proxy, cameras, triangles=worth if simplify else triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     if options.fit != "none":
-        mesh = _fitted_surface(capture.subset(encoded.tolist()), mesh, cameras, encoded, centre, work, progress)
-    return _draft(capture, mesh, options, held, centre, options.fit != "none" and triangles is None)
+        mesh = _fitted_surface(shown, mesh, cameras, used, centre, work, progress)
+    anew = simplify and relief_lattice(mesh, cameras, DEPTH_ERROR) is None  # a relief keeps its atlas
+
+    def again(other: Options) -> Draft:
+        if anew:
+            return make_draft(capture, proxy, other, triangles, work, progress)
+        return _draft(capture, mesh, other, held, centre, simplify, again)
+
+    return _draft(capture, mesh, options, held, centre, simplify, again)
 
 
 def _draft(
     capture: LightField,
-    whole: Mesh,
+    mesh: Mesh,
     options: Options,
     held: NDArray[np.bool_],
     centre: int,
     simplify: bool,
+    again: Callable[[Options], Draft],
 ) -> Draft:
-    """The draft with a proxy that is prepared. simplify: a fit's, for its quality."""
-    mesh, cameras, encoded = whole, [view.camera.rounded() for view in capture.views], np.flatnonzero(~held)
+    """The draft with a proxy that is prepared. simplify: a fit's relief, for its quality."""
+    cameras, encoded = [view.camera.rounded() for view in capture.views], np.flatnonzero(~held)
     size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
     if options.fit != "none":
         if simplify:
             texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
-            mesh = _slim(
-                capture.subset(encoded.tolist()), mesh, [cameras[i] for i in encoded],
-                int(np.searchsorted(encoded, centre)), options, texels,
+            mesh = slim_mesh(
+                mesh, [cameras[i] for i in encoded], int(np.searchsorted(encoded, centre)),
+                partial(_grey, capture.subset(encoded.tolist())), byte_price(options.fit_quality), texels,
             )  # fmt: skip
         else:
             mesh = coded_mesh(mesh, cameras, centre)
@@ -319,7 +332,7 @@ def _draft(
     plane = fit_view_plane(cameras)
     coordinates = plane.coordinates([camera.centre for camera in cameras])
     return Draft(
-        capture, options, whole, simplify, mesh, tuple(cameras), plane, coordinates, held, centre, size
+        capture, options, again, mesh, tuple(cameras), plane, coordinates, held, centre, size
     )  # fmt: skip
 
 
@@ -328,33 +341,22 @@ def _photograph(shown: LightField, index: int) -> tuple[NDArray[np.float32], NDA
     return picture.pixels, picture.mask
 
 
+def _grey(shown: LightField, index: int) -> NDArray[np.float32]:
+    return np.asarray(shown.photograph(index).pixels @ split_matrix()[0][0], np.float32)
+
+
 def _fitted_surface(
     shown: LightField,
     mesh: Mesh,
     cameras: Sequence[Camera],
-    encoded: NDArray[np.int64],
+    used: Sequence[Camera],
     centre: int,
     work: Path | None,
     progress: Progress | None,
 ) -> Mesh:
-    """The proxy where the encoded photographs, `shown`, agree on it."""
-
+    """The proxy where the encoded photographs, `shown`, agree on it. used: their cameras."""
     relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
-    used = [cameras[index] for index in encoded]
     return fit_surface(mesh, relief and relief[0], used, partial(_photograph, shown), side, work, progress)
-
-
-def _slim(
-    shown: LightField, mesh: Mesh, cameras: Sequence[Camera], reference: int, options: Options, texels: float
-) -> Mesh:
-    """The proxy in as few bytes as it is worth at the quality that is asked for. shown: the encoded views; reference:
-    among those. texels: of the atlas for a pixel."""
-    luma = split_matrix()[0][0]
-
-    def grey(index: int) -> NDArray[np.float32]:
-        return np.asarray(shown.photograph(index).pixels @ luma, np.float32)
-
-    return slim_mesh(mesh, cameras, reference, grey, byte_price(options.fit_quality), texels)
 
 
 def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:

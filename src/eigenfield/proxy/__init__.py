@@ -9,7 +9,7 @@ from eigenfield.proxy.primitives import Primitive, insert_primitive, parse_primi
 from eigenfield.proxy.read import read_mesh
 from eigenfield.proxy.relief import relief_mesh
 from eigenfield.proxy.sphere_fit import find_view, fit_sphere, parse_region
-from eigenfield.proxy.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped
+from eigenfield.proxy.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped, welded
 from eigenfield.proxy.write import check_mesh_name, write_mesh, write_ply
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "simplified",
     "surface_from_views",
     "unwrapped",
+    "welded",
     "write_mesh",
     "write_ply",
 ]

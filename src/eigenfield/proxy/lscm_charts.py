@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +14,7 @@ from eigenfield.camera import Camera
 from eigenfield.mesh import Mesh
 from eigenfield.parallel import parallel_map
 from eigenfield.proxy.atlas import chart_labels, l2_stretch
+from eigenfield.proxy.chart_merging import Chart, merged_charts
 from eigenfield.proxy.kernels import claim_texels, count_layers
 from eigenfield.proxy.lscm import conformal_map, surface_areas
 from eigenfield.raster import rasterise_view
@@ -23,6 +23,7 @@ log = logging.getLogger("eigenfield.proxy")
 
 WORSE = 1.0  # times the stretch of the layout that there is: a map with more is not taken
 MOST_STRETCH = 3.0  # of a chart: beyond it is halved
+JOINED_STRETCH = 1.03  # of charts that were joined: beyond they stay apart
 OVERLAP_SIDE = 256  # raster on which a chart is tested for overlaps, at least; more for more triangles
 OVERLAP_MARGIN = 0.05  # texels of that raster
 MOST_VIEWS = 64  # that density is measured in
@@ -35,33 +36,25 @@ def conformal_charts(mesh: Mesh) -> Mesh:
 
     A chart hangs together by edges: at a single vertex the map could turn and shrink one side freely. Where the map
     folds, overlaps or stretches more than the mesh's own UVs, those are kept (at the same area). Where those fold or
-    overlap as well, the triangles that do are cut out. The UVs of the result lie over each other, charts are to be
-    packed; its faces keep their order.
+    overlap as well, the triangles that do are cut out. Then small charts join others (`merged_charts`). The UVs of the
+    result lie over each other, charts are to be packed; its faces keep their order.
     """
     assert mesh.uv is not None
     groups = _grouped(np.arange(len(mesh.faces)), edge_components(mesh.faces))
-    pieces = [piece for group in parallel_map(lambda faces: _laid_out(mesh, faces), groups) for piece in group]
-    log.info("atlas: %d of %d charts are least-squares conformal", sum(p.conformal for p in pieces), len(pieces))
-    starts = np.cumsum([0, *(len(p.vertices) for p in pieces[:-1])])
+    cut = [chart for group in parallel_map(lambda faces: _laid_out(mesh, faces), groups) for chart in group]
+    charts = merged_charts(mesh, cut, _together)
+    log.info(
+        "atlas: %d charts of %d, %d least-squares conformal", len(charts), len(cut), sum(c.conformal for c in charts)
+    )
+    starts = np.cumsum([0, *(len(chart.vertices) for chart in charts[:-1])])
     faces = np.empty_like(mesh.faces)
-    for piece, start in zip(pieces, starts, strict=True):
-        faces[piece.faces] = piece.corners + start
-    vertices = mesh.vertices[np.concatenate([p.vertices for p in pieces])]
-    return Mesh(vertices, faces, np.concatenate([p.uv for p in pieces]).astype(np.float32))
+    for chart, start in zip(charts, starts, strict=True):
+        faces[chart.faces] = chart.corners + start
+    vertices = mesh.vertices[np.concatenate([chart.vertices for chart in charts])]
+    return Mesh(vertices, faces, np.concatenate([chart.uv for chart in charts]).astype(np.float32))
 
 
-@dataclass(frozen=True, eq=False)
-class _Piece:
-    """faces (k,) and vertices (n,) of the mesh, corners (k, 3) among those vertices, uv (n, 2)."""
-
-    faces: NDArray[np.int64]
-    vertices: NDArray[np.int64]
-    corners: NDArray[np.int32]
-    uv: NDArray[np.float64]
-    conformal: bool
-
-
-def _laid_out(mesh: Mesh, chart: NDArray[np.int64]) -> list[_Piece]:
+def _laid_out(mesh: Mesh, chart: NDArray[np.int64]) -> list[Chart]:
     assert mesh.uv is not None
     done, waiting = [], [chart]
     while waiting:
@@ -73,7 +66,7 @@ def _laid_out(mesh: Mesh, chart: NDArray[np.int64]) -> list[_Piece]:
         if len(faces) > 1 and not _sound(uv, points, corners):
             waiting += _without_overlaps(uv, corners, faces) or _halves(points, corners, faces)
         else:
-            done.append(_Piece(faces, used.astype(np.int64), corners, uv - uv.min(axis=0), conformal))
+            done.append(Chart(faces, used.astype(np.int64), corners, uv - uv.min(axis=0), conformal))
     return done
 
 
@@ -152,6 +145,15 @@ def _layout(
     return uv, True
 
 
+def _together(points: NDArray[np.float64], corners: NDArray[np.int32]) -> NDArray[np.float64] | None:
+    """The layout of charts that were joined, unless it is none or stretches much."""
+    try:
+        uv = conformal_map(points, corners)
+    except RuntimeError:  # as in `_layout`
+        return None
+    return uv if _sound(uv, points, corners, JOINED_STRETCH) else None
+
+
 def _signed(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     q = uv[faces]
     a, b = q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]
@@ -165,9 +167,11 @@ def _scaled(uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArr
     return np.asarray(uv * (factor, -factor if area < 0 else factor))
 
 
-def _sound(uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
+def _sound(
+    uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int32], most: float = MOST_STRETCH
+) -> bool:
     """No triangle turned over, none over another, and not shrunk beyond use anywhere."""
-    return not _folds(uv, faces) and l2_stretch(vertices, uv, faces) < MOST_STRETCH and not _overlaps(uv, faces)
+    return not _folds(uv, faces) and l2_stretch(vertices, uv, faces) < most and not _overlaps(uv, faces)
 
 
 def _folds(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,18 +24,20 @@ def prepare_proxy(
     path_or_mesh: str | os.PathLike[str] | Mesh,
     cameras: Sequence[Camera],
     *,
-    triangles: int | None = None,
+    triangles: int | Callable[[Mesh], int | None] | None = None,
     progress: Progress | None = None,
 ) -> Mesh:
     """Read (or check) a mesh, make sure that a camera sees it, and give it an atlas.
 
-    triangles: see `unwrapped`. Raises ProxyError: what `read_mesh` and `unwrapped` raise, and `proxy-not-seen`.
+    triangles: see `unwrapped`, or what says so of the mesh that was read. Raises ProxyError: what `read_mesh` and
+    `unwrapped` raise, and `proxy-not-seen`.
     """
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
     mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
     check_seen(mesh, cameras, path)
     try:
-        return unwrapped(mesh, triangles=triangles, cameras=cameras, progress=progress)
+        count = triangles(mesh) if callable(triangles) else triangles
+        return unwrapped(mesh, triangles=count, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
 

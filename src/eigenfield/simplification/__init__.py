@@ -3,5 +3,16 @@
 from eigenfield.simplification.effect import Effect, Grey, depth_effect, spread_cameras, texels_of
 from eigenfield.simplification.relief import Form, slim_relief
 from eigenfield.simplification.slim import slim_mesh
+from eigenfield.simplification.worth import triangles_worth
 
-__all__ = ["Effect", "Form", "Grey", "depth_effect", "slim_mesh", "slim_relief", "spread_cameras", "texels_of"]
+__all__ = [
+    "Effect",
+    "Form",
+    "Grey",
+    "depth_effect",
+    "slim_mesh",
+    "slim_relief",
+    "spread_cameras",
+    "texels_of",
+    "triangles_worth",
+]
