@@ -102,7 +102,7 @@ def encode(
     one axis, in the camera nearest the centre, at most 4096 a side and twice the photographs' pixels; None: 1.5, of a
     fit what its quality pays for (`density_of`). atlas: its side, or (width, height), outright. triangles: simplify the
     proxy to this many; without it only a mesh that needs an atlas and has over 30,000, and for a
-    fit a relief, by what its pictures lose (`simplification`). align: "dis" or "tvl1", optical-flow alignment to
+    fit any mesh, by what its pictures lose (`simplification`). align: "dis" or "tvl1", optical-flow alignment to
     the reference camera. reference: its name; without it the camera nearest the centre of the array. hold_out: "odd",
     "every:K" or names separated by commas. resampling: "bicubic" (None), "lanczos" or "bilinear". harmonise: "gain" or
     "affine", take the cameras' differences of exposure and white balance out of the maps (`texturing.harmonise`); the

@@ -95,8 +95,8 @@ Examples:
     "--triangles",
     type=int,
     metavar="N",
-    help="Triangles of the proxy, at most.  [default: 30000; a mesh that has an atlas is kept as it is, but a fit "
-    "simplifies reliefs as far as the pictures allow]",
+    help="Triangles of the proxy, at most.  [default: a fit keeps what the pictures are worth; with --fit none 30000, "
+    "a mesh that has an atlas as it is]",
 )
 @click.option(
     "--align",

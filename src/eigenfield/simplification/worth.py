@@ -35,7 +35,7 @@ PIXELS = 8000  # of each, evenly spread
 FINER = 2**0.5  # times as many triangles as the next that is tried
 FEWEST = 250  # triangles: below, a mesh takes next to nothing
 TRIANGLE_BYTES = 6.0  # its own 2.6, and what its share of the charts' borders takes in textures: measured on the cube
-PAYS = 0.75  # of the triangles, or less, must be enough for new charts to be cut
+PAYS = 0.6  # of the triangles, or less, must be enough for new charts to be cut
 
 
 @dataclass(frozen=True, eq=False)
