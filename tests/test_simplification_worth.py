@@ -51,9 +51,13 @@ def test_few_triangles_and_meshes_that_no_camera_sees_stay():
     assert worth(replace(wavy(0.1), vertices=wavy(0.1).vertices - np.float32([0, 0, 50])), 1.0) is None
 
 
+def test_one_camera_tells_no_depth():
+    assert triangles_worth(wavy(0.1), CAMERAS[:1], lambda index: stripes(CAMERAS[0]), 1e-5) is None
+
+
 def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
-    """A wall whose copy stands too near by so much that it is half a pixel off beside each camera: the mean of all
-    cameras, drawn on the copy, misses a photograph by gradient times displacement."""
+    """A wall whose copy stands too near by so much that it is half a pixel off beside each camera: the mean of the
+    others, drawn on the copy, misses a photograph by gradient times displacement."""
     wall = square(3.0, 0.0, 8)
     cameras = CAMERAS[3:6]  # in a row, half a unit apart
     angle = 0.3
@@ -70,7 +74,7 @@ def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
     # pixel, either way. At the sides some see what others do not.
     away = 0.5 / 3.0 * cameras[0].K[0, 0] / cameras[0].width
     both, one = 1 - 2 * away, away
-    squares = 2 * (both * ((0.5 + 1) / 3) ** 2 + one * (0.5 / 2) ** 2) + 2 * one * (0.5 / 2) ** 2
+    squares = 2 * (both * ((0.5 + 1) / 2) ** 2 + one * 0.5**2) + 2 * one * 0.5**2
     slope = 0.5 * angle**2
     assert _loss(near, views, looked) == pytest.approx(views[0].grey.size * slope * squares, rel=0.08)
 

@@ -1,10 +1,10 @@
 """How many triangles a mesh is worth.
 
 A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and charts that it cuts short.
-Where a simplified mesh puts a pixel's point elsewhere, its texture holds what all other cameras see there: the error is
-what they see beside the point, the mean over them of gradient times displacement. However far it is off, it is no
-worse than something else in its place: the variance of the photograph around. Where nothing is left, the picture is
-black.
+Where a simplified mesh puts a pixel's point elsewhere, a texture of what the other cameras see is off: by what they see
+beside the point, the mean over them of gradient times displacement. A view that no camera has is drawn so. However far
+it is off, it is no worse than something else in its place: the variance of the photograph around. Where nothing is
+left, the picture is black.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class _Points:
     @property
     def seen(self) -> NDArray[np.int64]:
         """(n,) in how many views, this one too."""
-        return np.asarray(1 + sum(there.astype(np.int64) for _, there, _, _ in self.beside))
+        return np.ones(len(self.world), np.int64) + sum(there for _, there, _, _ in self.beside)
 
 
 def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: float) -> int | None:
@@ -80,8 +80,8 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: fl
     looked = parallel_map(lambda number: _points(views, number), range(len(views)))
     share = len(cameras) / len(chosen)
     seen = np.concatenate([points.seen for points in looked])
-    if not len(seen):
-        return None
+    if not (seen > 1).any():
+        return None  # one camera tells no depth
     price *= share * float(np.median(seen)) * TRIANGLE_BYTES
     plain = welded(mesh)
     best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
@@ -152,7 +152,7 @@ def _loss(mesh: Mesh, views: Sequence[_View], looked: Sequence[_Points]) -> floa
         for other, there, at, gradient in points.beside:
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)
             error += np.where(there, (gradient * shift).sum(axis=1), 0)
-        squares = np.minimum(np.square(error / points.seen), view.around[points.pixel])
+        squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), view.around[points.pixel])
         return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / LEFT)
 
     return sum(parallel_map(of_view, range(len(views))))
