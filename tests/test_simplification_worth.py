@@ -6,14 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from captures import write_capture
 from scenes import row_grid
 
+from eigenfield import open_capture
 from eigenfield.camera import Camera
+from eigenfield.draft import Options, make_draft
 from eigenfield.mesh import Mesh
-from eigenfield.proxy import simplified
+from eigenfield.proxy import simplified, unwrapped
 from eigenfield.simplification import triangles_worth
 from eigenfield.simplification.worth import _loss, _points, _view
-from surfaces import square
+from surfaces import ball, nine_cameras, square
 
 CAMERAS = tuple(camera.resized(120, 100) for camera in row_grid(9))
 
@@ -95,3 +98,21 @@ def test_large_photographs_are_looked_at_smaller():
     view = _view(wall, camera, grey)
     assert view.grey.size <= 1 << 20 and view.pixels == pytest.approx(2400 * 2000 / (1 << 20))
     assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
+
+
+def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_asked_for(tmp_path):
+    smooth = ball(radius=1.5)
+    bumps = 1 + 0.03 * np.sin(9 * smooth.vertices).prod(axis=1, keepdims=True)
+    given = replace(smooth, vertices=(smooth.vertices * bumps).astype(np.float32))
+    field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrapped(given)))
+    coarse = make_draft(field, given, Options(quality=55))
+    fine = coarse.at_quality(92)
+    counts = [len(draft.mesh.faces) for draft in (coarse, fine)]
+    assert counts[0] < 0.6 * counts[1] and counts[1] <= len(given.faces)
+    assert fine.options.quality == 92 and fine.mesh_bytes > coarse.mesh_bytes
+    again = fine.at_quality(55)
+    np.testing.assert_array_equal(again.mesh.vertices, coarse.mesh.vertices)
+    assert len(make_draft(field, given, Options(fit="none")).mesh.faces) == len(given.faces)
+    asked = make_draft(field, given, Options(quality=55), triangles=3000)
+    assert 2900 <= len(asked.mesh.faces) <= 3000
+    assert len(asked.at_quality(92).mesh.faces) == len(asked.mesh.faces)
