@@ -149,7 +149,7 @@ def fit_plane(
         half = DOUBT**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
-    fill_unseen(model, scales)
+    fill_unseen(model, scales, pixels.every.surface)
     composer = make_composer(pixels.every.surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)

@@ -9,20 +9,24 @@ from numpy.typing import NDArray
 from eigenfield.fitting.model import Block, Model
 from eigenfield.fitting.solve import Scales
 from eigenfield.parallel import parallel_map
+from eigenfield.raster import rasterise
+from eigenfield.rendering.drawing import Surface
 from eigenfield.texturing import push_pull
 
 CELL = 64  # texels of the mean for one number of its precision
 COARSEST = 2**-1.5  # precision; lower ones gain nothing (Tarot, Shop), and show where few cameras look
 PRECISIONS = 4  # to a factor of two: fewer numbers, fewer bytes
+GUTTER = 0.3  # of what a texel usually counts for: less beside a chart is as good as unseen
 WORTHWHILE = 0.97  # mean precision, above which the map is not worth its own bytes
 
 
-def fill_unseen(model: Model, scales: Scales) -> None:
-    """Mean and textures go on smoothly where no photograph sees them: a step beside a chart would be coded as one, and
-    ring into it."""
-    model.mean = _extended(model.mean, _known(scales.mean))
+def fill_unseen(model: Model, scales: Scales, surface: Surface) -> None:
+    """Mean and textures go on smoothly where no photograph sees them, or beside a chart next to none: a step there
+    would be coded as one, and ring into the chart."""
+    model.mean = _extended(model.mean, _told(scales.mean, surface))
+    told = _told(scales.coarse, surface)
     for block in model.blocks:
-        seen = _known(scales.coarse[block.window])
+        seen = np.ascontiguousarray(told[block.window])
 
         def fill(index: int, block: Block = block, seen: NDArray[np.float32] = seen) -> None:
             block.textures[index] = _extended(block.textures[index], seen)
@@ -48,6 +52,17 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     if np.average(precision, weights=covered) > WORTHWHILE:
         return None
     return np.asarray(precision, np.float32)
+
+
+def _told(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
+    """(h, w) 1 where the photographs tell a texel: it is seen, and its middle is in a chart or it counts for GUTTER of
+    what most do."""
+    (height, width), (rows, columns) = surface.size, share.shape
+    corners = np.ones((len(surface.texels), 3))
+    corners[:, :2] = (surface.texels + 0.5) * (columns / width, rows / height)
+    inside = rasterise(corners, surface.faces, columns, rows).face >= 0
+    usual = float(np.median(share[share > 0])) if (share > 0).any() else 0.0
+    return ((share > 0) & (inside | (share > GUTTER * usual))).astype(np.float32)
 
 
 def _known(share: NDArray[np.float32]) -> NDArray[np.float32]:
