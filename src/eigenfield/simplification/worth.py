@@ -85,8 +85,12 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: fl
     price *= share * float(np.median(seen)) * TRIANGLE_BYTES
     plain = welded(mesh)
     best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
-    least, count = price * most, most / FINER
-    while count >= FEWEST and price * count < least:  # fewer of a mesh that is worse already may still be better
+    least, count = price * most, float(most)
+    while (
+        count := count / FINER
+    ) >= FEWEST and price * count < least:  # fewer of one that is worse may still be better
+        if count >= len(plain.faces):  # more went than was asked for
+            continue
         try:
             plain = simplified(plain, int(count))
         except ProxyError:  # nothing is left
@@ -95,7 +99,6 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: fl
         log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(plain.faces), cost, price * len(plain.faces))
         if cost < least:
             best, least = len(plain.faces), cost
-        count /= FINER
     return best if best <= PAYS * most else None
 
 
