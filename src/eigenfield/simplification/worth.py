@@ -86,9 +86,8 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: fl
     plain = welded(mesh)
     best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
     least, count = price * most, float(most)
-    while (
-        count := count / FINER
-    ) >= FEWEST and price * count < least:  # fewer of one that is worse may still be better
+    # Fewer than of a mesh that is worse may still be better
+    while (count := count / FINER) >= FEWEST and price * count < least:
         if count >= len(plain.faces):  # more went than was asked for
             continue
         try:
