@@ -294,9 +294,11 @@ def make_draft(
 
     mesh = prepare_proxy(proxy, cameras, triangles=worth if simplify else triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
+    relief = None
     if options.fit != "none":
-        mesh = _fitted_surface(shown, mesh, cameras, used, centre, work, progress)
-    anew = simplify and relief_lattice(mesh, cameras, DEPTH_ERROR) is None  # a relief keeps its atlas
+        relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
+        mesh = fit_surface(mesh, relief and relief[0], used, partial(_photograph, shown), side, work, progress)
+    anew = simplify and relief is None  # a relief keeps its atlas
 
     def again(other: Options) -> Draft:
         if anew:
@@ -343,20 +345,6 @@ def _photograph(shown: LightField, index: int) -> tuple[NDArray[np.float32], NDA
 
 def _grey(shown: LightField, index: int) -> NDArray[np.float32]:
     return np.asarray(shown.photograph(index).pixels @ split_matrix()[0][0], np.float32)
-
-
-def _fitted_surface(
-    shown: LightField,
-    mesh: Mesh,
-    cameras: Sequence[Camera],
-    used: Sequence[Camera],
-    centre: int,
-    work: Path | None,
-    progress: Progress | None,
-) -> Mesh:
-    """The proxy where the encoded photographs, `shown`, agree on it. used: their cameras."""
-    relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
-    return fit_surface(mesh, relief and relief[0], used, partial(_photograph, shown), side, work, progress)
 
 
 def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:

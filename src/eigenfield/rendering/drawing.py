@@ -27,18 +27,8 @@ from eigenfield.raster import (
     find_pixels,
     sort_into_bands,
 )
-from eigenfield.rendering.kernels import (
-    BLOCK,
-    DEPTH,
-    TILE,
-    draw_samples,
-    draw_texels,
-    find_bends,
-    keep_parted,
-    mark_ends,
-    mark_tiles,
-    shade_rows,
-)
+from eigenfield.rendering.edge_kernels import BLOCK, draw_samples, find_bends, keep_parted, mark_ends
+from eigenfield.rendering.kernels import DEPTH, TILE, draw_texels, mark_tiles, shade_rows
 from eigenfield.rendering.simd import RUN
 
 FILTERS = ("bilinear", "bicubic")
