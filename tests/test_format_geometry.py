@@ -27,7 +27,9 @@ from eigenfield.format.layout import read_layout
 from eigenfield.format.relief_lattice import _spacing, relief_lattice
 from eigenfield.format.stored import cameras_stream, stream_of
 from eigenfield.mesh import Mesh
+from eigenfield.proxy.unwrap import unwrapped
 from eigenfield.scene import Scene
+from surfaces import ball
 
 
 def coded_scene() -> Scene:
@@ -82,6 +84,25 @@ def test_other_meshes_are_no_relief():
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
     assert relief_lattice(bent, row_grid(9), DEPTH_ERROR) is None
+
+
+def beside(mesh: Mesh, other: Mesh, part: float) -> Mesh:
+    """Both in one atlas, the first in this part of its width and height."""
+    assert mesh.uv is not None and other.uv is not None
+    uv = np.concatenate([mesh.uv * part, other.uv * (1 - part) + part])
+    faces = np.concatenate([mesh.faces, other.faces + len(mesh.vertices)])
+    return Mesh(np.concatenate([mesh.vertices, other.vertices]), faces.astype(np.int32), uv.astype(np.float32))
+
+
+def test_what_stands_before_a_relief_makes_it_none():
+    """A chart that is no picture of the relief's camera cannot be simplified by depth alone. One that is, shifted, can,
+    as a layer of the relief behind it."""
+    cameras = row_grid(9)
+    wall = relief(cameras[5], 0.5, False)
+    thing = unwrapped(Mesh((ball(level=2).vertices * 0.3 + (0, 0, 2)).astype(np.float32), ball(level=2).faces))
+    assert relief_lattice(beside(wall, thing, 0.75), cameras, DEPTH_ERROR) is None
+    layer = replace(wall, vertices=(wall.vertices * 1.1 - 0.1 * cameras[5].centre).astype(np.float32))
+    assert relief_lattice(beside(wall, layer, 0.5), cameras, DEPTH_ERROR) is not None
 
 
 @settings(max_examples=40, deadline=None)

@@ -1,8 +1,9 @@
 """The lattice that a relief was made on: the camera whose pixels its texture coordinates are.
 
 A relief is the picture of one camera pushed into depth: its texture coordinates are that camera's pixels, but for a
-scale and a shift, and vertices stand on whole pixels, those of contours between them. Found again, such a vertex costs
-its depth and little else. That camera is one of the array, or a virtual one that tells itself by rows and columns.
+scale, and a shift of each chart; vertices stand on whole pixels, those of contours between them. Found again, such a
+vertex costs its depth and little else. That camera is one of the array, or a virtual one that tells itself by rows and
+columns.
 """
 
 from __future__ import annotations
@@ -22,6 +23,8 @@ SOME = 4000  # vertices that the camera is fitted to
 REACH = 2**20 - 1  # of lattice coordinates, either way
 OFF = 0.05  # pixels of the lattice by which vertices may be off the fitted camera
 WHOLE = 0.7  # of the vertices must stand on whole pixels
+NEAR = 0.5  # pixels of the lattice that texture coordinates may be off the camera's, shifted chart by chart ..
+NEARLY_ALL = 0.999  # .. at so much of the vertices: what stands before a flat wall is no relief for the wall's sake
 FINE = 2  # binary digits that those of contours may have
 BINS, OVER = 2**16, 8  # of a chart's extent, in which columns are looked for; how much finer their number is looked at
 FEWEST_COLUMNS, MOST_COLUMNS = 16, 8192  # of a chart
@@ -33,7 +36,8 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     """The lattice of a relief, and how many of its last binary digits are mostly zero (`encode_mesh`'s `fine`); None
     for other meshes. depth_error: pixels by which a rounded depth may move a point in the camera that it moves most."""
     assert mesh.uv is not None
-    chart = _largest_chart(mesh)
+    label = _charts(mesh)
+    chart = np.flatnonzero(label == np.argmax(np.bincount(label)))
     chart = chart[np.linspace(0, len(chart) - 1, min(SOME, len(chart))).astype(int)]
     place, uv = mesh.vertices[chart].astype(np.float64), mesh.uv[chart].astype(np.float64)
     matrix = _of_columns(place, uv)
@@ -45,6 +49,8 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     if not (found[:, 2] > 0).all():
         return None
     drawn = found[:, :2] / found[:, 2:]
+    if not _shifted(drawn, mesh.uv.astype(np.float64), label, chart):
+        return None
     origin = _phase(drawn)
     fine = 0 if _whole(drawn - origin) > 0.999 else FINE
     centre = -np.linalg.inv(matrix[:, :3]) @ matrix[:, 3]
@@ -99,18 +105,30 @@ def _draws(matrix: NDArray[np.float64], place: NDArray[np.float64], uv: NDArray[
     return bool(size > 0 and np.quantile(np.abs(pixels @ affine - uv), 0.99) < OFF * size)
 
 
+def _shifted(
+    pixels: NDArray[np.float64], uv: NDArray[np.float64], label: NDArray[np.int32], chart: NDArray[np.int64]
+) -> bool:
+    """Whether texture coordinates are pixels under the same affine map everywhere, but for a shift of each chart.
+    label: (n,) charts of the vertices. chart: vertices of one, which the map is fitted to."""
+    affine = np.linalg.lstsq(np.column_stack([uv[chart], np.ones(len(chart))]), pixels[chart], rcond=None)[0]
+    off = pixels - uv @ affine[:2]
+    order = np.argsort(label, kind="stable")
+    for part in np.split(order, np.cumsum(np.bincount(label))[:-1]):
+        off[part] -= np.median(off[part], axis=0)
+    return bool((np.abs(off).max(axis=1) < NEAR).mean() > NEARLY_ALL)
+
+
 def _whole(pixels: NDArray[np.float64]) -> float:
     """The part of (n, 2) coordinates that are whole."""
     return float(np.mean(np.abs(pixels - np.rint(pixels)).max(axis=1) < OFF))
 
 
-def _largest_chart(mesh: Mesh) -> NDArray[np.int64]:
-    """Indices of the vertices of the largest connected part."""
+def _charts(mesh: Mesh) -> NDArray[np.int32]:
+    """(n,) which connected part each vertex is in."""
     count = len(mesh.vertices)
     ends = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
     graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(count, count))
-    label = connected_components(graph, directed=False)[1]
-    return np.flatnonzero(label == np.argmax(np.bincount(label)))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
 
 
 def _spacing(values: NDArray[np.float64]) -> float:
