@@ -73,7 +73,22 @@ def main() -> None:
         figures[name] = kept(work / "figures.json", Path(__file__), make, asked)
         print(f"\n{name}\n{table(figures[name])}", flush=True)
     if options.store:
-        print(measure.store("rate", {"captures": prepared.as_json(figures)}))
+        print(measure.store("rate", {"captures": {name: worth_keeping(one) for name, one in figures.items()}}))
+
+
+def worth_keeping(figures: dict[str, Any]) -> Any:
+    """What the tables show, small enough for a history: not which camera is worst, nor where pictures lie."""
+    best = figures["best"]
+    curves = [_short_curve(one) for one in figures["curves"]]
+    return prepared.as_json({**figures, "curves": curves, "best": best and _short_curve(best)})
+
+
+def _short_curve(curve: dict[str, Any]) -> dict[str, Any]:
+    return {**curve, "points": [_short(point) for point in curve["points"]]}
+
+
+def _short(point: dict[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in point.items() if key not in ("worst", "file", "shown")}
 
 
 def of_capture(

@@ -58,6 +58,10 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     side = min(96, 56) * 4  # of a crop, twice enlarged twice; three of them under a line of words, three columns
     assert sheet.shape[0] == 20 + 3 * side and sheet.std() > 10
     assert set(found["bd"][film["name"]]) == {"psnr", "psnr_luma", "ssim"}
+    short = rate.worth_keeping(found)
+    for long, kept in zip([*found["curves"], found["best"]], [*short["curves"], short["best"]], strict=True):
+        assert "worst" in long["points"][0] and not {"worst", "file", "shown"} & set(kept["points"][0])
+        assert [point["bytes"] for point in kept["points"]] == [point["bytes"] for point in long["points"]]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(rate_tables, "newest", lambda history: ({"nine": found}, []))
         patch.setattr(rate_tables, "runs", lambda name: [])
