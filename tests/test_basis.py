@@ -131,6 +131,27 @@ def test_asking_for_too_many_components_is_said(caplog):
     assert basis.component_count(3, 17) == 3
 
 
+def warned_of(levels, caplog):
+    """Cameras of a 9 x 9 array that are said to show something else, of so many grey levels off the mean texture."""
+    y, x = np.divmod(np.arange(81), 9)
+    names = [f"{row}-{column}" for row, column in zip(y, x, strict=True)]
+    caplog.clear()
+    squares = 1000 * 3 * (np.asarray(levels).reshape(-1) / 255) ** 2
+    basis.warn_of_disagreement(squares, np.full(81, 1000), 3, 1e9, names, np.stack([x, y], axis=1).astype(float))
+    return [record.getMessage().split()[0] for record in caplog.records]
+
+
+def test_only_what_its_neighbours_do_not_show_is_strange(caplog):
+    """Light that falls off towards a corner is none; a photograph there is, and a row of photographs."""
+    y, x = np.mgrid[0:9, 0:9]
+    falling = 3 + 5 * np.exp(-np.hypot(8 - x, 8 - y) / 3)
+    assert warned_of(falling, caplog) == []
+    one, row = falling.copy(), falling.copy()
+    one[8, 8], one[4, 4], row[8] = 20, falling[8, 8], 30
+    assert warned_of(one, caplog) == ["4-4", "8-8"]
+    assert warned_of(row, caplog) == [f"8-{column}" for column in range(9)]
+
+
 def test_alignment_undoes_a_shift():
     """A map shifted by two texels comes back onto the reference; the mean is sharper after alignment."""
     height = width = 96

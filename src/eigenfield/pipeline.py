@@ -189,7 +189,8 @@ def _fitted(
     ):
         if warn:
             apart = fits.planes[0][1].mean_alone
-            warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names)
+            places = draft.coordinates[draft.encoded]
+            warn_of_disagreement(apart.squares, apart.pixels, apart.channels, apart.total, draft.encoded_names, places)
 
         def coded(quality: int) -> Scene:
             coder = {"coder": "libaom"} if fits.patient else {}
@@ -252,7 +253,7 @@ def _decompose(
             remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
         )
     gram = gram_matrix(maps, mean, progress)
-    disagreement_of(maps, mean, gram, names, aligned=options.align is not None)
+    disagreement_of(maps, mean, gram, names, draft.coordinates[draft.encoded], aligned=options.align is not None)
     decomposition = spectrum(gram)
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:
