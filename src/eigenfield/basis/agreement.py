@@ -19,7 +19,7 @@ log = logging.getLogger("eigenfield.encode")
 STRANGE = (5.0, 0.6, 4.0)
 NORMAL = 1.4826  # standard deviation of a normal distribution over its median deviation
 SHARED = 0.5  # of the photographs' contrast that the mean texture must hold; real captures: 0.95, three of noise: 0.33
-BESIDE = 8  # cameras nearest to one: what they have too, such as light that falls off towards a corner, is not strange
+BESIDE = 24  # cameras nearest to one: what they have too, such as light that falls off towards a corner, is not strange
 FEWEST_SEEN = 50  # texels or pixels of a camera from which it is judged
 
 
