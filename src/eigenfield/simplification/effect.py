@@ -148,16 +148,20 @@ def _covering(points: NDArray[np.float64]) -> NDArray[np.bool_]:
     return points[:, 2] > farthest[cell] * (1 + APART)
 
 
-def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> float:
-    """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`:
-    judged by the OUTERMOST cameras of the array, which see the most of what lies behind."""
+def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> tuple[float, NDArray[np.int64]]:
+    """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`, and
+    the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of what
+    lies behind."""
     some = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
-    error = 0.0
+    error, seen = 0.0, []
     for index in some:
-        through = (rasterise_view(mesh, cameras[index]).face < 0) & (rasterise_view(given, cameras[index]).face >= 0)
+        before = rasterise_view(given, cameras[index]).face
+        through = (rasterise_view(mesh, cameras[index]).face < 0) & (before >= 0)
         if through.any():
             error += float(np.square(grey(index)[through], dtype=np.float64).sum())
-    return error * len(cameras) / len(some)
+            seen.append(given.faces[before[through]].reshape(-1))
+    vertices = np.unique(np.concatenate(seen)) if seen else np.zeros(0, np.int64)
+    return error * len(cameras) / len(some), vertices.astype(np.int64)
 
 
 def _ground(

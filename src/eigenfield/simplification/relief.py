@@ -2,7 +2,8 @@
 
 Vertices are taken away while that costs the pictures less than their bytes cost elsewhere; depths are fitted to those
 of the given surface; then steps of depth and of contours are tried, from those of the lattice to coarser ones, and the
-form is kept whose bytes and errors together are least. Where a camera sees through it, fewer vertices are taken away.
+form is kept whose bytes and errors together are least. Where a camera sees through it, the vertices that it saw before
+are kept.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -32,7 +33,8 @@ log = logging.getLogger("eigenfield.encode")
 
 LEFT = 0.4  # of a loss, once means and eigen textures have made the best of it: found on Tarot
 VERTEX_BYTES = 1.6  # what one more takes: measured on Tarot, 2,000 to 4,500 vertices
-COLLAPSES = (1.0, 0.2, 0.05, 0.0)  # of what a vertex is worth: fewer fall where the first ones open holes
+MENDINGS = 3  # times that the vertices around holes are kept, before all are
+CLOSED = 0.1  # of what the mesh's bytes are worth: holes that cost less stay
 HOLES = 4.0  # of their squared error that they count: single black pixels disturb more than blur does
 DEPTH_STEPS = (1.0, 1.5, 2.0, 3.0, 4.0)  # times that of the lattice
 STIFF = 1e-3  # of what a depth usually weighs, for those that nothing tells
@@ -61,29 +63,32 @@ def slim_relief(
     exact = lattice.coordinates(mesh.vertices)
     effect = depth_effect(mesh, lattice, 2.0**fine, cameras, grey)
     price *= effect.seen / texels / LEFT
-    sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
-    sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
-    falls, costs = collapse(effect.ground, sheet, COLLAPSES[0] * price * VERTEX_BYTES)
     found: list[tuple[float, Form]] = []
     whole = _form(mesh, lattice, fine, effect, 0, 1.0)  # all of a grid is cheap
-    start = 0, 0
-    for worth in COLLAPSES:
-        dear = costs >= worth * price * VERTEX_BYTES
-        gone = int(dear.argmax()) if dear.any() else len(costs)
-        slim = _fallen(mesh, lattice, effect, exact, falls[:gone])
+    kept, grown, start = None, np.zeros(0, np.int64), (0, 0)
+    for worth in (*[1.0] * (1 + MENDINGS), 0.0):
+        if worth and kept is not None and len(grown) == len(kept):
+            continue  # the holes that are left are between vertices that stay
+        kept = grown
+        sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
+        sheet.where[kept] = KEPT
+        sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
+        falls, _ = collapse(effect.ground, sheet, worth * price * VERTEX_BYTES)
+        slim = _fallen(mesh, lattice, effect, exact, falls)
         best, start = _cheapest(slim, lattice, fine, effect, price, start)
         if whole is not None and (best is None or whole.cost(price) < best.cost(price)):
             best, _ = _cheapest(mesh, lattice, fine, effect, price, (0, 0))
         if best is None:
             continue
-        holes = opened(mesh, best.mesh, cameras, grey)
+        holes, before = opened(mesh, best.mesh, cameras, grey)
         found.append((best.cost(price) + HOLES * holes, best))
         log.info(
             "relief: %d of %d triangles in %d bytes, %d vertices went, squared error of holes %.4g",
-            len(best.mesh.faces), len(mesh.faces), len(best.stream), gone, holes,
+            len(best.mesh.faces), len(mesh.faces), len(best.stream), len(falls), holes,
         )  # fmt: skip
-        if not holes:
+        if HOLES * holes < CLOSED * price * len(best.stream):
             break
+        grown = np.union1d(kept, before)
     if not found:
         raise ValueError("the relief cannot be coded on its lattice")
     return min(found, key=lambda one: one[0])[1]
