@@ -12,6 +12,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
@@ -112,9 +113,8 @@ def _shifted(
     label: (n,) charts of the vertices. chart: vertices of one, which the map is fitted to."""
     affine = np.linalg.lstsq(np.column_stack([uv[chart], np.ones(len(chart))]), pixels[chart], rcond=None)[0]
     off = pixels - uv @ affine[:2]
-    order = np.argsort(label, kind="stable")
-    for part in np.split(order, np.cumsum(np.bincount(label))[:-1]):
-        off[part] -= np.median(off[part], axis=0)
+    shift = [median(along, label, np.arange(label.max() + 1)) for along in off.T]
+    off -= np.stack(shift, axis=1)[label]
     return bool((np.abs(off).max(axis=1) < NEAR).mean() > NEARLY_ALL)
 
 

@@ -65,30 +65,33 @@ def slim_relief(
     price *= effect.seen / texels / LEFT
     found: list[tuple[float, Form]] = []
     whole = _form(mesh, lattice, fine, effect, 0, 1.0)  # all of a grid is cheap
-    kept, grown, start = None, np.zeros(0, np.int64), (0, 0)
-    for worth in (*[1.0] * (1 + MENDINGS), 0.0):
-        if worth and kept is not None and len(grown) == len(kept):
-            continue  # the holes that are left are between vertices that stay
-        kept = grown
+    limit, kept, start = price * VERTEX_BYTES, np.zeros(0, np.int64), (0, 0)
+    for mending in range(MENDINGS + 2):
         sheet = _sheet(effect.places(mesh.uv), exact, mesh.faces)
         sheet.where[kept] = KEPT
         sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
-        falls, _ = collapse(effect.ground, sheet, worth * price * VERTEX_BYTES)
+        falls, _ = collapse(effect.ground, sheet, limit)
         slim = _fallen(mesh, lattice, effect, exact, falls)
         best, start = _cheapest(slim, lattice, fine, effect, price, start)
+        last = limit == 0
         if whole is not None and (best is None or whole.cost(price) < best.cost(price)):
             best, _ = _cheapest(mesh, lattice, fine, effect, price, (0, 0))
-        if best is None:
-            continue
-        holes, before = opened(mesh, best.mesh, cameras, grey)
-        found.append((best.cost(price) + HOLES * holes, best))
-        log.info(
-            "relief: %d of %d triangles in %d bytes, %d vertices went, squared error of holes %.4g",
-            len(best.mesh.faces), len(mesh.faces), len(best.stream), len(falls), holes,
-        )  # fmt: skip
-        if HOLES * holes < CLOSED * price * len(best.stream):
+            last = True  # no vertex falls
+        more = kept
+        if best is not None:
+            holes, seen = opened(mesh, best.mesh, cameras, grey)
+            found.append((best.cost(price) + HOLES * holes, best))
+            log.info(
+                "relief: %d of %d triangles in %d bytes, %d vertices went, squared error of holes %.4g",
+                len(best.mesh.faces), len(mesh.faces), len(best.stream), len(falls), holes,
+            )  # fmt: skip
+            last |= HOLES * holes < CLOSED * price * len(best.stream)
+            more = np.union1d(kept, seen)
+        if last:
             break
-        grown = np.union1d(kept, before)
+        if mending == MENDINGS or len(more) == len(kept):  # the holes that are left lie between vertices that stay
+            limit = 0.0
+        kept = more
     if not found:
         raise ValueError("the relief cannot be coded on its lattice")
     return min(found, key=lambda one: one[0])[1]
