@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import os
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
@@ -116,13 +115,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("studies"))
     parser.add_argument("--store", action="store_true", help="append to benchmarks/results/fit-studies.json")
     options = parser.parse_args()
-    data = os.environ.get("EIGENFIELD_DATA")
-    known = captures.shared(Path(data)) if data else {}
-    if options.capture not in known:
-        raise SystemExit(f"captures: {', '.join(known) or 'none, EIGENFIELD_DATA names no folder that holds them'}")
-    figures = of_capture(known[options.capture], options.out / options.capture, options.levers.split(","))
+    out = options.out.resolve()
+    capture = captures.named(options.capture, out)
+    figures = of_capture(capture, out / capture.name, options.levers.split(","))
     if options.store:
-        print(measure.store("fit-studies", {"captures": prepared.as_json({options.capture: figures})}))
+        print(measure.store("fit-studies", {"captures": prepared.as_json({capture.name: figures})}))
 
 
 def of_capture(capture: captures.Capture, work: Path, levers: list[str]) -> dict[str, Any]:

@@ -3,7 +3,8 @@
     EIGENFIELD_DATA=captures python benchmarks/rate.py [CAPTURE...] [--out rate] [--peers svt-av1-2,...] [--best]
         [--store]
 
-CAPTURE: names as benchmarks/report.py knows them; without any, the dense arrays and the sparse Tarot. Ours: a fit for
+CAPTURE: names as benchmarks/report.py knows them, or a folder of photographs of your own; without any, the dense arrays
+and the sparse Tarot. Ours: a fit for
 each preset, coded at qualities near its own, each point a real .glb that is read and drawn again; --best adds a curve
 of that preset alone, which takes its time. SVT-AV1 walks the views row by row, to and fro or in a spiral, whichever is
 best at its middle rate. Crops at about equal bytes go to
@@ -14,7 +15,6 @@ loss without a codec stands beside: of ours before coding, of the peers' colours
 from __future__ import annotations
 
 import argparse
-import os
 import tempfile
 from collections.abc import Sequence
 from functools import partial
@@ -59,16 +59,16 @@ def main() -> None:
     parser.add_argument("--best", action="store_true", help="also a curve of the preset best")
     parser.add_argument("--store", action="store_true", help="append to benchmarks/results/rate.json")
     options = parser.parse_args()
-    data = os.environ.get("EIGENFIELD_DATA")
-    known = captures.shared(Path(data)) if data else {}
-    names = options.captures or [name for name in CAPTURES if name in known]
-    if not names or any(name not in known for name in names):
-        raise SystemExit(f"captures: {', '.join(known) or 'none, EIGENFIELD_DATA names no folder that holds them'}")
+    out = options.out.resolve()
+    names = options.captures or [name for name in CAPTURES if name in captures.known(out)]
+    if not names:
+        raise SystemExit("name a capture, demo or a folder: EIGENFIELD_DATA names no folder that holds the shared ones")
+    some = [captures.named(name, out) for name in names]
     chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
     figures = {}
-    for name in names:
-        work = options.out / name
-        make = partial(of_capture, known[name], work, chosen, options.best)
+    for capture in some:
+        name, work = capture.name, out / capture.name
+        make = partial(of_capture, capture, work, chosen, options.best)
         asked = f"{options.peers}{' best' * options.best}"
         figures[name] = kept(work / "figures.json", Path(__file__), make, asked)
         print(f"\n{name}\n{table(figures[name])}", flush=True)

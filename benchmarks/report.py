@@ -31,12 +31,12 @@ from evidence.runner import Run, evaluate_capture
 
 def chosen(names: list[str], out: Path, quick: bool) -> tuple[list[Capture], list[str]]:
     """The captures of a run, and in words what it leaves out."""
-    data = os.environ.get("EIGENFIELD_DATA")
-    known = {"demo": captures.demo(out)} | ({} if not data else captures.shared(Path(data)))
     if names:
-        return [_named(name, known) for name in names], []
+        return [captures.named(name, out) for name in names], []
+    known = captures.known(out)
     if not quick:
-        words = [] if data else ["the shared captures: EIGENFIELD_DATA names no folder that holds them"]
+        there = os.environ.get("EIGENFIELD_DATA")
+        words = [] if there else ["the shared captures: EIGENFIELD_DATA names no folder that holds them"]
         return list(known.values()), words
     some = [known[name] for name in captures.QUICK if name in known] or [known["demo"]]
     names_left = [name for name in known if name not in {one.name for one in some}]
@@ -45,16 +45,6 @@ def chosen(names: list[str], out: Path, quick: bool) -> tuple[list[Capture], lis
         " XL, no parameter studies"
     ]
     return some, words + ([f"captures: {', '.join(names_left)}"] if names_left else [])
-
-
-def _named(name: str, known: dict[str, Capture]) -> Capture:
-    if name in known:
-        return known[name]
-    if Path(name).is_dir():
-        return captures.of_folder(Path(name))
-    raise SystemExit(
-        f"{name} is neither a folder nor one of {', '.join(known)} (EIGENFIELD_DATA names the shared ones' folder)"
-    )
 
 
 def main() -> None:

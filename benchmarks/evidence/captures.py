@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,6 +31,24 @@ class Capture:
     studied: bool = False
     note: str = ""
     licence: str = ""
+
+
+def known(out: Path) -> dict[str, Capture]:
+    """The captures that have names, by those: the demo, kept in `out`, and what EIGENFIELD_DATA's folder holds."""
+    data = os.environ.get("EIGENFIELD_DATA")
+    return {"demo": demo(out)} | ({} if not data else shared(Path(data)))
+
+
+def named(name: str, out: Path) -> Capture:
+    """One of them, or a capture of the user's own by its folder. Raises SystemExit where there is neither."""
+    found = known(out)
+    if name in found:
+        return found[name]
+    if Path(name).is_dir():
+        return of_folder(Path(name))
+    raise SystemExit(
+        f"{name} is neither a folder nor one of {', '.join(found)} (EIGENFIELD_DATA names the shared ones' folder)"
+    )
 
 
 def of_folder(folder: Path) -> Capture:
