@@ -399,18 +399,24 @@ def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:
     return made
 
 
+def _decimals(numbers: Iterable[float]) -> list[float]:
+    """To nine digits, all that readers of 32 bits keep."""
+    return [float(f"{number:.9g}") + 0.0 for number in numbers]  # + 0.0: no minus zero in the file
+
+
 def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     camera = scene.cameras[scene.reference]
     turn = capture_to_gltf(scene.view_plane)
     perspective, axes = opening_view(camera, scene.mesh)
     proxy = {"name": "proxy", "mesh": 0, **_turned(turn)}
-    place = (turn @ camera.centre + 0.0).tolist()
+    place = _decimals(turn @ camera.centre)
+    perspective = dict(zip(perspective, _decimals(perspective.values()), strict=True))
     return perspective, [proxy, {"name": "reference camera", "camera": 0, "translation": place, **_turned(turn @ axes)}]
 
 
 def _turned(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
     """A node's rotation, (3, 3); left out where it is none."""
-    found = quaternion(rotation)
+    found = _decimals(quaternion(rotation))
     return {} if found == [0, 0, 0, 1] else {"rotation": found}
 
 
