@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +15,7 @@ from eigenfield.errors import OutputError
 from eigenfield.files import atomic_writer, refuse_existing
 from eigenfield.format import limits, pictures, strict_json
 from eigenfield.format.axes import capture_to_gltf, opening_view, quaternion
+from eigenfield.format.buffer import Buffer
 from eigenfield.format.coarse import shown_mesh
 from eigenfield.format.coded_pictures import Coded, CodedPlane, code_pictures, shortest
 from eigenfield.format.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
@@ -26,7 +25,7 @@ from eigenfield.format.layout import read_layout
 from eigenfield.format.name_coder import code_names
 from eigenfield.format.name_pattern import name_pattern
 from eigenfield.format.stored import PictureFile, cameras_stream, stream_of
-from eigenfield.format.strict_json import printable
+from eigenfield.format.writable import check_writable
 from eigenfield.mesh import Mesh
 from eigenfield.progress import Progress
 from eigenfield.scene import Plane, Residual, Scene
@@ -34,42 +33,6 @@ from eigenfield.scene import Plane, Residual, Scene
 QUALITY = 70  # of the eigen textures, for avif
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
 CODED_NAMES = 256  # bytes that coded names must save, and their two entries in the JSON
-
-
-@dataclass
-class _Buffer:
-    """The binary chunk while it grows, and the JSON entries that point into it."""
-
-    parts: list[bytes] = field(default_factory=list)
-    length: int = 0
-    views: list[dict[str, Any]] = field(default_factory=list)
-    accessors: list[dict[str, Any]] = field(default_factory=list)
-    once: dict[bytes, int] = field(default_factory=dict)
-
-    def view(self, data: bytes, target: int | None = None) -> int:
-        """Append a buffer view at a multiple of 4; its index."""
-        entry: dict[str, Any] = {"buffer": 0, "byteOffset": self.length, "byteLength": len(data)}
-        if target is not None:
-            entry["target"] = target
-        self.views.append(entry)
-        self.parts.append(data + bytes(-len(data) % 4))
-        self.length += len(self.parts[-1])
-        return len(self.views) - 1
-
-    def shared(self, data: bytes) -> int:
-        """As `view`; the same one for the same bytes."""
-        if data not in self.once:
-            self.once[data] = self.view(data)
-        return self.once[data]
-
-    def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
-        """Append an array as an accessor of its own buffer view; its index."""
-        dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2", UINT8: "u1"}[component]
-        view = self.view(np.ascontiguousarray(array, dtype).tobytes(), target)
-        self.accessors.append(
-            {"bufferView": view, "componentType": component, "count": len(array), "type": kind, **more}
-        )
-        return len(self.accessors) - 1
 
 
 def save(
@@ -112,7 +75,7 @@ def _blocks(
     pictures.check_codec(codec or pictures.DEFAULT_CODEC, quality)
     check_writable(scene, path)
     coded = code_pictures(scene, codec, QUALITY if quality is None else quality, progress)
-    buffer = _Buffer()
+    buffer = Buffer()
     gltf = _gltf(scene, buffer, coded)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
@@ -134,7 +97,7 @@ def check_readable(text: bytes, binary: bytes) -> None:
     read_layout(Document(written), Findings(strict=True))
 
 
-def _gltf(scene: Scene, buffer: _Buffer, coded: Coded) -> dict[str, Any]:
+def _gltf(scene: Scene, buffer: Buffer, coded: Coded) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
     mesh, poses = stream_of(scene.mesh), cameras_stream(scene.cameras)
     shown = scene.mesh if mesh is None else shown_mesh(scene.mesh, coded.bytes + len(mesh))
@@ -240,7 +203,7 @@ def _version(scene: Scene, coded: Coded, needs: Sequence[str]) -> str:
     return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
 
 
-def _primitive(mesh: Mesh, buffer: _Buffer, small: bool) -> dict[str, Any]:
+def _primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
     """small: whether indices may have 8 bits, which other viewers read but need not be quick at."""
     assert mesh.uv is not None
     # the largest index of a type restarts a primitive and may not be used
@@ -256,7 +219,7 @@ def _primitive(mesh: Mesh, buffer: _Buffer, small: bool) -> dict[str, Any]:
     }
 
 
-def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) -> dict[str, Any]:
+def _plane(plane: Plane, coded: CodedPlane, buffer: Buffer, *, inline: bool) -> dict[str, Any]:
     """A plane's entry without the textures' buffer views; inline: the mean is its own picture, not images[0]."""
     height, width, channels = plane.mean.shape
     made: dict[str, Any] = {"channels": channels}
@@ -280,7 +243,7 @@ def _plane(plane: Plane, coded: CodedPlane, buffer: _Buffer, *, inline: bool) ->
     return made
 
 
-def _precision(data: bytes, buffer: _Buffer) -> dict[str, Any]:
+def _precision(data: bytes, buffer: Buffer) -> dict[str, Any]:
     size = pictures.dimensions(memoryview(data), pictures.MIME_TYPES["png"], "precision")
     return {"bufferView": buffer.shared(data), "size": list(size)}
 
@@ -315,7 +278,7 @@ def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
     return shortest(each[:1] if (each == each[0]).all() else each)
 
 
-def _residual(residual: Residual, buffer: _Buffer) -> dict[str, Any]:
+def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
     order, count = residual.order, len(residual.order)
     made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
     if residual.full:
@@ -344,7 +307,7 @@ def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool, used: Mapping[
     return sorted(name for name, needed in found.items() if needed)
 
 
-def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, Any]:
+def _cameras(scene: Scene, buffer: Buffer, stream: bytes | None) -> dict[str, Any]:
     sizes = np.array([[c.width, c.height] for c in scene.cameras])
     made = _names(scene.names, None if stream is None else buffer)
     made["heldOut"] = np.flatnonzero(scene.held_out).tolist()
@@ -365,7 +328,7 @@ def _cameras(scene: Scene, buffer: _Buffer, stream: bytes | None) -> dict[str, A
     return made
 
 
-def _names(names: Sequence[str], buffer: _Buffer | None) -> dict[str, Any]:
+def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:
     """One by one, by a pattern or coded, whichever is shortest; without a buffer as readers of 1.1 know them."""
     plain: dict[str, Any] = {"names": list(names)}
     if buffer is None:
@@ -377,7 +340,7 @@ def _names(names: Sequence[str], buffer: _Buffer | None) -> dict[str, Any]:
     return {"codedNames": {"bufferView": buffer.view(stream), "count": len(names)}}
 
 
-def _view_plane(scene: Scene, buffer: _Buffer, short: bool) -> dict[str, Any]:
+def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     """short: whether the triangles may be coded, which readers of 1.1 do not know."""
     plane = scene.view_plane
     made: dict[str, Any] = {
@@ -418,41 +381,3 @@ def _turned(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
     """A node's rotation, (3, 3); left out where it is none."""
     found = _decimals(quaternion(rotation))
     return {} if found == [0, 0, 0, 1] else {"rotation": found}
-
-
-def check_writable(scene: Scene, path: Path | None) -> None:
-    """Raises OutputError `scene-limit` or `camera-name` for what no reader would take back."""
-
-    def refuse(what: str) -> None:
-        raise OutputError("scene-limit", f"a file cannot hold {what}", path=path, remedy="make the scene smaller")
-
-    for plane in scene.planes:
-        channels = plane.mean.shape[2]
-        if channels > limits.MAX_CHANNELS:
-            refuse(f"{channels} channels")
-        for height, width in [plane.mean.shape[:2], *(basis.textures.shape[1:3] for basis in plane.bases)]:
-            w, h = pictures.picture_size(width, height, channels)
-            if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
-                refuse(f"a picture of {w}x{h}")
-    bases = [basis for plane in scene.planes for basis in plane.bases]
-    decoded = sum(
-        4 * plane.mean.size + sum(math.prod(basis.textures.shape) for basis in plane.bases) for plane in scene.planes
-    )
-    counts: Iterable[tuple[int, int, str]] = [
-        (len(scene.cameras), limits.MAX_CAMERAS, "cameras"),
-        (sum(basis.count for basis in bases), limits.MAX_COMPONENTS, "eigen textures"),
-        (len(scene.planes), limits.MAX_PLANES, "planes"),
-        (max(len(plane.bases) for plane in scene.planes), limits.MAX_BASES, "bases"),
-        (decoded, limits.MAX_DECODED, "decoded bytes"),
-        (len(scene.mesh.vertices), limits.MAX_VERTICES, "vertices"),
-        (len(scene.mesh.faces), limits.MAX_TRIANGLES, "triangles"),
-        (max((basis.weights.size for basis in bases), default=0), limits.MAX_WEIGHTS, "weights"),
-    ]
-    for count, most, name in counts:
-        if count > most:
-            refuse(f"{count} {name}")
-    for name in scene.names:
-        if len(name) > limits.MAX_NAME or not printable(name):
-            raise OutputError(
-                "camera-name", f"the name {name!r} cannot be kept", path=path, remedy="rename the photograph"
-            )
