@@ -19,7 +19,7 @@ from eigenfield.simplification import depth_effect, slim_mesh, slim_relief
 from eigenfield.simplification.collapse_kernels import collapse, fallen
 from eigenfield.simplification.effect import opened
 from eigenfield.simplification.raster_kernels import STEPS, Ground, sheet_cost
-from eigenfield.simplification.relief import _sheet
+from eigenfield.simplification.relief import _fitted, _sheet
 from test_format_geometry import relief
 
 SIDE = 40
@@ -197,6 +197,20 @@ def test_the_effect_is_what_the_photographs_lose():
     actual = (np.square(np.stack(drawn) - np.mean(drawn, axis=0)).sum(axis=0)).sum()
     expected = off**2 * effect.ground.curve[12:36, 12:52].sum()
     assert expected == pytest.approx(actual, rel=0.25)
+
+
+def test_depths_are_fitted_but_for_those_of_kept_vertices():
+    mesh, cameras, photographs = photographed_plane()
+    assert mesh.uv is not None
+    lattice = plane_lattice(cameras)
+    effect = depth_effect(mesh, lattice, 1.0, cameras, lambda index: photographs[index])
+    true = lattice.coordinates(mesh.vertices)[:, 2]
+    rough = true + np.random.default_rng(2).normal(0, 1, len(true))
+    kept = np.arange(0, len(true), 40)
+    found = _fitted(effect, effect.places(mesh.uv), rough, mesh.faces, kept)
+    np.testing.assert_array_equal(found[kept], rough[kept])
+    free = np.setdiff1d(np.arange(len(true)), kept)
+    assert np.sqrt(np.square(found - true)[free].mean()) < 0.8 * np.sqrt(np.square(rough - true)[free].mean())
 
 
 def test_flat_photographs_do_not_mind():

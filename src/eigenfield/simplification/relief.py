@@ -71,7 +71,7 @@ def slim_relief(
         sheet.where[kept] = KEPT
         sheet_cost(effect.ground, sheet.places, sheet.depth, sheet.faces)
         falls, _ = collapse(effect.ground, sheet, limit)
-        slim = _fallen(mesh, lattice, effect, exact, falls)
+        slim = _fallen(mesh, lattice, effect, exact, falls, kept)
         best, start = _cheapest(slim, lattice, fine, effect, price, start)
         last = limit == 0
         if whole is not None and (best is None or whole.cost(price) < best.cost(price)):
@@ -97,12 +97,20 @@ def slim_relief(
     return min(found, key=lambda one: one[0])[1]
 
 
-def _fallen(mesh: Mesh, lattice: Lattice, effect: Effect, exact: NDArray[np.float64], falls: NDArray[np.int32]) -> Mesh:
-    """The mesh without the vertices that fell, depths fitted. exact: (n, 3) the vertices' lattice coordinates."""
+def _fallen(
+    mesh: Mesh,
+    lattice: Lattice,
+    effect: Effect,
+    exact: NDArray[np.float64],
+    falls: NDArray[np.int32],
+    kept: NDArray[np.int64],
+) -> Mesh:
+    """The mesh without the vertices that fell, depths fitted but for those of `kept` vertices. exact: (n, 3) the
+    vertices' lattice coordinates."""
     assert mesh.uv is not None
     faces = fallen(mesh.faces, falls)
     faces = np.ascontiguousarray(faces[faces[:, 0] >= 0])
-    depth = _fitted(effect, effect.places(mesh.uv), exact[:, 2], faces)
+    depth = _fitted(effect, effect.places(mesh.uv), exact[:, 2], faces, kept)
     used, faces = np.unique(faces, return_inverse=True)
     vertices = lattice.points(np.column_stack([exact[used, :2], depth[used]])).astype(np.float32)
     return Mesh(vertices, faces.reshape(-1, 3).astype(np.int32), mesh.uv[used])
@@ -172,10 +180,14 @@ def _sheet(places: NDArray[np.int64], exact: NDArray[np.float64], faces: NDArray
 
 
 def _fitted(
-    effect: Effect, places: NDArray[np.int64], depth: NDArray[np.float64], faces: NDArray[np.int32]
+    effect: Effect,
+    places: NDArray[np.int64],
+    depth: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    kept: NDArray[np.int64],
 ) -> NDArray[np.float64]:
     """(n,) depths of the vertices by which the pictures lose least: least squares, texels that lose much count
-    less."""
+    less. Those of `kept` are what they were: by a moved rim a camera sees past it."""
     ground = effect.ground
     owners = np.zeros(ground.depth.shape, np.int32)
     draw_owners(places, faces, owners)
@@ -187,9 +199,12 @@ def _fitted(
     counts = curve * np.square(most / (most + curve * np.square(off)))
     rows = np.repeat(np.arange(len(off)), 3)
     A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(depth))).tocsr()
-    normal = A.T @ diags_array(counts) @ A
+    normal = (A.T @ diags_array(counts) @ A).tocsr()
     diagonal = normal.diagonal()
     ridge = STIFF * float(np.median(diagonal[diagonal > 0])) if (diagonal > 0).any() else 1.0
-    normal = normal + ridge * diags_array(np.ones(len(depth)))
-    change, _ = cg(normal, A.T @ (counts * off), rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
-    return np.asarray(depth + change)
+    free = np.setdiff1d(np.arange(len(depth)), kept)
+    normal = (normal + ridge * diags_array(np.ones(len(depth)))).tocsr()[free][:, free]
+    change, _ = cg(normal, (A.T @ (counts * off))[free], rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
+    found = depth.astype(np.float64)
+    found[free] += change
+    return found
