@@ -211,6 +211,8 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
     np.testing.assert_array_equal(found[kept], rough[kept])
     free = np.setdiff1d(np.arange(len(true)), kept)
     assert np.sqrt(np.square(found - true)[free].mean()) < 0.8 * np.sqrt(np.square(rough - true)[free].mean())
+    everything = np.arange(len(true))
+    np.testing.assert_array_equal(_fitted(effect, effect.places(mesh.uv), rough, mesh.faces, everything), rough)
 
 
 def test_flat_photographs_do_not_mind():

@@ -197,14 +197,14 @@ def _fitted(
     off = ground.depth[there] - np.einsum("tk,tk->t", weights, depth[corners])
     curve, most = ground.curve[there].astype(np.float64), np.maximum(ground.most[there], 1e-12).astype(np.float64)
     counts = curve * np.square(most / (most + curve * np.square(off)))
+    free = np.setdiff1d(np.arange(len(depth)), kept)
     rows = np.repeat(np.arange(len(off)), 3)
-    A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(depth))).tocsr()
-    normal = (A.T @ diags_array(counts) @ A).tocsr()
+    A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(depth))).tocsc()[:, free]
+    normal = A.T @ diags_array(counts) @ A
     diagonal = normal.diagonal()
     ridge = STIFF * float(np.median(diagonal[diagonal > 0])) if (diagonal > 0).any() else 1.0
-    free = np.setdiff1d(np.arange(len(depth)), kept)
-    normal = (normal + ridge * diags_array(np.ones(len(depth)))).tocsr()[free][:, free]
-    change, _ = cg(normal, (A.T @ (counts * off))[free], rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
-    found = depth.astype(np.float64)
+    normal = normal + ridge * diags_array(np.ones(len(free)))
+    change, _ = cg(normal, A.T @ (counts * off), rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
+    found = depth.copy()
     found[free] += change
     return found
