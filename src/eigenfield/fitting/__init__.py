@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eigenfield.fitting.colour import split_matrix, to_rgb
-from eigenfield.fitting.fit import Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane
+from eigenfield.fitting.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
 from eigenfield.fitting.planes import (
     KINDS,
     PRESETS,
@@ -14,6 +14,7 @@ from eigenfield.fitting.planes import (
     fitted_textures,
     open_fits,
 )
+from eigenfield.fitting.rate import Rate
 from eigenfield.fitting.shots import Shots, open_shots, thinned
 from eigenfield.fitting.surface import fit_surface
 from eigenfield.fitting.target import Target, compared, reach, warn_of_miss

@@ -12,7 +12,6 @@ import logging
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import accumulate
 from pathlib import Path
 
 import numpy as np
@@ -21,14 +20,13 @@ from numpy.typing import NDArray
 from eigenfield.errors import CaptureError
 from eigenfield.fitting.model import Block, Composer, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
+from eigenfield.fitting.rate import Rate, code_worthwhile
 from eigenfield.fitting.regions import find_regions
 from eigenfield.fitting.seen import fill_unseen
 from eigenfield.fitting.shots import Shots
 from eigenfield.fitting.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.fitting.start import principal_block, residual_energy
-from eigenfield.format.deep import Coder
-from eigenfield.format.deep_code import code_basis, coded_plane, first_pictures, with_weights
-from eigenfield.format.stored import files_of
+from eigenfield.format.deep_code import coded_plane, with_weights
 from eigenfield.format.weight_coder import code_weights
 from eigenfield.progress import Progress
 from eigenfield.scene import Basis, Plane
@@ -43,8 +41,6 @@ WEIGHT_STEPS = 4
 WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
 WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
 CLOSING_STEPS = 3  # for the mean, after coding
-LAGRANGE = 0.134  # squared error per bit in steps^2, as video encoders weigh them (0.85 2^((QP - 12) / 3), H.264)
-WEIGHT_BYTES = 0.4  # of a coded weight: what weak components' take
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,17 +56,6 @@ class PlaneSettings:
     grid: tuple[int, int]
     textures: int
     local: int = 0
-
-
-@dataclass(frozen=True)
-class Rate:
-    """How finely a plane is coded. mean_step, texture_step: of the quantiser, in the photographs' range. coder: of the
-    pictures. trial: one that is faster, by which components are chosen; None: the same."""
-
-    mean_step: float
-    texture_step: float
-    coder: Coder
-    trial: Coder | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +169,7 @@ def code_plane(
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[Basis] = []
     for block in open_loop.blocks:
-        coded = _code_worthwhile(block, model.grid, scales, rate)
+        coded = code_worthwhile(block, model.grid, scales, rate)
         if not coded.count:
             continue
         values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])
@@ -217,40 +202,6 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
     return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
-def _code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:
-    """A block's components coded, those that are worth it."""
-    coded = code_basis(_basis(block, grid), rate.texture_step, rate.trial or rate.coder)
-    count = _worthwhile(coded, block, scales, rate)
-    files = files_of(coded) or ()
-    ends = list(accumulate((file.count for file in files), initial=0))
-    if count == 0 or (count in ends and rate.trial is None):
-        return first_pictures(coded, ends.index(count))
-    few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
-    return code_basis(_basis(few, grid), rate.texture_step, rate.coder)
-
-
-def _worthwhile(coded: Basis, block: Block, scales: Scales, rate: Rate) -> int:
-    """How many components, the strongest first, are worth their bytes and their weights'.
-
-    One takes squared error off the pictures, over all cameras; it is worth its bytes where the mean's coder would need
-    more to take off as much: `LAGRANGE` step^2 a bit, times the pixels that a texel of the mean answers for.
-    """
-    seen, share = scales.mean[scales.mean > 0], scales.coarse[block.window]
-    price = price_of(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
-    gains: list[float] = []
-    for file in files_of(coded) or ():
-        part = slice(len(gains), len(gains) + file.count)
-        before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
-        less = np.einsum("nchw,nchw,hw->n", after, 2 * before - after, share, dtype=np.float64)  # b^2 - (b - a)^2
-        gains += (less - price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
-    return int(np.argmax([0.0, *np.cumsum(gains)]))
-
-
-def price_of(mean_step: float) -> float:
-    """Squared error of a mean that a byte of it takes off, for each pixel that a texel is seen in."""
-    return 8 * LAGRANGE * mean_step**2
-
-
 def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
     """dB of the photographs as the renderers draw the model."""
     found = look(
@@ -281,15 +232,6 @@ def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
     squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
     drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
     return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
-
-
-def _basis(block: Block, grid: tuple[int, int]) -> Basis:
-    """A block as a scene has it."""
-    textures = np.ascontiguousarray(block.textures.transpose(0, 2, 3, 1))
-    ones = np.ones((block.count, textures.shape[3]), np.float32)
-    top, _, left, _ = block.rectangle
-    part = textures.shape[1:3] != grid
-    return Basis(textures, ones, np.zeros_like(ones), block.weights, grid if part else None, (top, left))
 
 
 def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[..., None]:

@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.fitting.colour import split_matrix
-from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, Rate, code_plane, coded_psnr, fit_plane, price_of
+from eigenfield.fitting.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
+from eigenfield.fitting.rate import Rate, price_of
 from eigenfield.fitting.seen import mean_precision
 from eigenfield.fitting.shots import Shots, doubtable, thinned
 from eigenfield.format.aom import aom_program, encode_aom
