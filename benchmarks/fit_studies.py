@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield import LightField, draft
-from eigenfield.fitting import fit, planes
+from eigenfield.fitting import fit, planes, rate
 from eigenfield.format.geometry import coded_mesh
 from eigenfield.metrics import to_codes
 from eigenfield.parallel import parallel_map
@@ -89,7 +89,7 @@ LEVERS = {
     ),
     "rank": Lever("15 textures", options=Options(textures=15)),
     "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
-    "worth": Lever("all components kept, worth their bytes or not", coding=lambda: patch.object(fit, "LAGRANGE", 0.0)),
+    "worth": Lever("all components kept, worth their bytes or not", coding=lambda: patch.object(rate, "LAGRANGE", 0.0)),
     "precision": Lever(
         "the mean coded as finely everywhere", coding=lambda: patch.object(planes, "mean_precision", lambda *_: None)
     ),

@@ -10,7 +10,7 @@ from evidence.captures import Capture
 import fit_studies
 import rate_tables
 from eigenfield import draft
-from eigenfield.fitting import fit, planes
+from eigenfield.fitting import fit, planes, rate
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +27,7 @@ def test_levers_are_put_back():
         planes.KINDS.copy(),
         fit.find_regions,
         fit.fit_weights,
-        fit.LAGRANGE,
+        rate.LAGRANGE,
         draft.slim_mesh,
         planes.mean_precision,
         fit.fill_unseen,
@@ -37,7 +37,7 @@ def test_levers_are_put_back():
         with lever.change(), lever.coding():
             pass
     after = (
-        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, fit.LAGRANGE, draft.slim_mesh,
+        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, rate.LAGRANGE, draft.slim_mesh,
         planes.mean_precision, fit.fill_unseen, draft.fit_surface,
     )  # fmt: skip
     assert before == after
