@@ -150,11 +150,11 @@ def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
         curve = _kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs, covered))
         points = curve["points"]
         base = found["all"]["points"] if found else points
-        rate = {key: rates.bd_rate(base, points, key) for key in KEYS}
+        dearer = {key: rates.bd_rate(base, points, key) for key in KEYS}
         gain = {key: rates.bd_quality(base, points, key) for key in KEYS}
-        found[name] = {"words": LEVERS[name].words, **curve, "rate": rate, "gain": gain}
+        found[name] = {"words": LEVERS[name].words, **curve, "rate": dearer, "gain": gain}
         said = "; ".join(f"{p['bytes'] / 1000:.1f} kB {p['psnr']:.2f} / {p['psnr_luma']:.2f} dB" for p in points)
-        print(f"{LEVERS[name].words}: {said}; rate {rate}", flush=True)
+        print(f"{LEVERS[name].words}: {said}; rate {dearer}", flush=True)
     return found
 
 

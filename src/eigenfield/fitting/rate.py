@@ -31,7 +31,7 @@ class Rate:
 
 
 def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate) -> Basis:
-    """A block's components coded, those that are worth it."""
+    """Those of a block's components that are worth their bytes, coded. grid: (rows, columns) that it is part of."""
     coded = code_basis(_basis_of(block, grid), rate.texture_step, rate.trial or rate.coder)
     count = _worthwhile(coded, block, scales, rate)
     files = files_of(coded) or ()
