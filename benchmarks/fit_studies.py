@@ -75,6 +75,13 @@ def _no_rounds() -> contextlib.AbstractContextManager[Any]:
     return stack
 
 
+def _all_kept() -> contextlib.AbstractContextManager[Any]:
+    stack = contextlib.ExitStack()
+    stack.enter_context(patch.object(rate, "LAGRANGE", 0.0))
+    stack.enter_context(patch.object(rate, "OTHER_STEPS", ()))  # without a price the finest would always be best
+    return stack
+
+
 LEVERS = {
     "all": Lever("all on"),
     "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
@@ -89,7 +96,8 @@ LEVERS = {
     ),
     "rank": Lever("15 textures", options=Options(textures=15)),
     "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
-    "worth": Lever("all components kept, worth their bytes or not", coding=lambda: patch.object(rate, "LAGRANGE", 0.0)),
+    "worth": Lever("all components kept, worth their bytes or not", coding=_all_kept),
+    "step": Lever("textures coded at their usual step", coding=lambda: patch.object(rate, "OTHER_STEPS", ())),
     "precision": Lever(
         "the mean coded as finely everywhere", coding=lambda: patch.object(planes, "mean_precision", lambda *_: None)
     ),

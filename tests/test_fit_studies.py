@@ -27,7 +27,7 @@ def test_levers_are_put_back():
         planes.KINDS.copy(),
         fit.find_regions,
         fit.fit_weights,
-        rate.LAGRANGE,
+        (rate.LAGRANGE, rate.OTHER_STEPS),
         draft.slim_mesh,
         planes.mean_precision,
         fit.fill_unseen,
@@ -37,8 +37,8 @@ def test_levers_are_put_back():
         with lever.change(), lever.coding():
             pass
     after = (
-        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, rate.LAGRANGE, draft.slim_mesh,
-        planes.mean_precision, fit.fill_unseen, draft.fit_surface,
+        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
+        draft.slim_mesh, planes.mean_precision, fit.fill_unseen, draft.fit_surface,
     )  # fmt: skip
     assert before == after
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from eigenfield.errors import CaptureError
 from eigenfield.fitting.model import Block, Composer, Model, make_composer
 from eigenfield.fitting.passes import look, psnr_of
-from eigenfield.fitting.rate import Rate, code_worthwhile
+from eigenfield.fitting.rate import Rate, code_worthwhile, price_of_mean
 from eigenfield.fitting.regions import find_regions
 from eigenfield.fitting.seen import fill_unseen
 from eigenfield.fitting.shots import Shots
@@ -168,8 +168,9 @@ def code_plane(
     tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[Basis] = []
+    price = price_of_mean(open_loop, scales, rate, precision)
     for block in open_loop.blocks:
-        coded = code_worthwhile(block, model.grid, scales, rate)
+        coded = code_worthwhile(block, model.grid, scales, rate, price)
         if not coded.count:
             continue
         values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])

@@ -36,7 +36,8 @@ class Kind:
     as if the atlas had so many texels a pixel more, up to DENSEST.
     textures: of the number asked for. mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's
     density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the pictures are
-    steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras.
+    steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras. searched:
+    see `Rate`; not chroma, whose mean says nothing of what luma's bytes are worth.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Kind:
     texture_step: float
     thinned: bool
     ahead: float
+    searched: bool
 
     def settings(self, size: tuple[int, int], density: float, textures: int) -> PlaneSettings:
         """Of a fit. size: (rows, columns) of the atlas; density: its texels per photograph pixel along one axis.
@@ -61,18 +63,17 @@ class Kind:
     def rate(self, step: float, patient: bool = False) -> Rate:
         """step: see `step_of`. patient: coded by libaom, which the machine must have."""
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
-        if patient:
-            return Rate(mean_step, texture_step, encode_aom, SVT)
-        return Rate(mean_step, texture_step, SVT)
+        coder, trial = (encode_aom, SVT) if patient else (SVT, None)
+        return Rate(mean_step, texture_step, coder, trial, search=self.searched)
 
 
 _LUMA, _CHROMA = split_matrix()
 KINDS = {
     "luma-chroma": (
-        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0),
-        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
+        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),
+        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
     ),
-    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0),),
+    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
 }
 HALF_LEVEL = 0.002  # grey level, in the photographs' range
 TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
