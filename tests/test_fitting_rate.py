@@ -8,6 +8,7 @@ import pytest
 
 from eigenfield.fitting import rate
 from eigenfield.fitting.model import Block, Model
+from eigenfield.fitting.planes import KINDS
 from eigenfield.fitting.rate import Price, Rate, code_worthwhile, price_of, price_of_mean
 from eigenfield.fitting.solve import Scales
 from eigenfield.format.deep import svt
@@ -101,3 +102,9 @@ def test_nothing_is_measured_where_nothing_is_looked_for(made):
     flat = Model(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
     even = price_of_mean(flat, scales, Rate(STEP, STEP, svt(8), search=True))
     assert even.measured == even.reckoned
+
+
+def test_luma_is_searched_where_cameras_are_many():
+    luma, chroma = KINDS["luma-chroma"]
+    assert luma.rate(0.01).search
+    assert not luma.rate(0.01, few=True).search and not chroma.rate(0.01).search

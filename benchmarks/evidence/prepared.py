@@ -53,6 +53,7 @@ def estimate(capture: Capture, work: Path) -> dict[str, Any]:
     says how, and what it took."""
     work.mkdir(parents=True, exist_ok=True)
     if capture.name == "demo" and not (capture.folder / "proxy.ply").exists():
+        capture.folder.parent.mkdir(parents=True, exist_ok=True)
         draw_demo_capture(capture.folder)
     figures: dict[str, Any] = {"reconstructed": capture.proxy is None}
     if capture.proxy is not None:
