@@ -43,8 +43,9 @@ class Rate:
 
 @dataclass(frozen=True)
 class Price:
-    """Squared error over all pictures that a byte of the mean takes off. reckoned: as encoders weigh bits; measured:
-    from the mean's coding beside its step, `reckoned` where that was not looked at."""
+    """Squared error over all pictures that a byte of the mean takes off: a component is worth its bytes where it takes
+    off more. reckoned: `LAGRANGE` step^2 a bit, times the pixels that a texel of the mean answers for. measured: from
+    the mean's coding beside its step; `reckoned` where that was not looked at."""
 
     reckoned: float
     measured: float
@@ -74,7 +75,7 @@ def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: R
     if rate.search:
         step *= _best_factor(basis, block, scales, step, price)
     coded = code_basis(basis, step, rate.trial or rate.coder)
-    count = _worthwhile(coded, block, scales, price.reckoned).count
+    _, count = _worthwhile(*_effects(coded, block, scales), price.reckoned)
     log.debug("%d of %d components coded, at %.2f of the usual step", count, block.count, step / rate.texture_step)
     ends = list(accumulate((file.count for file in files_of(coded) or ()), initial=0))
     if count == 0 or (count in ends and rate.trial is None):
@@ -91,10 +92,8 @@ def _best_factor(basis: Basis, block: Block, scales: Scales, step: float, price:
     """
 
     def costs(factor: float) -> tuple[float, float]:
-        coded = code_basis(basis, step * factor, QUICK)
-        chosen = (_worthwhile(coded, block, scales, each) for each in (price.reckoned, price.measured))
-        reckoned, measured = (one.cost for one in chosen)
-        return reckoned, measured
+        errors, sizes = _effects(code_basis(basis, step * factor, QUICK), block, scales)
+        return _worthwhile(errors, sizes, price.reckoned)[0], _worthwhile(errors, sizes, price.measured)[0]
 
     usual = costs(1.0)
     for factor in OTHER_STEPS:
@@ -103,26 +102,26 @@ def _best_factor(basis: Basis, block: Block, scales: Scales, step: float, price:
     return 1.0
 
 
-@dataclass(frozen=True)
-class _Choice:
-    """The best number of components, the strongest first. cost: squared error over all cameras, less that of none, and
-    the price of their bytes and their weights'."""
-
-    cost: float
-    count: int
-
-
-def _worthwhile(coded: Basis, block: Block, scales: Scales, price: float) -> _Choice:
+def _effects(coded: Basis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Of each component: squared error over all cameras that it brings, less than 0 where it takes some off, and bytes,
+    its weights' too."""
     share = scales.coarse[block.window]
-    costs: list[float] = []
+    errors: list[float] = []
+    sizes: list[float] = []
     for file in files_of(coded) or ():
-        part = slice(len(costs), len(costs) + file.count)
+        part = slice(len(errors), len(errors) + file.count)
         before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
         more = np.einsum("nchw,nchw,hw->n", after, after - 2 * before, share, dtype=np.float64)  # (b - a)^2 - b^2
-        costs += (more + price * (len(file.data) / file.count + WEIGHT_BYTES * len(block.weights))).tolist()
-    totals = np.cumsum([0.0, *costs])
+        errors += more.tolist()
+        sizes += [len(file.data) / file.count + WEIGHT_BYTES * len(block.weights)] * file.count
+    return np.array(errors), np.array(sizes)
+
+
+def _worthwhile(errors: NDArray[np.float64], sizes: NDArray[np.float64], price: float) -> tuple[float, int]:
+    """Least of what components bring and their bytes cost, the strongest first, and with how many."""
+    totals = np.cumsum([0.0, *(errors + price * sizes)])
     count = int(np.argmin(totals))
-    return _Choice(float(totals[count]), count)
+    return float(totals[count]), count
 
 
 def price_of(mean_step: float) -> float:
