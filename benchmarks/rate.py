@@ -128,16 +128,17 @@ def peer_curve(
     with tempfile.TemporaryDirectory() as folder:
         orders = codecs.orders(field.cameras)
 
-        def point(crf: int, order: Sequence[int]) -> dict[str, Any]:
+        def point(crf: int, name: str) -> dict[str, Any]:
+            order, place = orders[name], Path(folder) / name  # a film of one order is not written over by another's
+            place.mkdir(exist_ok=True)
             film, counted = [photographs[index] for index in order], [covered[index] for index in order]
-            names = [field.names[index] for index in order]
-            return codecs.measure_video(codec, crf, film, names, counted, Path(folder))
+            return codecs.measure_video(codec, crf, film, [field.names[index] for index in order], counted, place)
 
-        tried = {name: point(CRF[len(CRF) // 2], order) for name, order in orders.items()}
+        tried = {name: point(CRF[len(CRF) // 2], name) for name in orders}
         best = max(tried, key=lambda name: tried[name]["psnr_luma"] - DOUBLING * np.log2(tried[name]["bytes"]))
-        points = [tried[best] if crf == CRF[len(CRF) // 2] else point(crf, orders[best]) for crf in CRF]
+        points = [tried[best] if crf == CRF[len(CRF) // 2] else point(crf, best) for crf in CRF]
         for one in points:
-            film = Path(folder) / f"{codec.name}-{one['parameter']}.{codec.container}"
+            film = Path(folder) / best / f"{codec.name}-{one['parameter']}.{codec.container}"
             at = orders[best].index(shown_view(ready))
             picture = codecs.access(film, codec, at, photographs[shown_view(ready)].shape[:2])[1]
             one["shown"] = pictures.write_exact(picture, ready.work / f"{codec.name}-{one['parameter']}.webp").name

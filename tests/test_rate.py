@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 import pytest
 from captures import write_capture
-from evidence import codecs, pictures
+from evidence import codecs, pictures, prepared
 from evidence.captures import Capture
 
 import rate
@@ -71,6 +71,33 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     assert [point["preset"] for point in found["best"]["points"]] == ["best"]
     assert (tmp_path / "work" / "best-70.glb").exists() and "| `nine`, `best` | 70 |" in text
     assert "| `nine` | 90 |" in text and film["order"] in text
+
+
+def test_the_view_that_is_shown_is_of_the_film_in_the_chosen_order(tmp_path, monkeypatch):
+    folder = write_capture(tmp_path / "nine")
+    capture, work = Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work"
+    prepared.estimate(capture, work)
+    ready = prepared.prepare(capture, work)
+    views = range(len(ready.light_field))
+    photographs = [prepared.codes(ready.light_field, index) for index in views]
+    covered = [np.ones(one.shape[:2], np.bool_) for one in photographs]
+    backwards = [*views][::-1]  # tried last
+    monkeypatch.setattr(codecs, "orders", lambda _: {"given": [*views], "backwards": backwards})
+    monkeypatch.setattr(rate, "DOUBLING", 0.0)
+    monkeypatch.setattr(rate, "CRF", (20, 30, 40))
+    measured = codecs.measure_video
+
+    def worse_backwards(codec, crf, film, names, counted, place):
+        found = measured(codec, crf, film, names, counted, place)
+        return {**found, "psnr_luma": found["psnr_luma"] - 50 * (names[0] != ready.light_field.names[0])}
+
+    monkeypatch.setattr(codecs, "measure_video", worse_backwards)
+    found = rate.peer_curve(codecs.VIDEO[1], ready, photographs, covered)
+    assert found["order"] == "given" and len(found["points"]) == 3
+    for point in found["points"]:
+        shown = pictures.read(work / point["shown"])
+        errors = [float(np.square(shown.astype(float) - one).mean()) for one in photographs]
+        assert int(np.argmin(errors)) == rate.shown_view(ready)
 
 
 def test_crops_are_taken_where_the_surface_covers():
