@@ -10,8 +10,8 @@ import numpy as np
 from PIL import Image
 
 import eigenfield as ef
-from eigenfield.metrics import ssim, to_codes
-from eigenfield.texturing import make_atlas, texture_map
+from eigenfield.encoding.projected import make_atlas, texture_map
+from eigenfield.imaging.metrics import ssim, to_codes
 
 SAMPLE = 12  # maps, evenly spread; their bytes are scaled up
 

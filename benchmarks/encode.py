@@ -47,9 +47,8 @@ def principal_components() -> None:
     from sklearn.decomposition import PCA
 
     from eigenfield import open_capture
-    from eigenfield.basis import mean_map
+    from eigenfield.encoding.projected import make_atlas, mean_map, texture_maps
     from eigenfield.proxy import prepare_proxy
-    from eigenfield.texturing import make_atlas, texture_maps
 
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")
     cameras = [view.camera for view in capture.views]
@@ -70,7 +69,7 @@ def video() -> None:
     import numpy as np
 
     from eigenfield import open_capture
-    from eigenfield.parallel import ordinary_scheduling
+    from eigenfield.runtime.parallel import ordinary_scheduling
 
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")
     order = [17 * row + (column if row % 2 == 0 else 16 - column) for row in range(17) for column in range(17)]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+
 from measure import runs
 
 Captures = dict[str, dict[str, Any]]

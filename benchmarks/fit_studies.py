@@ -19,21 +19,24 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-import measure
 import numpy as np
-from evidence import captures, ours, prepared, rates
-from evidence.prepared import Prepared
-from evidence.runner import kept
 from numpy.typing import NDArray
 
 import eigenfield as ef
-from eigenfield import LightField, draft
-from eigenfield.fitting import fit, planes, rate
-from eigenfield.format.geometry import coded_mesh
-from eigenfield.metrics import to_codes
-from eigenfield.parallel import parallel_map
-from eigenfield.pipeline import Options, open_fitted
-from eigenfield.rendering import Renderer, camera_weights, drawing
+import measure
+from eigenfield import LightField
+from eigenfield.encoding import plan as draft
+from eigenfield.encoding.encode import Options, open_fitted
+from eigenfield.encoding.fitted import fit, planes, rate
+from eigenfield.encoding.geometry.coded import coded_mesh
+from eigenfield.gltf import save
+from eigenfield.imaging.metrics import to_codes
+from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering.software import drawing
+from eigenfield.runtime.parallel import parallel_map
+from evidence import captures, ours, prepared, rates
+from evidence.prepared import Prepared
+from evidence.runner import kept
 
 QUALITIES = (80, 88, 94)
 NO_OPTIONS = Options()
@@ -180,7 +183,7 @@ def of_lever(
             with lever.coding():
                 scene = coded(quality)
             path = ready.work / f"{name}-{quality}.glb"
-            scene.save(path, overwrite=True)
+            save(scene, path, overwrite=True)
             figures = drawn_figures(path, photographs, covered(), field.names, lever.filter)
             points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
     uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
@@ -216,7 +219,7 @@ def held_out(ready: Prepared) -> dict[str, Any]:
     with open_fitted(ready.light_field, ready.mesh, Options(hold_out=ready.hold_out), work=ready.work) as coded:
         for quality in QUALITIES:
             path = ready.work / f"held-{quality}.glb"
-            coded(quality).save(path, overwrite=True)
+            save(coded(quality), path, overwrite=True)
             scene = ef.load(path)
             figures = ef.evaluate(scene, ready.light_field, path=path, circles=ready.circles(), png_maps="none")
             image = figures["image"]

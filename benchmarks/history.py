@@ -11,10 +11,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import measure
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
+
+import measure
 
 Series = tuple[str, str, str]  # label, name of the result, path of the figure in a run
 Run = dict[str, Any]

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from matplotlib.figure import Figure
+
 from measure import latest
 
 PICTURE = Path(__file__).parents[1] / "docs" / "frames.png"

@@ -8,9 +8,9 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import measure
 import numpy as np
 
+import measure
 from eigenfield.calibrate import align_similarity, calibration_error
 from eigenfield.capture import open_capture
 

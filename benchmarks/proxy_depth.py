@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.photographs import decode
+from eigenfield.capture.photographs.read import decode
 from eigenfield.stereo import depth_range, estimate_depth
 
 BORDER = 15  # pixels that the HCI benchmark leaves out on every side

@@ -17,14 +17,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import measure
 import numpy as np
-from avif_maps import maps_at_equal_ssim
 
 import eigenfield as ef
+import measure
+from avif_maps import maps_at_equal_ssim
+from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
 from eigenfield.evaluation import read_circles
-from eigenfield.viewplane import find_grid, fit_view_plane
 
 
 def data() -> Path:

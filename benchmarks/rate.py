@@ -22,19 +22,19 @@ from pathlib import Path
 from typing import Any
 
 import cv2
-import measure
 import numpy as np
+from numpy.typing import NDArray
+
+import eigenfield as ef
+import measure
+from eigenfield.encoding.encode import Options
+from eigenfield.evaluation.session import evenly
+from eigenfield.rendering import Renderer
+from eigenfield.runtime.parallel import parallel_map
 from evidence import captures, codecs, colour, ours, pictures, prepared, rates
 from evidence.codecs import VideoCodec
 from evidence.prepared import Prepared
 from evidence.runner import kept
-from numpy.typing import NDArray
-
-import eigenfield as ef
-from eigenfield.evaluation.session import evenly
-from eigenfield.parallel import parallel_map
-from eigenfield.pipeline import Options
-from eigenfield.rendering import Renderer
 
 CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
 PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")

@@ -17,19 +17,19 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-import measure
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.jit import kernel
-from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_map, pieces, threads
+import measure
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
-from eigenfield.rendering.kernels import TILE
-from eigenfield.rendering.tiles import compose, empty_layers, tile
-from eigenfield.scene import Basis, Plane, Scene
-from eigenfield.viewplane import fit_view_plane
+from eigenfield.rendering.software.kernels import TILE
+from eigenfield.rendering.software.tiles import compose, empty_layers, tile
+from eigenfield.runtime.jit import kernel
+from eigenfield.runtime.parallel import parallel_map, pieces, threads
 
 SIDE, WIDTH, HEIGHT = 1024, 1024, 768
 COUNTS = (1, 7, 15, 40, 100)

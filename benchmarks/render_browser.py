@@ -21,13 +21,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-import measure
 import numpy as np
 from PIL import Image
-from render import SIDE, array, relief, scene_of
 
-from eigenfield.format import parts, save
-from eigenfield.scene import Plane
+import measure
+from eigenfield.core.scene import Plane
+from eigenfield.gltf import parts, save
+from render import SIDE, array, relief, scene_of
 
 ROOT = Path(__file__).parents[1]
 COUNTS = (1, 7, 15, 40, 100)

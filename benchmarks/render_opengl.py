@@ -15,14 +15,14 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-import measure
 import numpy as np
-from render import COUNTS, SIDE, array, relief, scene_of
 
-from eigenfield.camera import Camera
+import measure
+from eigenfield.core.camera import Camera
+from eigenfield.core.scene import Scene
 from eigenfield.rendering import OpenGLRenderer, novel_camera, view_weights
-from eigenfield.rendering.opengl import FILTERS, make_context
-from eigenfield.scene import Scene
+from eigenfield.rendering.opengl.renderer import FILTERS, make_context
+from render import COUNTS, SIDE, array, relief, scene_of
 
 MONO, EYE = (1920, 1080), (1832, 1920)
 SECONDS, FEWEST, MOST = 2.0, 3, 240  # measured of each, and frames

@@ -10,10 +10,9 @@ from pathlib import Path
 from typing import Any
 
 import evaluation_tables
+import rate_tables
 from evaluation_tables import table
 from measure import latest, runs
-
-import rate_tables
 
 README = Path(__file__).parents[1] / "README.md"
 CAPTURES = ("tarot", "tarot-5x4", "cube", "demo")

@@ -8,8 +8,6 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).parent))
-
 
 @pytest.fixture(scope="session")
 def data() -> Path:
@@ -23,10 +21,9 @@ def data() -> Path:
 @pytest.fixture(scope="session")
 def good() -> dict[str, bytes]:
     """A scene file of each codec, with everything in it."""
-    from glb_surgery import CODECS
-    from scenes import tiny_scene
-
-    from eigenfield.format import encode_scene
+    from eigenfield.gltf import encode_scene
+    from support.glb_surgery import CODECS
+    from support.scenes import tiny_scene
 
     scene = tiny_scene(3, 3, cameras=6, held_out=(1,))
     return {codec: encode_scene(scene, codec=codec) for codec in CODECS}
@@ -35,9 +32,8 @@ def good() -> dict[str, bytes]:
 @pytest.fixture(scope="session")
 def fitted(tmp_path_factory) -> tuple[Path, Path]:
     """A folder of nine photographs and their proxy, and the file that they were fitted to."""
-    from captures import write_capture
-
     from eigenfield.cli import main
+    from support.captures import write_capture
 
     folder = write_capture(tmp_path_factory.mktemp("fit") / "nine")
     output = folder.parent / "fitted.glb"
@@ -52,8 +48,8 @@ def fitted(tmp_path_factory) -> tuple[Path, Path]:
 def context():
     """An OpenGL context; tests that need it are skipped where there is none."""
     pytest.importorskip("moderngl", reason="needs moderngl: pip install 'eigenfield[gpu]'")
-    from eigenfield.errors import OptionError
-    from eigenfield.rendering import opengl
+    from eigenfield.core.errors import OptionError
+    from eigenfield.rendering.opengl import renderer as opengl
 
     try:
         made = opengl.make_context()

@@ -59,7 +59,7 @@ def free_view(scene, camera):
     Equation 7 for each point of the surface: the ray from it to the camera meets the view plane at X, Y, and the
     Delaunay weights there are that point's own.
     """
-    from eigenfield.raster import rasterise_view
+    from eigenfield.imaging.raster import rasterise_view
     from eigenfield.rendering import view_weights
 
     face = rasterise_view(scene.mesh, camera).face

@@ -10,9 +10,10 @@ import urllib.request
 from datetime import datetime
 from pathlib import Path
 
-import measure
 import pytest
-from captures import write_array, write_capture
+
+import measure
+from support.captures import write_array, write_capture
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.evaluation import read_circles
-from eigenfield.format import parts
+from eigenfield.gltf import parts
 
 pytestmark = pytest.mark.slow
 

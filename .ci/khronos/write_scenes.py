@@ -8,8 +8,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
-from coded_scenes import coded_scene
-from scenes import bumpy_square, tiny_scene
+from eigenfield.gltf import save
+from support.coded_scenes import coded_scene
+from support.scenes import bumpy_square, tiny_scene
 
 SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
@@ -20,11 +21,11 @@ def main(folder: Path) -> None:
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
             scene = tiny_scene(channels, textures, cameras=6, held_out=(1,))
-            scene.save(folder / f"{codec}-{channels}-{textures}.glb", codec=codec, overwrite=True)
+            save(scene, folder / f"{codec}-{channels}-{textures}.glb", codec=codec, overwrite=True)
     large = replace(tiny_scene(), mesh=bumpy_square(256))
-    large.save(folder / "large.glb", codec="png", overwrite=True)
-    tiny_scene(cameras=2).save(folder / "line.glb", overwrite=True)
-    coded_scene().save(folder / "coded.glb", overwrite=True)
+    save(large, folder / "large.glb", codec="png", overwrite=True)
+    save(tiny_scene(cameras=2), folder / "line.glb", overwrite=True)
+    save(coded_scene(), folder / "coded.glb", overwrite=True)
 
 
 if __name__ == "__main__":

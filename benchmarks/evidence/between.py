@@ -12,19 +12,19 @@ from typing import Any
 
 import cv2
 import numpy as np
-from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
-from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.capture import LightField
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
+from eigenfield.core.scene import Scene
 from eigenfield.evaluation import Circle, match_photographs
 from eigenfield.evaluation.image import Figures, measure_picture, summary
-from eigenfield.format import parts
-from eigenfield.metrics import psnr, to_codes
+from eigenfield.gltf import parts
+from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
-from eigenfield.scene import Scene
+from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
+from evidence.spread import spread_over_array
 
 AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
 TITLES = {

@@ -20,13 +20,13 @@ from typing import Any, Literal
 
 import av
 import numpy as np
-from evidence import rates
-from evidence.colour import Chroma, Picture, Planes, even, pad, to_planes, to_rgb
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.parallel import ordinary_scheduling
-from eigenfield.viewplane import find_grid, fit_view_plane
+from eigenfield.core.camera import Camera
+from eigenfield.core.viewplane import find_grid, fit_view_plane
+from eigenfield.runtime.parallel import ordinary_scheduling
+from evidence import rates
+from evidence.colour import Chroma, Picture, Planes, even, pad, to_planes, to_rgb
 
 RATE = 25  # frames a second: means nothing here, but a film has one
 FOREVER = 99999  # frames between key frames

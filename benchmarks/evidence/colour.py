@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.metrics import LUMA
+from eigenfield.imaging.metrics import LUMA
 
 Chroma = Literal["420", "444"]
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]

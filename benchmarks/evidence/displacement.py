@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.metrics import LUMA, to_codes
+from eigenfield.imaging.metrics import LUMA, to_codes
 
 LIMIT = 2.0  # pixels that a displacement may have
 MEDIAN, SMOOTH = 5, 2.0  # side of the median window, σ of the Gaussian after it: what is one pixel's own is no shift

@@ -11,22 +11,23 @@ from typing import Any
 
 import cv2
 import numpy as np
-from evidence.displacement import LIMIT, displacement, moved_back
-from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
+from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
+from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.encoding.projected import SIDE_CAP, Atlas, Spreader, make_atlas, make_spreader
 from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
-from eigenfield.format.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
-from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, to_codes
+from eigenfield.gltf import save
+from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, to_codes
 from eigenfield.rendering import camera_colour, draw_texture
-from eigenfield.rendering.colours import undo_colour
-from eigenfield.rendering.drawing import make_surface, median_footprint
-from eigenfield.scene import Basis, Plane, Scene
-from eigenfield.texturing import SIDE_CAP, Atlas, Spreader, make_atlas, make_spreader
+from eigenfield.rendering.exposure import undo_colour
+from eigenfield.rendering.software.drawing import make_surface, median_footprint
+from evidence.displacement import LIMIT, displacement, moved_back
+from evidence.spread import spread_over_array
 
 SAMPLE = 25  # cameras
 ROOM = 1.5e9  # bytes of textures as float32 up to which a loss is also switched off alone
@@ -311,7 +312,7 @@ def _alone(
             continue
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "scene.glb"
-            encode_again(scene, capture, **options).save(path, codec=codec, quality=quality)  # type: ignore[arg-type]
+            save(encode_again(scene, capture, **options), path, codec=codec, quality=quality)  # type: ignore[arg-type]
             figures = views.measure(_draw(start_session(ef.load(path), capture), list(views.photographs)))
             rows.append({**row, **_gained(rungs["file"], figures), "bytes": path.stat().st_size})
     return rows

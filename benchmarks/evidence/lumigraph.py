@@ -12,16 +12,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from evidence.lumigraph_kernels import blend_views
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.mesh import Mesh
-from eigenfield.metrics import to_codes
-from eigenfield.parallel import parallel_map, pieces
-from eigenfield.raster import rasterise_view
-from eigenfield.texturing import push_pull
-from eigenfield.texturing.project import DEPTH_BIAS
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.encoding.projected import push_pull
+from eigenfield.encoding.projected.project import DEPTH_BIAS
+from eigenfield.imaging.metrics import to_codes
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.runtime.parallel import parallel_map, pieces
+from evidence.lumigraph_kernels import blend_views
 
 BLENDED = 4  # photographs a pixel
 FEATHER = 1 / 32  # of the frame's shorter side: where a photograph fades towards its border

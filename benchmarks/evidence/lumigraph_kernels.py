@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 
 TINY = 1e-12  # radians: below this an angle is none
 RIM = 1e-3  # pixels: nearest a frame's border that a penalty is taken at

@@ -8,18 +8,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from evidence import rates
-from evidence.codecs import evict
-from evidence.prepared import Prepared, drawn
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.draft import DEFAULT_PRESET
-from eigenfield.format import parts
-from eigenfield.parallel import parallel_stream
-from eigenfield.pipeline import Options, open_fitted
+from eigenfield.encoding.encode import Options, open_fitted
+from eigenfield.encoding.plan import DEFAULT_PRESET
+from eigenfield.gltf import parts, save
 from eigenfield.rendering import Renderer
+from eigenfield.runtime.parallel import parallel_stream
+from evidence import rates
+from evidence.codecs import evict
+from evidence.prepared import Prepared, drawn
 
 Fit = tuple[Options, Sequence[int]]  # and the qualities at which it is coded, the same for all captures
 
@@ -64,7 +64,7 @@ def fitted(
                 started = time.perf_counter()
                 scene = coded(quality)
                 path = ready.work / f"{stem}-{quality}.glb"
-                scene.save(path, overwrite=True)
+                save(scene, path, overwrite=True)
                 seconds = time.perf_counter() - started
                 covered = covered or covered_pixels(path, order, light_field)
                 points.append(
@@ -102,7 +102,7 @@ def paper(
         path = ready.work / f"rate-{density:g}-{triangles}-{textures}-{quality}.glb"
         started = time.perf_counter()
         scene = ef.encode(light_field, ready.mesh, textures=textures, density=density, triangles=triangles, fit="none")
-        scene.save(path, quality=quality, overwrite=True)
+        save(scene, path, quality=quality, overwrite=True)
         seconds = time.perf_counter() - started
         points.append(
             {

@@ -6,17 +6,17 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import render
-from evidence.pictures import figure6
-from evidence.prepared import Prepared, first_textures
 
 import eigenfield as ef
+import render
+from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, texture_codes
+from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, evenly, start_session
 from eigenfield.evaluation.uv import MapFigures, measure_map, png_size
-from eigenfield.format import encode_scene
-from eigenfield.format.quantise import basis_scale, mean_codes, texture_codes
-from eigenfield.parallel import parallel_map
-from eigenfield.scene import Scene
+from eigenfield.gltf import encode_scene
+from eigenfield.runtime.parallel import parallel_map
+from evidence.pictures import figure6
+from evidence.prepared import Prepared, first_textures
 
 COUNTS = (0, 1, 2, 3, 5, 7, 10, 15, 20, 25, 30, 40)  # the paper draws up to 40
 QUICK_COUNTS = (0, 3, 7, 15)

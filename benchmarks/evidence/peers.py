@@ -12,18 +12,18 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from evidence import codecs, colour, ours, pictures, rates, stills
-from evidence.code import meaning
-from evidence.codecs import VideoCodec
-from evidence.prepared import Prepared, as_json, codes, drawn, every, grid_of
-from evidence.stills import StillCodec
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.evaluation.session import evenly
-from eigenfield.parallel import parallel_map
 from eigenfield.rendering import Renderer
+from eigenfield.runtime.parallel import parallel_map
+from evidence import codecs, colour, ours, pictures, rates, stills
+from evidence.code import meaning
+from evidence.codecs import VideoCodec
+from evidence.prepared import Prepared, as_json, codes, drawn, every, grid_of
+from evidence.stills import StillCodec
 
 QUICK = ("svt-av1-2", "svt-av1-6")
 SHOWN = "svt-av1-2"  # whose middle view is kept, for the crops

@@ -7,17 +7,17 @@ from typing import Any
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.scene import Scene
+from eigenfield.evaluation.session import start_session
+from eigenfield.imaging.metrics import psnr, to_codes
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.rendering import Renderer
 from evidence.between import TITLES, Peers, Stage, ways_of
 from evidence.losses import own_maps
 from evidence.prepared import Prepared, codes, drawn
-from numpy.typing import NDArray
-
-from eigenfield.evaluation.session import start_session
-from eigenfield.mesh import Mesh
-from eigenfield.metrics import psnr, to_codes
-from eigenfield.raster import rasterise_view
-from eigenfield.rendering import Renderer
-from eigenfield.scene import Scene
 
 Picture = NDArray[np.uint8]
 

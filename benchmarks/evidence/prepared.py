@@ -8,21 +8,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import measure
 import numpy as np
-from evidence.captures import Capture
 from numpy.typing import NDArray
 
 import eigenfield as ef
+import measure
 from eigenfield.capture import LightField
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.scene import Scene
+from eigenfield.core.viewplane import Grid, find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
 from eigenfield.evaluation import Circle, read_circles
-from eigenfield.mesh import Mesh
-from eigenfield.metrics import to_codes
+from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
 from eigenfield.rendering import Renderer, camera_weights
-from eigenfield.scene import Scene
-from eigenfield.viewplane import Grid, find_grid, fit_view_plane
+from evidence.captures import Capture
 
 
 @dataclass(frozen=True, eq=False)

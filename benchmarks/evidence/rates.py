@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from eigenfield.evaluation.image import Figures, measure_picture, summary
-from eigenfield.parallel import parallel_stream
+from eigenfield.runtime.parallel import parallel_stream
 
 Point = Mapping[str, Any]
 

@@ -16,12 +16,11 @@ from pathlib import Path
 from typing import Any
 
 import measure
+from eigenfield.core.errors import EigenfieldError
 from evidence.captures import Capture
 from evidence.code import meaning
 from evidence.prepared import as_json, estimate, prepare
 from evidence.steps import STEPS, wanted
-
-from eigenfield.errors import EigenfieldError
 
 BENCHMARKS = Path(__file__).parents[1]
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from eigenfield.scene import Scene
+from eigenfield.core.scene import Scene
 
 
 def spread_over_array(scene: Scene, indices: Sequence[int], count: int) -> list[int]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import eigenfield as ef
 from evidence import pictures
 from evidence.between import between, start
 from evidence.captures import Capture
@@ -16,8 +17,6 @@ from evidence.prepared import Prepared
 from evidence.studies import studies
 from evidence.truth import true_geometry
 from evidence.whole import whole
-
-import eigenfield as ef
 
 SAMPLE = 25  # held-out cameras that are drawn in every way
 

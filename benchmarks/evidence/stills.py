@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from evidence import rates
-from evidence.codecs import evict
-from evidence.colour import Picture
 from numpy.typing import NDArray
 from PIL import Image, features
 
-from eigenfield.parallel import parallel_map, parallel_stream
+from eigenfield.runtime.parallel import parallel_map, parallel_stream
+from evidence import rates
+from evidence.codecs import evict
+from evidence.colour import Picture
 
 
 @dataclass(frozen=True)

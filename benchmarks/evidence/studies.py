@@ -6,20 +6,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from evidence.between import weights_study
-from evidence.prepared import Prepared, codes, grid_of
-from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.format import encode_scene
-from eigenfield.format.write import QUALITY
-from eigenfield.metrics import psnr, ssim
-from eigenfield.parallel import parallel_map
-from eigenfield.pipeline import DEFAULT_DENSITY
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.encode import DEFAULT_DENSITY
+from eigenfield.gltf import encode_scene
+from eigenfield.gltf.write import QUALITY
+from eigenfield.imaging.metrics import psnr, ssim
 from eigenfield.rendering import Renderer, camera_weights
-from eigenfield.scene import Scene
+from eigenfield.runtime.parallel import parallel_map
+from evidence.between import weights_study
+from evidence.prepared import Prepared, codes, grid_of
+from evidence.spread import spread_over_array
 
 DENSITIES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 QUALITIES = (25, 40, 55, 70, 85)

@@ -7,16 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from evidence.losses import Pictures, Views, shifts
-from evidence.prepared import every
-from evidence.spread import spread_over_array
 from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
+from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
-from eigenfield.metrics import to_codes
-from eigenfield.scene import Scene
+from eigenfield.imaging.metrics import to_codes
+from evidence.losses import Pictures, Views, shifts
+from evidence.prepared import every
+from evidence.spread import spread_over_array
 
 SAMPLE = 16  # cameras of each kind
 WORDS = (

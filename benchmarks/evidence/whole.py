@@ -6,11 +6,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import measure
-from evidence.prepared import Prepared
-
 import eigenfield as ef
-from eigenfield.format import parts
+import measure
+from eigenfield.gltf import parts
+from evidence.prepared import Prepared
 
 
 def whole(prepared: Prepared) -> dict[str, Any]:

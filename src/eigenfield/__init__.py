@@ -4,7 +4,7 @@
 
     made = ef.reconstruct(ef.open_any("photos/"))
     scene = ef.encode(made.light_field, made.mesh)
-    scene.save("scene.glb")
+    ef.save(scene, "scene.glb")
     picture = ef.render(ef.load("scene.glb"), at=(0.3, -0.2))
 
 Everything is loaded when it is first used.
@@ -15,57 +15,60 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING, Any
 
-__version__ = "0.1.0"
+from eigenfield.core import notebook as _notebook
+from eigenfield.core.version import __version__
 
 if TYPE_CHECKING:
-    from eigenfield.camera import Camera as Camera
     from eigenfield.capture import LightField as LightField
     from eigenfield.capture import PhotoSet as PhotoSet
     from eigenfield.capture import open_any as open_any
     from eigenfield.capture import open_capture as open_capture
     from eigenfield.capture import open_photographs as open_photographs
-    from eigenfield.errors import CaptureError as CaptureError
-    from eigenfield.errors import EigenfieldError as EigenfieldError
-    from eigenfield.errors import FormatError as FormatError
-    from eigenfield.errors import OptionError as OptionError
-    from eigenfield.errors import OutputError as OutputError
-    from eigenfield.errors import ProxyError as ProxyError
+    from eigenfield.core.camera import Camera as Camera
+    from eigenfield.core.errors import CaptureError as CaptureError
+    from eigenfield.core.errors import EigenfieldError as EigenfieldError
+    from eigenfield.core.errors import FormatError as FormatError
+    from eigenfield.core.errors import OptionError as OptionError
+    from eigenfield.core.errors import OutputError as OutputError
+    from eigenfield.core.errors import ProxyError as ProxyError
+    from eigenfield.core.mesh import Mesh as Mesh
+    from eigenfield.core.progress import Progress as Progress
+    from eigenfield.core.scene import Scene as Scene
+    from eigenfield.encoding.encode import Target as Target
+    from eigenfield.encoding.encode import encode as encode
     from eigenfield.evaluation import evaluate as evaluate
-    from eigenfield.format import load as load
-    from eigenfield.mesh import Mesh as Mesh
-    from eigenfield.parallel import set_threads as set_threads
-    from eigenfield.pipeline import Target as Target
-    from eigenfield.pipeline import encode as encode
-    from eigenfield.progress import Progress as Progress
+    from eigenfield.gltf import load as load
+    from eigenfield.gltf import save as save
     from eigenfield.reconstruction import Reconstruction as Reconstruction
     from eigenfield.reconstruction import reconstruct as reconstruct
     from eigenfield.rendering import render as render
-    from eigenfield.scene import Scene as Scene
+    from eigenfield.runtime.parallel import set_threads as set_threads
 
 _HOME = {
-    "Camera": "camera",
-    "CaptureError": "errors",
-    "EigenfieldError": "errors",
-    "FormatError": "errors",
+    "Camera": "core.camera",
+    "CaptureError": "core.errors",
+    "EigenfieldError": "core.errors",
+    "FormatError": "core.errors",
     "LightField": "capture",
-    "Mesh": "mesh",
-    "OptionError": "errors",
-    "OutputError": "errors",
+    "Mesh": "core.mesh",
+    "OptionError": "core.errors",
+    "OutputError": "core.errors",
     "PhotoSet": "capture",
-    "Progress": "progress",
-    "ProxyError": "errors",
+    "Progress": "core.progress",
+    "ProxyError": "core.errors",
     "Reconstruction": "reconstruction",
-    "Scene": "scene",
-    "Target": "pipeline",
-    "encode": "pipeline",
+    "Scene": "core.scene",
+    "Target": "encoding.encode",
+    "encode": "encoding.encode",
     "evaluate": "evaluation",
-    "load": "format",
+    "load": "gltf",
     "open_any": "capture",
     "open_capture": "capture",
     "open_photographs": "capture",
     "reconstruct": "reconstruction",
     "render": "rendering",
-    "set_threads": "parallel",
+    "save": "gltf",
+    "set_threads": "runtime.parallel",
 }
 __all__ = ["__version__", *_HOME]
 
@@ -76,6 +79,14 @@ def __getattr__(name: str) -> Any:
     value = getattr(importlib.import_module(f"eigenfield.{_HOME[name]}"), name)
     globals()[name] = value
     return value
+
+
+def _show(scene: Any) -> str:
+    shown: str = importlib.import_module("eigenfield.viewer").scene_html(scene)
+    return shown
+
+
+_notebook.show = _show
 
 
 def __dir__() -> list[str]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import pytest
-from captures import write_capture
-from http_client import Client, write_build
 
 from eigenfield.capture import open_capture
 from eigenfield.evaluation import match_photographs
-from eigenfield.format import file_bytes, outline
+from eigenfield.gltf import file_bytes, outline, save
 from eigenfield.viewer import Photographs, Server, make_manifest, page, server
+from support.captures import write_capture
+from support.http_client import Client, write_build
 
 
 @pytest.fixture(scope="session")
@@ -22,7 +22,7 @@ def scene(capture, tmp_path_factory):
     from eigenfield import encode
 
     path = tmp_path_factory.mktemp("scene") / "scene.glb"
-    encode(open_capture(capture), capture / "proxy.ply", textures=3, atlas=64, hold_out="view_04.png").save(path)
+    save(encode(open_capture(capture), capture / "proxy.ply", textures=3, atlas=64, hold_out="view_04.png"), path)
     return path
 
 

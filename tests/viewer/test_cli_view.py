@@ -11,16 +11,16 @@ import sys
 
 import numpy as np
 import pytest
-from captures import write_capture
-from http_client import Client, until
 from PIL import Image
-from viewer_scenes import glb_parts, join_glb
 
 from eigenfield.capture import open_capture
-from eigenfield.errors import CaptureError
+from eigenfield.core.errors import CaptureError
 from eigenfield.evaluation import match_photographs
-from eigenfield.format import file_bytes, outline
+from eigenfield.gltf import file_bytes, outline
 from eigenfield.viewer import Photographs, Server, make_manifest, page, photographs
+from support.captures import write_capture
+from support.http_client import Client, until
+from support.viewer_scenes import glb_parts, join_glb
 
 
 def test_a_damaged_photograph_is_one_line_and_the_server_lives(scene, tmp_path, caplog):
@@ -76,7 +76,7 @@ def test_masks_are_left_alone(scene, capture, tmp_path):
 
 
 def test_photographs_of_another_size_are_refused(scene, tmp_path):
-    from scenes import row_grid
+    from support.scenes import row_grid
 
     loaded, opened = outline(scene), open_capture(write_capture(tmp_path / "capture", row_grid(9, 32, 28)))
     with pytest.raises(CaptureError) as caught:

@@ -14,7 +14,7 @@ let folder, names, decoders;
 
 before(async () => {
   folder = await mkdtemp(join(tmpdir(), "eigenfield-coding-"));
-  python(path("../../tests/coded_vectors.py"), folder);
+  python("-m", "support.coded_vectors", folder);
   names = (await readdir(folder)).filter((name) => name.endsWith(".bin")).map((name) => name.slice(0, -4));
   await build({
     configFile: false,

@@ -4,6 +4,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
+import { fileURLToPath } from "node:url";
 
 const PYTHON = process.env.EIGENFIELD_PYTHON ?? "python3";
 
@@ -11,7 +12,8 @@ const PYTHON = process.env.EIGENFIELD_PYTHON ?? "python3";
 export const eigenfield = (...args) => python("-m", "eigenfield", ...args);
 
 export function python(...args) {
-  return execFileSync(PYTHON, args, { encoding: "utf8", stdio: ["ignore", "pipe", "inherit"] });
+  const env = { ...process.env, PYTHONPATH: fileURLToPath(new URL("../../tests", import.meta.url)) };
+  return execFileSync(PYTHON, args, { encoding: "utf8", env, stdio: ["ignore", "pipe", "inherit"] });
 }
 
 /** Starts `eigenfield view`. Returns its address and `stop`: Ctrl-C, then the exit code. */

@@ -37,7 +37,7 @@ const TYPES = {
 /** A file of the test scenes' folder. */
 export function scenePath(name) {
   const folder = process.env.EIGENFIELD_SCENES;
-  assert.ok(folder, "EIGENFIELD_SCENES must name the folder that tests/test_viewer_browser.py makes");
+  assert.ok(folder, "EIGENFIELD_SCENES must name the folder that tests/viewer/test_browser.py makes");
   return join(folder, name);
 }
 

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.camera import Camera
 from eigenfield.capture.lightfield import LightField
-from eigenfield.errors import CaptureError
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
 
 F64 = NDArray[np.float64]
 

@@ -8,16 +8,16 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from eigenfield.calibrate.lenses import KnownLens
-from eigenfield.camera import Camera
 from eigenfield.capture.arrangement import Wanted
 from eigenfield.capture.calibration import Intrinsics, printable
-from eigenfield.capture.filestorage import is_storage
 from eigenfield.capture.formats import FORMATS, claim_of_file, detect
-from eigenfield.capture.lens import Lens
-from eigenfield.capture.opencv import read_opencv_intrinsics
 from eigenfield.capture.pairing import is_same_picture, scaled_camera
+from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
-from eigenfield.errors import CaptureError
+from eigenfield.capture.readers.filestorage import is_storage
+from eigenfield.capture.readers.opencv import read_opencv_intrinsics
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
 
 Described = tuple[Intrinsics, Lens | None]
 MATRIX_LIMIT = 4096  # bytes of a text with nothing but a camera matrix

@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.lens import Lens
+from eigenfield.capture.photographs.lens import Lens
 
 F64 = NDArray[np.float64]
 

@@ -11,11 +11,13 @@
 from __future__ import annotations
 
 from eigenfield.capture.formats import FORMATS, Format
-from eigenfield.capture.lens import Lens
-from eigenfield.capture.lightfield import LightField, Photograph, View
+from eigenfield.capture.layout import Layout
+from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.opening import open_any, open_capture, open_photographs
-from eigenfield.capture.photographs import Header, read_header
-from eigenfield.capture.photoset import Layout, PhotoSet, Shot
+from eigenfield.capture.photographs.decoded import Photograph
+from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.photographs.read import Header, read_header
+from eigenfield.capture.photoset import PhotoSet, Shot
 
 __all__ = [
     "FORMATS",

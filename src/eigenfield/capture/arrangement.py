@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, printable
+from eigenfield.capture.layout import Layout
 from eigenfield.capture.locate import photographs_in
-from eigenfield.capture.photoset import Layout
-from eigenfield.capture.wording import count, natural, some
-from eigenfield.errors import CaptureError
+from eigenfield.capture.messages import count, natural, some
+from eigenfield.core.errors import CaptureError
 
 FEWEST_NAMED = 3  # photographs that must bear a format's names
 SHARE = 0.5  # of a folder's photographs, likewise

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.capture.lens import Lens
-from eigenfield.errors import CaptureError
+from eigenfield.capture.photographs.lens import Lens
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
 
 LARGEST = 1e30  # of focal lengths and positions: products of two of them stay finite, and a file keeps float32
 

@@ -6,25 +6,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from eigenfield.capture import colmap, transforms
 from eigenfield.capture.arrangement import Arrangement, Wanted
-from eigenfield.capture.bundler import find_bundler, read_bundler
 from eigenfield.capture.calibration import Calibration, printable
-from eigenfield.capture.folder import find_photographs, read_photographs
-from eigenfield.capture.gridnames import find_grid_names, read_grid_names
-from eigenfield.capture.hci import find_hci, read_hci
-from eigenfield.capture.llff import find_llff, read_llff
-from eigenfield.capture.metashape import find_metashape, read_metashape
-from eigenfield.capture.middlebury import find_middlebury, read_middlebury
-from eigenfield.capture.numbered import read_numbered
-from eigenfield.capture.opencv import find_opencv, read_opencv
-from eigenfield.capture.positions import find_positions, read_positions
-from eigenfield.capture.projections import find_projections, read_projections
-from eigenfield.capture.stanford import find_stanford, read_stanford
-from eigenfield.capture.strecha import find_strecha, read_strecha
-from eigenfield.capture.video import find_videos, read_videos
-from eigenfield.capture.wording import some
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.capture.messages import some
+from eigenfield.capture.readers import colmap, transforms
+from eigenfield.capture.readers.bundler import find_bundler, read_bundler
+from eigenfield.capture.readers.folder import find_photographs, read_photographs
+from eigenfield.capture.readers.grid_names import find_grid_names, read_grid_names
+from eigenfield.capture.readers.hci import find_hci, read_hci
+from eigenfield.capture.readers.llff import find_llff, read_llff
+from eigenfield.capture.readers.metashape import find_metashape, read_metashape
+from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
+from eigenfield.capture.readers.numbered import read_numbered
+from eigenfield.capture.readers.opencv import find_opencv, read_opencv
+from eigenfield.capture.readers.positions import find_positions, read_positions
+from eigenfield.capture.readers.projections import find_projections, read_projections
+from eigenfield.capture.readers.stanford import find_stanford, read_stanford
+from eigenfield.capture.readers.strecha import find_strecha, read_strecha
+from eigenfield.capture.readers.video import find_videos, read_videos
+from eigenfield.core.errors import CaptureError, OptionError
 
 # the order of claims: of those that claim a folder, the lowest rank wins; two of one rank are a question
 FIRST, SECOND, CAMERAS, NAMES, ASKED, ANY = range(6)

@@ -5,35 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
-from eigenfield.camera import Camera
-from eigenfield.capture.lens import Lens, remove_lens
-from eigenfield.capture.photographs import decode, decode_mask
-from eigenfield.errors import CaptureError
-
-if TYPE_CHECKING:
-    from eigenfield.capture.photoset import Layout
-
-
-@dataclass(frozen=True, eq=False)
-class Photograph:
-    """One decoded photograph, lens removed.
-
-    pixels: (H, W, 3) float32, 0..1, sRGB-coded.
-    mask: (H, W) float32, 0..1, 1 where the photograph counts; None when all of it does.
-    """
-
-    pixels: NDArray[np.float32]
-    mask: NDArray[np.float32] | None
-
-    @staticmethod
-    def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:
-        """The photograph, without a mask that leaves nothing out."""
-        return Photograph(pixels, None if mask is not None and mask.min() >= 1 else mask)
+from eigenfield.capture.layout import Layout
+from eigenfield.capture.photographs.decoded import Photograph, decode_masked, size_on_disk
+from eigenfield.capture.photographs.lens import Lens, remove_lens
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,44 +87,3 @@ class LightField:
     def bytes(self, index: int) -> int:
         """The size of the photograph's file on disk."""
         return size_on_disk(self.views[index].path)
-
-
-def decode_masked(
-    path: Path, upright: bool, width: int, height: int, mask: Path | None
-) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-    """(H, W, 3) pixels of a photograph, and (H, W) alpha and mask file together; None where there is neither.
-
-    Raises CaptureError as `LightField.photograph` does.
-    """
-    pixels, alpha = decode(path, upright)
-    if pixels.shape[:2] != (height, width):
-        raise CaptureError(
-            "image-size",
-            f"is {pixels.shape[1]}x{pixels.shape[0]} now, but was {width}x{height} when the capture was opened",
-            path=path,
-            remedy="open the capture again",
-        )
-    if mask is None:
-        return pixels, alpha
-    other = decode_mask(mask)
-    if other.shape != pixels.shape[:2]:
-        raise CaptureError(
-            "mask-size",
-            f"the mask is {other.shape[1]}x{other.shape[0]}, its photograph {width}x{height}",
-            path=mask,
-            remedy="a mask has the size of its photograph: make it anew",
-        )
-    return pixels, other if alpha is None else np.minimum(alpha, other)
-
-
-def size_on_disk(path: Path) -> int:
-    """Bytes of a file; CaptureError `image-missing` where it is gone."""
-    try:
-        return path.stat().st_size
-    except OSError as error:
-        raise CaptureError(
-            "image-missing",
-            error.strerror or "cannot be read",
-            path=path,
-            remedy="put it back, or open the capture again",
-        ) from error

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
-from eigenfield.capture.photographs import EXTENSIONS, decode_mask
+from eigenfield.capture.messages import count, some
+from eigenfield.capture.photographs.read import EXTENSIONS, decode_mask
 from eigenfield.capture.photoset import Shot
-from eigenfield.capture.wording import count, some
-from eigenfield.errors import CaptureError
+from eigenfield.core.errors import CaptureError
 
 T = TypeVar("T", View, Shot)
 

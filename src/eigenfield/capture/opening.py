@@ -8,13 +8,13 @@ from pathlib import Path
 
 from eigenfield.capture.arrangement import IMAGES, Arrangement, Wanted
 from eigenfield.capture.formats import FORMATS, Claim, Format, claim_of_file, detect, named_format
+from eigenfield.capture.inspect_photographs import common_focal, gather
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import photographs_in, root_of
+from eigenfield.capture.messages import some
 from eigenfield.capture.pairing import pair
 from eigenfield.capture.photoset import PhotoSet
-from eigenfield.capture.shots import common_focal, gather
-from eigenfield.capture.wording import some
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError
 
 StrPath = str | os.PathLike[str]
 WITH_CAMERAS = tuple(row for row in FORMATS if row.read_cameras is not None)

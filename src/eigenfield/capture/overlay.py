@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from eigenfield.camera import Camera
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.pairing import scaled_camera
-from eigenfield.mesh import Mesh
-from eigenfield.raster import rasterise_view
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.raster import rasterise_view
 
 TILE = 640  # longest side of a photograph on the sheet, pixels
 CAPTION = 26  # pixels

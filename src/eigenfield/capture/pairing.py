@@ -11,15 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.camera import Camera
 from eigenfield.capture.calibration import Calibration, Entry, printable
-from eigenfield.capture.copies import same_files, told_copies
+from eigenfield.capture.duplicates import same_files, told_copies
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.locate import PhotographFinder, photographs_in, refuse_black, with_masks
-from eigenfield.capture.photographs import Header, read_header
-from eigenfield.capture.wording import count, natural, some
-from eigenfield.errors import CaptureError
-from eigenfield.parallel import parallel_map
+from eigenfield.capture.messages import count, natural, some
+from eigenfield.capture.photographs.read import Header, read_header
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
+from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger(__name__)
 

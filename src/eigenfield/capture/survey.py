@@ -9,14 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
 from eigenfield.capture.lightfield import LightField
-from eigenfield.capture.photographs import read_header
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import PhotoSet
-from eigenfield.errors import CaptureError
-from eigenfield.parallel import parallel_stream
-from eigenfield.progress import Progress, track
-from eigenfield.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
+from eigenfield.runtime.parallel import parallel_stream
 
 PARALLEL = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
 

@@ -12,8 +12,8 @@ from typing import NoReturn
 
 import click
 
-from eigenfield import __version__
-from eigenfield.errors import EigenfieldError
+from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.version import __version__
 
 VERBS = {
     "demo": "Make a capture, encode it, draw and measure it: the whole way in one command.",

@@ -10,7 +10,7 @@ import click
 
 from eigenfield.cli.calibrate_chart import ChartOptions, calibrate_from_charts, chart_options
 from eigenfield.cli.common import _grid, common_options, echo_json, note, progress_bars
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 REPORT = "report.json"
 ENDING = "-calibration"
@@ -91,7 +91,7 @@ def command(
     Without --chart, from the scene itself (structure from motion): photographs that find no place are named with the
     reason. With --chart, FOLDER holds pictures or videos of a board, by camera.
     """
-    from eigenfield.capture.save import refuse_folder
+    from eigenfield.capture.writers.save import refuse_folder
 
     place = _default_output(folder) if output is None else output
     refuse_folder(place, overwrite)
@@ -113,9 +113,9 @@ def command(
 
     started = time.monotonic()
     from eigenfield.calibrate import read_known_lenses, structure_from_motion
-    from eigenfield.calibrate.report import describe, in_words
+    from eigenfield.calibrate.motion.report import describe, in_words
     from eigenfield.capture import open_photographs
-    from eigenfield.capture.save import save_calibration
+    from eigenfield.capture.writers.save import save_calibration
 
     photos = open_photographs(
         folder, masks=masks, strict=False, format=format, grid=grid, frame=frame, work=work

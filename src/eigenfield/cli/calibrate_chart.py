@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from eigenfield.cli.common import note, progress_bars
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.calibrate.board import Board
-    from eigenfield.calibrate.chart import CameraReport, ChartCalibration
+    from eigenfield.calibrate.charts.board import Board
+    from eigenfield.calibrate.charts.calibrate import CameraReport, ChartCalibration
 
 F = TypeVar("F", bound=Callable[..., Any])
 BOARD_FILE = "charuco.toml"
@@ -89,7 +89,7 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
     """
     from dataclasses import replace
 
-    from eigenfield.calibrate.board import (
+    from eigenfield.calibrate.charts.board import (
         DICTIONARY,
         charuco,
         checkerboard,
@@ -142,8 +142,8 @@ def _board_file(options: ChartOptions, folder: Path) -> Path | None:
 def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, overwrite: bool, quiet: bool) -> None:
     """Calibrate the rig whose charts are in `folder`; write transforms.json, sparse/0 and report.json to `output`; say
     how good it is."""
-    from eigenfield.calibrate.chart import calibrate_charts
-    from eigenfield.capture.save import save_calibration
+    from eigenfield.calibrate.charts.calibrate import calibrate_charts
+    from eigenfield.capture.writers.save import save_calibration
 
     started = time.monotonic()
     board = board_of(options, folder)

@@ -13,8 +13,8 @@ from typing import Any, TypeVar
 
 import click
 
-from eigenfield.errors import OptionError
-from eigenfield.progress import Progress
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -88,7 +88,7 @@ def _grid(context: click.Context, parameter: click.Parameter, value: str | None)
 
 def _set_threads(context: click.Context, parameter: click.Parameter, value: int | None) -> None:
     if value is not None:
-        from eigenfield.parallel import set_threads
+        from eigenfield.runtime.parallel import set_threads
 
         set_threads(value)
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eigenfield.cli.common import common_options, note, progress_bars
-from eigenfield.progress import Progress
+from eigenfield.core.progress import Progress
 
 if TYPE_CHECKING:
     from eigenfield.capture import LightField
-    from eigenfield.scene import Scene
+    from eigenfield.core.scene import Scene
 
 HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
 FRAMES = 96
@@ -42,9 +42,9 @@ def command(output: Path, quiet: bool) -> None:
     scene.glb, flight.mp4, evaluation.json and plots/, of which contact-sheet.png shows photograph, drawing and error.
     """  # fmt: skip
     from eigenfield.capture import open_capture
-    from eigenfield.files import mended
-    from eigenfield.format import save
-    from eigenfield.pipeline import encode
+    from eigenfield.encoding.encode import encode
+    from eigenfield.gltf import save
+    from eigenfield.runtime.files import mended
 
     started = time.monotonic()
     with mended(output):
@@ -68,10 +68,10 @@ def command(output: Path, quiet: bool) -> None:
 def _look(path: Path, output: Path, progress: Progress | None, quiet: bool) -> None:
     from fractions import Fraction
 
-    from eigenfield.format import load
-    from eigenfield.parallel import parallel_stream
-    from eigenfield.progress import track
+    from eigenfield.core.progress import track
+    from eigenfield.gltf import load
     from eigenfield.rendering import path_points, render, write_video
+    from eigenfield.runtime.parallel import parallel_stream
 
     note(f"flying through it in {output / 'flight.mp4'}", quiet)
     scene = load(path)
@@ -85,8 +85,8 @@ def _measure(path: Path, capture: LightField, output: Path, progress: Progress |
 
     from eigenfield.evaluation import evaluate, stored_scores
     from eigenfield.evaluation.plots import write_plots
-    from eigenfield.files import write_bytes
-    from eigenfield.format import load, store_scores
+    from eigenfield.gltf import load, store_scores
+    from eigenfield.runtime.files import write_bytes
 
     note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
     scene = load(path)

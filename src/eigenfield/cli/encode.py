@@ -18,7 +18,7 @@ from eigenfield.cli.common import (
     tell,
     timings,
 )
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 
 def _atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
@@ -249,12 +249,12 @@ def command(
     calibration (eigenfield inspect CAPTURE says what is found in it).
     """  # fmt: skip
     from eigenfield.capture import open_any, open_capture
-    from eigenfield.files import mended, refuse_existing
-    from eigenfield.format import encode_scene, parts, read_scene, save
-    from eigenfield.format.pictures import DEFAULT_CODEC, check_codec
-    from eigenfield.mesh import Mesh
-    from eigenfield.pipeline import Options, Target, check_options, encode
-    from eigenfield.residual import check_residual, with_residual
+    from eigenfield.coding.pictures.pictures_8bit import DEFAULT_CODEC, check_codec
+    from eigenfield.core.mesh import Mesh
+    from eigenfield.encoding.encode import Options, Target, check_options, encode
+    from eigenfield.encoding.residual import check_residual, with_residual
+    from eigenfield.gltf import encode_scene, parts, read_scene, save
+    from eigenfield.runtime.files import mended, refuse_existing
 
     started = time.monotonic()
     refuse_existing(output, overwrite)

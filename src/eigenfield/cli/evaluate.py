@@ -112,8 +112,8 @@ def command(
     """  # fmt: skip
     from eigenfield.capture import PhotoSet, open_any
     from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras
-    from eigenfield.files import refuse_existing
-    from eigenfield.format import load, store_scores
+    from eigenfield.gltf import load, store_scores
+    from eigenfield.runtime.files import refuse_existing
 
     if plots is not None:
         from eigenfield.evaluation.plots import refuse_existing_plots

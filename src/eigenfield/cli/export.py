@@ -11,15 +11,15 @@ from click.core import ParameterSource
 
 from eigenfield.cli.common import common_options, note, progress_bars
 from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.progress import Progress
+    from eigenfield.core.progress import Progress
+    from eigenfield.core.scene import Scene
     from eigenfield.rendering import Shots
-    from eigenfield.scene import Scene
 
 PICTURE = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 OPTIONS = {  # what each kind takes, beside the options of all
@@ -100,13 +100,13 @@ def command(
     quilt   the views side by side for a Looking Glass display, a .png
     colmap  re-drawn photographs with a COLMAP model, in a folder
     """
-    from eigenfield.files import is_numbered
+    from eigenfield.runtime.files import is_numbered
 
     chosen = _kind(output, kind, is_numbered(output))
     source = click.get_current_context().get_parameter_source
     given = {name for name in options if source(name) is ParameterSource.COMMANDLINE}
     _check(chosen, output, given, options)
-    from eigenfield.format import load
+    from eigenfield.gltf import load
     from eigenfield.rendering import Shots, path_points
 
     points = None
@@ -123,8 +123,8 @@ def command(
 
 def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
     """What may not be written, before any work; a quilt's name is known only with its scene."""
-    from eigenfield.files import refuse_existing
     from eigenfield.rendering.flight import refuse_flight
+    from eigenfield.runtime.files import refuse_existing
     from eigenfield.viewer import exports
 
     if kind in ("mp4", "png"):
@@ -220,6 +220,6 @@ def _check(kind: str, output: Path, given: set[str], options: dict[str, Any]) ->
         raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
     if kind == "mp4" and options["background"] is None:
         raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
-    from eigenfield.scene import check_scale
+    from eigenfield.core.scene import check_scale
 
     check_scale(options["metres_per_unit"])

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.format.layout import Layout
-    from eigenfield.format.layout_planes import PlaneLayout
+    from eigenfield.gltf.layout import Layout
+    from eigenfield.gltf.layout_planes import PlaneLayout
 
 AXES = (
     "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "
@@ -35,7 +35,7 @@ Examples:
 @common_options
 def command(file: Path, as_json: bool, quiet: bool) -> None:
     """Show what a scene FILE holds: bytes by part, textures, cameras, view plane, settings and scores."""
-    from eigenfield.format import describe
+    from eigenfield.gltf import describe
 
     layout, parts = describe(file)
     facts = _facts(layout, parts)

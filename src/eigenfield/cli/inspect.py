@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
     from eigenfield.capture import Layout, LightField, PhotoSet
     from eigenfield.capture.survey import Array
-    from eigenfield.errors import CaptureError
-    from eigenfield.mesh import Mesh
+    from eigenfield.core.errors import CaptureError
+    from eigenfield.core.mesh import Mesh
 
 SCHEMA = "eigenfield.inspect/1"
 
@@ -66,7 +66,7 @@ def command(
             "overlay-needs-proxy", "--overlay draws a mesh over the photographs", remedy="name it with --proxy"
         )
     if overlay is not None:
-        from eigenfield.files import refuse_existing
+        from eigenfield.runtime.files import refuse_existing
 
         refuse_existing(overlay, overwrite)
 
@@ -140,8 +140,8 @@ def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, 
 
 def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report of photographs without cameras: the same keys, `views` 0, `photographs` in place of `cameras`."""
+    from eigenfield.capture.messages import count
     from eigenfield.capture.survey import file_kinds
-    from eigenfield.capture.wording import count
 
     sizes = Counter((shot.width, shot.height) for shot in photo_set.shots)
     problems = list(photo_set.problems)
@@ -248,7 +248,7 @@ def _proxy(
 ) -> dict[str, Any]:
     from eigenfield.capture.overlay import draw_overlay
     from eigenfield.capture.survey import corners_and_centre
-    from eigenfield.files import write_bytes
+    from eigenfield.runtime.files import write_bytes
 
     bad = {error.path for error in damaged}
     sound = [i for i, view in enumerate(light_field.views) if not bad & {str(view.path), str(view.mask)}]

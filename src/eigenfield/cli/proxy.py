@@ -63,10 +63,10 @@ def command(
     The mesh is in the world of the cameras, which are written beside it (OUTPUT.cameras) where they were estimated.
     """  # fmt: skip
     from eigenfield.capture import open_any
-    from eigenfield.capture.save import save_calibration
-    from eigenfield.files import refuse_existing
+    from eigenfield.capture.writers.save import save_calibration
     from eigenfield.proxy import check_mesh_name, write_mesh
     from eigenfield.reconstruction import reconstruct
+    from eigenfield.runtime.files import refuse_existing
 
     started = time.monotonic()
     check_mesh_name(output)

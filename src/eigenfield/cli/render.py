@@ -9,7 +9,7 @@ import click
 
 from eigenfield.cli.common import common_options, note, progress_bars
 from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 
 def _place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
@@ -58,16 +58,16 @@ def command(
 
     The picture is that of a viewpoint in the array (--at), of a captured camera (--camera), or a path's.
     """
-    from eigenfield.files import is_numbered, refuse_existing, write_bytes
+    from eigenfield.runtime.files import is_numbered, refuse_existing, write_bytes
 
     _check(output, is_numbered(output), at, camera, path, frames, background)
     if residual and (at is not None or path is not None):
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
-    from eigenfield.format import load
+    from eigenfield.encoding.residual import captured_pixels, difference_of
+    from eigenfield.gltf import load
     from eigenfield.rendering import Shots, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.flight import refuse_flight, write_flight
-    from eigenfield.rendering.shots import png
-    from eigenfield.residual import captured_pixels, difference_of
+    from eigenfield.rendering.render_jobs import png
 
     count = DEFAULT_FRAMES if frames is None else frames
     points = None if path is None else path_points(path, count)

@@ -25,7 +25,7 @@ Examples:
 @click.pass_context
 def command(context: click.Context, files: tuple[Path, ...], as_json: bool, quiet: bool) -> None:
     """Check scene FILEs, pictures included, and list every finding: errors, warnings, informations."""
-    from eigenfield.format import validate
+    from eigenfield.gltf import validate
 
     found = {file: validate(file) for file in files}
     if as_json:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eigenfield.cli.common import capture_options, common_options, note
-from eigenfield.errors import FormatError, OptionError
+from eigenfield.core.errors import FormatError, OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.scene import Scene
+    from eigenfield.core.scene import Scene
     from eigenfield.viewer import Photographs, Server
 
 
@@ -61,8 +61,8 @@ def command(
     The address goes to standard output. Only this machine can open it, unless --host says otherwise, and
     nothing is fetched from elsewhere. Ctrl-C ends it, with exit code 0.
     """
-    from eigenfield.format import file_bytes, outline, without_residual
-    from eigenfield.scene import check_scale
+    from eigenfield.core.scene import check_scale
+    from eigenfield.gltf import file_bytes, outline, without_residual
     from eigenfield.viewer import Server, make_manifest
 
     check_scale(metres_per_unit)

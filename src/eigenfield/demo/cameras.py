@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
+from eigenfield.core.camera import Camera
 
 FOCAL = 2.15  # in widths of the picture
 DISTANCE = 5.2  # from the array to the point that stays put

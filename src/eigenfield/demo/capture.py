@@ -10,19 +10,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress, track
 from eigenfield.demo.cameras import array_cameras
 from eigenfield.demo.geometry import geometry
 from eigenfield.demo.kernels import shade_view
 from eigenfield.demo.light import environment
 from eigenfield.demo.surface import baked_surface
-from eigenfield.errors import OptionError, OutputError
-from eigenfield.files import mended
-from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_stream
-from eigenfield.progress import Progress, track
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
-from eigenfield.raster import rasterise_view
+from eigenfield.runtime.files import mended
+from eigenfield.runtime.parallel import parallel_stream
 
 SAMPLES = 3  # by 3, a pixel
 EXPOSURE = 1.05

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from eigenfield.core.mesh import Mesh
 from eigenfield.demo.cameras import FOCAL, HALF_ARRAY, array_camera, array_centre
-from eigenfield.mesh import Mesh
 
 Array = NDArray[np.float64]
 

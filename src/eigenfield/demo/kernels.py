@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 
 
 @kernel(inline=True)

@@ -25,8 +25,8 @@ from eigenfield.demo.geometry import (
 from eigenfield.demo.kernels import fractal_noise
 from eigenfield.demo.lettering import BLOCK_LETTERS, POSTER, letter_mask, poster_mask
 from eigenfield.demo.light import dot, irradiance
-from eigenfield.parallel import parallel_map, pieces
-from eigenfield.raster import rasterise_atlas
+from eigenfield.imaging.raster import rasterise_atlas
+from eigenfield.runtime.parallel import parallel_map, pieces
 
 PIECE = 1 << 15  # texels a thread works on at a time
 STEP = 0.003  # over which the slope of a relief is taken

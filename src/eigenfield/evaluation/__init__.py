@@ -4,8 +4,8 @@ from eigenfield.evaluation.exclusion import Circle, read_circles
 from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
 from eigenfield.evaluation.session import match_photographs, with_scene_cameras
 from eigenfield.evaluation.uv import reconstructions
-from eigenfield.flip import flip, flip_map
-from eigenfield.metrics import PSNR_CAP, psnr, psnr_luma, ssim
+from eigenfield.imaging.flip import flip, flip_map
+from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, ssim
 
 __all__ = [
     "PSNR_CAP",

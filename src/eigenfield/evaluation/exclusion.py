@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.evaluation.exclusion import Circle
-from eigenfield.flip import flip
-from eigenfield.metrics import Picture, psnr, psnr_luma, ssim, to_codes
+from eigenfield.imaging.flip import flip
+from eigenfield.imaging.metrics import Picture, psnr, psnr_luma, ssim, to_codes
 
 Figures = dict[str, float | None]
 KEYS = ("psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "flip")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 
 
 @kernel()

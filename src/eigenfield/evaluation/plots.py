@@ -18,11 +18,11 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from eigenfield.capture import LightField
-from eigenfield.errors import OutputError
+from eigenfield.core.errors import OutputError
+from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
-from eigenfield.files import mended, write_bytes
-from eigenfield.metrics import to_codes
-from eigenfield.scene import Scene
+from eigenfield.imaging.metrics import to_codes
+from eigenfield.runtime.files import mended, write_bytes
 
 Row = tuple[str, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]  # title, photograph, drawn, error
 

@@ -9,14 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.capture import LightField
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.residual import with_differences
 from eigenfield.evaluation.exclusion import Circle
 from eigenfield.evaluation.image import summary
 from eigenfield.evaluation.session import Measured, Session, start_session
-from eigenfield.format import parts
-from eigenfield.parallel import parallel_stream
-from eigenfield.progress import Progress, track
-from eigenfield.residual import with_differences
-from eigenfield.scene import Scene
+from eigenfield.gltf import parts
+from eigenfield.runtime.parallel import parallel_stream
 
 SCHEMA = "eigenfield.evaluate/1"
 

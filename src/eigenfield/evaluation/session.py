@@ -10,16 +10,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.basis import METHODS, align_map
 from eigenfield.capture import Lens, LightField, Photograph, PhotoSet
-from eigenfield.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.projected import FILTERS, METHODS, Atlas, align_map, harmonised, make_atlas, texture_map
+from eigenfield.encoding.residual import captured_samples, corrected
 from eigenfield.evaluation.exclusion import Circle
 from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapFigures, measure_map
 from eigenfield.rendering import Picture, Renderer, camera_colour, camera_weights
-from eigenfield.residual import captured_samples, corrected
-from eigenfield.scene import Scene
-from eigenfield.texturing import FILTERS, Atlas, harmonised, make_atlas, texture_map
 
 log = logging.getLogger("eigenfield.evaluation")
 

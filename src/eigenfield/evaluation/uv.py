@@ -9,10 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.basis import measure_map as measure_pictures
+from eigenfield.core.scene import Plane
+from eigenfield.encoding.projected import Atlas
+from eigenfield.encoding.projected import measure_map as measure_pictures
 from eigenfield.evaluation.kernels import add_textures
-from eigenfield.scene import Plane
-from eigenfield.texturing import Atlas
 
 STRIDE = 512  # texels that the kernel sums at a time
 

@@ -1,16 +1,16 @@
 """The proxy mesh (the paper's section 3.1): read, or made from depth; its atlas."""
 
-from eigenfield.proxy.atlas import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.atlas.layout import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.atlas.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped, welded
 from eigenfield.proxy.background import fill_background
-from eigenfield.proxy.layers import second_layer
-from eigenfield.proxy.multiview import Surface, surface_from_views
-from eigenfield.proxy.prepare import check_seen, prepare_proxy
-from eigenfield.proxy.primitives import Primitive, insert_primitive, parse_primitive
-from eigenfield.proxy.read import read_mesh
-from eigenfield.proxy.relief import relief_mesh
-from eigenfield.proxy.sphere_fit import find_view, fit_sphere, parse_region
-from eigenfield.proxy.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped, welded
-from eigenfield.proxy.write import check_mesh_name, write_mesh, write_ply
+from eigenfield.proxy.meshes.prepare import check_seen, prepare_proxy
+from eigenfield.proxy.meshes.read import read_mesh
+from eigenfield.proxy.meshes.write import check_mesh_name, write_mesh, write_ply
+from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive, parse_primitive
+from eigenfield.proxy.primitives.sphere_fit import find_view, fit_sphere, parse_region
+from eigenfield.proxy.relief.layers import second_layer
+from eigenfield.proxy.relief.make import relief_mesh
+from eigenfield.proxy.surface.multiview import Surface, surface_from_views
 
 __all__ = [
     "DEFAULT_TRIANGLES",

@@ -22,13 +22,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import spsolve
 
-from eigenfield.camera import Camera
-from eigenfield.errors import ProxyError
-from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_map
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy.surface.trim import surface_samples
 from eigenfield.proxy.topology import compact, edge_faces
-from eigenfield.proxy.trim import surface_samples
-from eigenfield.raster import rasterise_view
+from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 

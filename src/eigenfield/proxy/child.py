@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import ProxyError
+from eigenfield.core.errors import ProxyError
 
 TICK = 0.2  # seconds between two calls of `waiting`
 

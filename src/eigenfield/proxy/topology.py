@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from eigenfield.mesh import Mesh
+from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.topology_kernels import least_area
 
 LONGEST_LOOP = 200  # edges of a hole that is filled at most: the triangulation takes the cube of it

@@ -20,13 +20,14 @@ from eigenfield.calibrate import (
     start_given,
     start_planar,
 )
-from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
-from eigenfield.capture.save import save_calibration
-from eigenfield.errors import CaptureError, ProxyError
-from eigenfield.holdout import held_out_cameras
-from eigenfield.mesh import Mesh
-from eigenfield.progress import Progress
+from eigenfield.capture.holdout import held_out_cameras
+from eigenfield.capture.writers.save import save_calibration
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError, ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.proxy import (
     read_mesh,
     relief_mesh,
@@ -48,7 +49,6 @@ from eigenfield.reconstruction.run import Run, Settings
 from eigenfield.stereo import depth_buffers, depth_range, mean_texture
 from eigenfield.stereo.extend import without_specks
 from eigenfield.stereo.steps import step_sides
-from eigenfield.viewplane import fit_view_plane
 
 log = logging.getLogger("eigenfield.reconstruction")
 

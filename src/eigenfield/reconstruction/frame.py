@@ -9,9 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
 from eigenfield.capture import LightField, PhotoSet
-from eigenfield.parallel import parallel_map
+from eigenfield.core.camera import Camera
+from eigenfield.runtime.parallel import parallel_map
 
 PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
 

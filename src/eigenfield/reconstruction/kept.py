@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from eigenfield.calibrate import (
     Planar,
 )
-from eigenfield.camera import Camera
 from eigenfield.capture import Lens, LightField, PhotoSet
+from eigenfield.core.camera import Camera
 from eigenfield.reconstruction.frame import Capture
 from eigenfield.stereo import Canvas
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.mesh import Mesh
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import AtlasStatistics, atlas_statistics
 from eigenfield.proxy.background import coverage
-from eigenfield.proxy.trim import SurfaceError
+from eigenfield.proxy.surface.trim import SurfaceError
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from eigenfield.errors import OptionError
-from eigenfield.progress import Progress
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress
 from eigenfield.proxy import (
     parse_primitive,
     parse_region,
 )
-from eigenfield.proxy.unwrap import FEWEST_TRIANGLES
-from eigenfield.stages import Stages, stage_key
+from eigenfield.proxy.atlas.unwrap import FEWEST_TRIANGLES
+from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger("eigenfield.reconstruction")
 

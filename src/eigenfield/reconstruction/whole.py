@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate import structure_from_motion, triangulated_points
 from eigenfield.capture import LightField, PhotoSet
-from eigenfield.capture.save import save_calibration
-from eigenfield.errors import OptionError
-from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_map
-from eigenfield.progress import Progress
+from eigenfield.capture.writers.save import save_calibration
+from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
 from eigenfield.proxy import (
     Primitive,
     find_view,
@@ -32,13 +31,14 @@ from eigenfield.proxy import (
     unwrapped,
     write_ply,
 )
-from eigenfield.proxy.trim import SurfaceError
+from eigenfield.proxy.surface.trim import SurfaceError
 from eigenfield.reconstruction.array import looks_one_way, relief_of_array
 from eigenfield.reconstruction.frame import Capture
 from eigenfield.reconstruction.kept import CAMERAS, ERROR, MESH, read_cameras, write_cameras
 from eigenfield.reconstruction.report import ProxyReport, report_of
 from eigenfield.reconstruction.run import DEFAULT_TRIANGLES, Run, Settings
-from eigenfield.stages import Stages, file_digest
+from eigenfield.runtime.parallel import parallel_map
+from eigenfield.runtime.stages import Stages, file_digest
 
 log = logging.getLogger("eigenfield.reconstruction")
 

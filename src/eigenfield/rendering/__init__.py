@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from eigenfield.rendering.colours import camera_colour
-from eigenfield.rendering.drawing import FILTERS
+from eigenfield.rendering.exposure import camera_colour
 from eigenfield.rendering.novel import novel_camera
-from eigenfield.rendering.opengl import OpenGLRenderer
+from eigenfield.rendering.opengl.renderer import OpenGLRenderer
 from eigenfield.rendering.paths import PATHS, path_points
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.renderer import (
+from eigenfield.rendering.render_jobs import Shots
+from eigenfield.rendering.software.drawing import FILTERS
+from eigenfield.rendering.software.renderer import (
     Renderer,
     at_resolution,
     camera_index,
@@ -18,7 +19,6 @@ from eigenfield.rendering.renderer import (
     viewpoint,
     viewpoint_colour,
 )
-from eigenfield.rendering.shots import Shots
 from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weight_map import weight_map
 from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights

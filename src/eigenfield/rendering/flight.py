@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.files import atomic_files, is_numbered, numbered_files, refuse_existing
-from eigenfield.progress import Progress
-from eigenfield.rendering.shots import Shots
+from eigenfield.core.progress import Progress
+from eigenfield.rendering.render_jobs import Shots
 from eigenfield.rendering.video import write_video
+from eigenfield.runtime.files import atomic_files, is_numbered, numbered_files, refuse_existing
 
 
 def write_flight(

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
+from eigenfield.core.camera import Camera
+from eigenfield.core.scene import Scene
 from eigenfield.rendering.weights import view_weights
-from eigenfield.scene import Scene
 
 
 def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:

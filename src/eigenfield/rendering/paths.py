@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import OptionError
+from eigenfield.core.errors import OptionError
 
 PATHS = ("circle", "spiral", "grid")
 RADIUS = 0.9  # of the array's half width: the rim is where extrapolation begins

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.files import atomic_writer
+from eigenfield.runtime.files import atomic_writer
 
 QUALITY = 16  # x264's constant rate factor: visually lossless
 ENCODER_THREADS = 2  # fixed: x264's bytes depend on it

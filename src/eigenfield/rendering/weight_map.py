@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.scene import Scene
 from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, view_weights
-from eigenfield.scene import Scene
 
 NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
 

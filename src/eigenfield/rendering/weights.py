@@ -7,9 +7,9 @@ import weakref
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.errors import OptionError
-from eigenfield.scene import Scene
-from eigenfield.viewplane import find_grid
+from eigenfield.core.errors import OptionError
+from eigenfield.core.scene import Scene
+from eigenfield.core.viewplane import find_grid
 
 MODES = ("delaunay", "nearest3", "bilinear")
 FLAT = 1e-6  # triangles whose area is below this part of their longest side squared count as a line

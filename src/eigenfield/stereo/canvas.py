@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
+from eigenfield.core.camera import Camera
 
 HALF = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1.0]])  # from pixels with centres at +0.5 to indices
 

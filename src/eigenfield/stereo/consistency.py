@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.canvas import Canvas
 from eigenfield.stereo.consistency_kernels import count_agreeing
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map
+from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.views import Pictures, pack, unpack
 
 DIAMETER, RANGE, SPACE = 9, 20.0, 3.0  # of the bilateral filter: pixels, grey levels, pixels

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.progress import Progress
+from eigenfield.core.camera import Camera
+from eigenfield.core.progress import Progress
 from eigenfield.stereo.canvas import Canvas, view_matrices
 from eigenfield.stereo.detail import detail_pictures
 from eigenfield.stereo.extend import extended

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.refine_kernels import label_costs, settle
 from eigenfield.stereo.views import Pictures, check_matrices, pack
 from eigenfield.stereo.visibility import BIAS, flat

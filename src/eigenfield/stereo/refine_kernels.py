@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 from eigenfield.stereo.taps import EXACT, REAL_SLOTS, RUN, WHOLE_SLOTS, channel, fetch, place, visible, weights
 
 FAILED = np.float32(1e4)  # cost of a label that too few views see

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.semiglobal_kernels import accumulate, take_best
 from eigenfield.stereo.sweep_kernels import UNIT
 

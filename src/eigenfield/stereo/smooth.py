@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.smooth_kernels import fit_planes
 
 BAND = 8

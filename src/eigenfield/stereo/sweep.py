@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.sweep_kernels import NEVER, UNIT, sweep_rows
 from eigenfield.stereo.views import Pictures, check_matrices, motion, pack, sectors
 

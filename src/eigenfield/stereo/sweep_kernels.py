@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 from eigenfield.stereo.taps import EXACT, REAL_SLOTS, RUN, WHOLE_SLOTS, channel, fetch, place, visible, weights
 
 UNIT = np.float32(8)  # stored costs are eighths of a grey level

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 
 RUN = 128
 REAL_SLOTS = 4  # fraction x, fraction y, visibility limit, depth buffer

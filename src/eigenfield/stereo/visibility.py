@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.parallel import parallel_map, pieces
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.views import Pictures, check_matrices, pack
 from eigenfield.stereo.visibility_kernels import cubic_mean_rows, mean_rows, splat
 

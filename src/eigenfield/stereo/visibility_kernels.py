@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 from eigenfield.stereo.taps import (
     EMPTY,
     EXACT,

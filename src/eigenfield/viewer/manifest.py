@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from eigenfield import __version__
+from eigenfield.core.version import __version__
 from eigenfield.viewer.page import page_html, static_file
 from eigenfield.viewer.photographs import Photographs
 

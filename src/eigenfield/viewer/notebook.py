@@ -5,9 +5,9 @@ from __future__ import annotations
 import html
 import weakref
 
-from eigenfield.errors import EigenfieldError
-from eigenfield.format import encode_scene, file_bytes, without_residual
-from eigenfield.scene import Scene
+from eigenfield.core.errors import EigenfieldError
+from eigenfield.core.scene import Scene
+from eigenfield.gltf import encode_scene, file_bytes, without_residual
 from eigenfield.viewer.page import single_file
 
 TITLE = "Eigen-texture scene"

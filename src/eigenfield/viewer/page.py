@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from eigenfield import __version__
-from eigenfield.errors import OutputError
+from eigenfield.core.errors import OutputError
+from eigenfield.core.version import __version__
 
 STATIC = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
 TITLE = "<title>eigenfield</title>"

@@ -8,9 +8,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from eigenfield.capture import LightField
-from eigenfield.errors import CaptureError
-from eigenfield.scene import Scene
-from eigenfield.texturing import png_bytes
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.scene import Scene
+from eigenfield.imaging.png import png_bytes
 
 AT_ONCE = 2  # photographs decoded at a time: a large one takes 16 bytes a pixel and more
 KEPT = 64 * 2**20  # bytes of PNG that are kept for the next time

@@ -20,7 +20,7 @@ from email.utils import formatdate
 from http import HTTPStatus
 from types import TracebackType
 
-from eigenfield.errors import EigenfieldError, OptionError
+from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.viewer.manifest import Content, Manifest
 from eigenfield.viewer.ranges import RangeError, is_known, wanted_range
 from eigenfield.viewer.request import RefusedError, Request, SilentError, parse_head, read_head

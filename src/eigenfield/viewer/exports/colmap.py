@@ -9,20 +9,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
 from eigenfield.capture import LightField
-from eigenfield.capture.colmap_write import colmap_model
 from eigenfield.capture.lightfield import View
 from eigenfield.capture.points import SparsePoints
-from eigenfield.errors import OptionError
-from eigenfield.mesh import Mesh
-from eigenfield.parallel import parallel_map, pieces
-from eigenfield.progress import Progress, track
-from eigenfield.raster import rasterise_view
+from eigenfield.capture.writers.colmap import colmap_model
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Scene
+from eigenfield.encoding.residual import captured_pixels, with_differences
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import Shots, at_resolution, camera_colour, camera_weights, viewpoint
-from eigenfield.rendering.shots import png, refuse_attributes
-from eigenfield.residual import captured_pixels, with_differences
-from eigenfield.scene import Scene
+from eigenfield.rendering.render_jobs import png, refuse_attributes
+from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
 from eigenfield.viewer.exports.maps import mean_map
 from eigenfield.viewer.exports.names import file_names

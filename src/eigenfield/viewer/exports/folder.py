@@ -11,9 +11,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from eigenfield import __version__
-from eigenfield.errors import OutputError
-from eigenfield.files import flush_folder, mended
+from eigenfield.core.errors import OutputError
+from eigenfield.core.version import __version__
+from eigenfield.runtime.files import flush_folder, mended
 
 LISTING = "eigenfield.json"
 MOST = 16 * 2**20  # bytes of a listing that is read back

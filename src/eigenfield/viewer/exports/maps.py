@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.errors import OptionError
-from eigenfield.parallel import parallel_stream
-from eigenfield.progress import Progress, track
-from eigenfield.rendering.composite import compose_scene, make_buffers, make_composite
-from eigenfield.rendering.shots import refuse_attributes
-from eigenfield.rendering.tiles import empty_layers, read_layers, tile_shape
-from eigenfield.scene import Plane, Scene
-from eigenfield.texturing import png_bytes
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Plane, Scene
+from eigenfield.imaging.png import png_bytes
+from eigenfield.rendering.render_jobs import refuse_attributes
+from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
+from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
+from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
 from eigenfield.viewer.exports.names import file_names
 

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from eigenfield.capture.photographs import EXTENSIONS
+from eigenfield.capture.photographs.read import EXTENSIONS
 
 LONGEST = 120  # bytes of a folder's or file's name, before its ending
 DEEPEST = 6  # folders in a path

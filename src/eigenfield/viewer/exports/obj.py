@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield import __version__
-from eigenfield.errors import OptionError
-from eigenfield.files import atomic_files, refuse_existing
-from eigenfield.format.axes import capture_to_gltf
-from eigenfield.format.quantise import basis_scale, texture_codes
-from eigenfield.progress import Progress, track
-from eigenfield.scene import Basis, Scene
-from eigenfield.texturing import png_bytes
+from eigenfield.coding.pictures.quantise import basis_scale, texture_codes
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Basis, Scene
+from eigenfield.core.version import __version__
+from eigenfield.gltf.axes import capture_to_gltf
+from eigenfield.imaging.png import png_bytes
+from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import eigen_maps, mean_map
 from eigenfield.viewer.exports.names import file_name

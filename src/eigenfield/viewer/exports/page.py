@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eigenfield.files import refuse_existing, write_bytes
-from eigenfield.format import encode_scene, file_bytes, without_residual
-from eigenfield.scene import Scene
+from eigenfield.core.scene import Scene
+from eigenfield.gltf import encode_scene, file_bytes, without_residual
+from eigenfield.runtime.files import refuse_existing, write_bytes
 from eigenfield.viewer.page import single_file
 
 

@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.camera import Camera
-from eigenfield.errors import OptionError
-from eigenfield.files import write_bytes
-from eigenfield.progress import Progress, track
-from eigenfield.raster import rasterise_view
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Scene
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import Shots, at_resolution, novel_camera, view_weights
-from eigenfield.rendering.shots import png
-from eigenfield.scene import Scene
+from eigenfield.rendering.render_jobs import png
+from eigenfield.runtime.files import write_bytes
 
 COLUMNS, ROWS = 8, 6
 SIDE = 4096  # pixels of a quilt that every player takes; views are made smaller than the cameras' to keep to it

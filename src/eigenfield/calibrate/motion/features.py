@@ -1,0 +1,157 @@
+"""SIFT features of photographs: keypoints at full resolution, descriptors, and the colour beneath each.
+
+Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 2004; root-normalised (Arandjelović and
+Zisserman, CVPR 2012); pooled over sizes where there is little texture (Dong and Soatto, CVPR 2015).
+"""
+
+from __future__ import annotations
+
+import tempfile
+import threading
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
+from eigenfield.calibrate.motion.colmap_core import pycolmap
+from eigenfield.capture.photographs.decoded import decode_masked
+from eigenfield.capture.photoset import PhotoSet, Shot
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.progress import Progress, track
+from eigenfield.runtime.parallel import parallel_stream
+
+LUMA = np.array([0.299, 0.587, 0.114], np.float32)
+MASK_MIDDLE = 0.5
+AT_ONCE = threading.BoundedSemaphore(4)  # extractions: each takes half a gigabyte, however many processors there are
+LITTLE_TEXTURE = 2500  # features of the median photograph, below which weaker ones are looked for
+
+
+@dataclass(frozen=True)
+class FeatureOptions:
+    """How features are looked for.
+
+    side: pixels; longer photographs are reduced for the search, not for the coordinates.
+    most: features a photograph, the largest first. peak: of the difference of Gaussians, 0..1; lower finds weaker ones.
+    pooled: descriptors averaged over sizes: two to three times slower, a few per cent more matches.
+    """
+
+    side: int = 1600
+    most: int = 6000
+    peak: float = 0.0067
+    pooled: bool = False
+
+
+WEAK = FeatureOptions(peak=0.002, pooled=True)
+
+
+@dataclass(frozen=True, eq=False)
+class Features:
+    """The features of one photograph, the largest first.
+
+    points: (n, 2) float64 pixels of the photograph, centres at +0.5.
+    scales: (n,) float32 pixels. descriptors: (n, 128) uint8 of length 512. colours: (n, 3) uint8.
+    """
+
+    points: NDArray[np.float64]
+    scales: NDArray[np.float32]
+    descriptors: NDArray[np.uint8]
+    colours: NDArray[np.uint8]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def subset(self, chosen: NDArray[np.bool_]) -> Features:
+        """Those that `chosen` (n,) says."""
+        return Features(self.points[chosen], self.scales[chosen], self.descriptors[chosen], self.colours[chosen])
+
+    def at(self, points: NDArray[np.float64]) -> Features:
+        """The same features at other places."""
+        return replace(self, points=points)
+
+
+def extract_features(
+    photos: PhotoSet, options: FeatureOptions | None = None, progress: Progress | None = None
+) -> list[Features | CaptureError]:
+    """The features of every photograph; the error in place of those of one that cannot be read.
+
+    options: None looks with the usual ones, and with WEAK where the median photograph has few.
+    """
+    chosen = FeatureOptions() if options is None else options
+    found = _extract(photos.shots, chosen, "features", progress)
+    counts = [len(features) for features in found if isinstance(features, Features)]
+    if options is None and counts and np.median(counts) < LITTLE_TEXTURE:
+        found = _extract(photos.shots, WEAK, "weaker features", progress)
+    return found
+
+
+def _extract(
+    shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
+) -> list[Features | CaptureError]:
+    def one(shot: Shot) -> Features | CaptureError:
+        try:
+            return features_of(shot, options)
+        except CaptureError as error:
+            return error
+
+    return list(track(parallel_stream(one, shots), stage, len(shots), progress))
+
+
+def features_of(shot: Shot, options: FeatureOptions) -> Features:
+    """The features of one photograph, where its mask and alpha count it. Raises CaptureError as `decode` does."""
+    pixels, mask = decode_masked(shot.path, shot.upright, shot.width, shot.height, shot.mask)
+    height, width = pixels.shape[:2]
+    scale = min(1.0, options.side / max(width, height))
+    size = max(1, round(width * scale)), max(1, round(height * scale))
+    grey = pixels @ LUMA
+    if scale < 1:
+        grey = np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
+    keypoints, descriptors = _sift(np.clip(np.rint(grey * 255), 0, 255).astype(np.uint8), options)
+    up = np.array([width / size[0], height / size[1]])
+    points = keypoints[:, :2].astype(np.float64) * up
+    scales = np.hypot(keypoints[:, 2], keypoints[:, 4]) * np.float32(up.mean())
+    column, row = np.clip(points.astype(np.int64), 0, [width - 1, height - 1]).T
+    counts = np.ones(len(points), bool) if mask is None else mask[row, column] > MASK_MIDDLE
+    # the largest first, ties by place: the file order of the extractor is no promise
+    order = np.lexsort((points[:, 1], points[:, 0], -scales))
+    order = order[counts[order]][: options.most]
+    colours = np.rint(pixels[row, column] * 255).astype(np.uint8)
+    return Features(points[order], scales[order], np.ascontiguousarray(descriptors[order]), colours[order])
+
+
+def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Keypoints (n, 6) x, y and the 2x2 shape, and descriptors (n, 128).
+
+    By way of a file: pycolmap's extractor of arrays keeps the interpreter to itself while it works.
+    """
+    settings = pycolmap.FeatureExtractionOptions()
+    settings.num_threads = 1
+    settings.use_gpu = False
+    settings.sift.max_num_features = 2 * options.most  # it drops whole octaves: more are asked for than are kept
+    settings.sift.peak_threshold = options.peak
+    settings.sift.domain_size_pooling = options.pooled
+    with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:
+        place = Path(folder)
+        Image.fromarray(grey).save(place / "grey.png", compress_level=1)
+        with AT_ONCE:
+            pycolmap.extract_features(
+                place / "features.db",
+                place,
+                image_names=["grey.png"],
+                extraction_options=settings,
+                device=pycolmap.Device.cpu,
+            )
+        database = pycolmap.Database.open(place / "features.db")
+        try:
+            image = database.read_image_with_name("grey.png")
+            if image is None or not database.exists_keypoints(image.image_id):
+                return np.zeros((0, 6), np.float32), np.zeros((0, 128), np.uint8)
+            keypoints = np.asarray(database.read_keypoints(image.image_id))
+            descriptors = np.asarray(database.read_descriptors(image.image_id).data)
+        finally:
+            database.close()
+    return keypoints, descriptors.reshape(-1, 128)

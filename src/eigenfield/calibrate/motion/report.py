@@ -1,0 +1,70 @@
+"""What structure from motion found, as data for `report.json` and as lines for people."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from eigenfield.calibrate.motion.sfm import Motion
+from eigenfield.capture.calibration import printable
+
+SCHEMA = "eigenfield.calibrate/1"
+
+
+def describe(motion: Motion) -> dict[str, Any]:
+    """JSON-able: `schema`, `registered` of `photographs`, `points`, `observations`, `reprojection` (mean and median
+    over the points, pixels), `lenses` (one for each that differs) and `views`, as `ViewReport`."""
+    errors = motion.points.errors
+    lenses: dict[str, dict[str, Any]] = {}
+    for view in motion.light_field.views:
+        K = view.camera.K
+        entry = {
+            "width": view.camera.width, "height": view.camera.height, "focal": [K[0, 0], K[1, 1]],
+            "principal": [K[0, 2], K[1, 2]], "model": None if view.lens is None else view.lens.model,
+            "coefficients": [] if view.lens is None else list(view.lens.coefficients),
+        }  # fmt: skip
+        lenses.setdefault(repr(entry), {**entry, "views": 0})["views"] += 1
+    return {
+        "schema": SCHEMA,
+        "photographs": len(motion.report),
+        "registered": len(motion.light_field),
+        "points": len(motion.points),
+        "observations": len(motion.points.view),
+        "reprojection": {"mean": float(errors.mean()), "median": float(np.median(errors))},
+        "lenses": list(lenses.values()),
+        "views": [asdict(entry) for entry in motion.report],
+    }
+
+
+def in_words(report: dict[str, Any]) -> list[str]:
+    """One line a camera, then those that have none and why, then the whole."""
+    views = report["views"]
+    found = [view for view in views if view["registered"]]
+    rows = [("camera", "features", "points", "error")]
+    rows += [(printable(v["name"]), str(v["features"]), str(v["observations"]), f"{v['error']:.3f} px") for v in found]
+    widths = [max(len(row[i]) for row in rows) for i in range(4)]
+    lines = [
+        f"{row[0]:{widths[0]}}" + "".join(f"  {cell:>{width}}" for cell, width in zip(row[1:], widths[1:], strict=True))
+        for row in rows
+    ]
+    lost = [view for view in views if not view["registered"]]
+    if lost:
+        lines.append(f"without a camera: {len(lost)}")
+        lines += [f"  {printable(view['name'])}: {view['reason']}" for view in lost]
+    lines += [f"lens of {lens['views']}: {_lens(lens)}" for lens in report["lenses"]]
+    lines.append(
+        f"{report['registered']} of {report['photographs']} photographs registered, {report['points']:,} points, "
+        f"reprojection {report['reprojection']['mean']:.3f} px"
+    )
+    return lines
+
+
+def _lens(lens: dict[str, Any]) -> str:
+    fx, fy = lens["focal"]
+    focal = f"focal {fx:.2f}" if fx == fy else f"focal {fx:.2f} x {fy:.2f}"
+    text = f"{lens['width']}x{lens['height']}, {focal}, centre {lens['principal'][0]:.2f}, {lens['principal'][1]:.2f}"
+    if lens["model"] is None:
+        return text
+    return f"{text}, {lens['model']} {' '.join(f'{c:.4g}' for c in lens['coefficients'])}"

@@ -1,0 +1,125 @@
+"""Kernels of camera refinement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenfield.runtime.jit import kernel
+
+
+@kernel(inline=True)
+def bilinear(picture, x, y):  # type: ignore[no-untyped-def]
+    """The three channels of an (H, W, 3) picture at index coordinates inside it."""
+    i, j = int(x), int(y)
+    fx, fy = np.float32(x - i), np.float32(y - j)
+    one = np.float32(1)
+    a, b, c, d = (one - fx) * (one - fy), fx * (one - fy), (one - fx) * fy, fx * fy
+    return (
+        a * picture[j, i, 0] + b * picture[j, i + 1, 0] + c * picture[j + 1, i, 0] + d * picture[j + 1, i + 1, 0],
+        a * picture[j, i, 1] + b * picture[j, i + 1, 1] + c * picture[j + 1, i, 1] + d * picture[j + 1, i + 1, 1],
+        a * picture[j, i, 2] + b * picture[j, i + 1, 2] + c * picture[j + 1, i, 2] + d * picture[j + 1, i + 1, 2],
+    )
+
+
+@kernel(fastmath=True)
+def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias, tau, left, right):  # type: ignore[no-untyped-def]
+    """Gauss-Newton sums of one camera over points with known colours.
+
+    With e = T - I(pi(p)) in each channel, J = grad I dpi/dtheta and Cauchy weights w = 1 / (1 + e^2 / tau^2):
+    left = sum w J J^T, right = sum w J e. A point counts where the depth buffer shows nothing nearer than it by more
+    than `bias`. points: (n, 3) x, y, d. Returns the sum of e^2 over channels and the number of points.
+    """
+    height, width = picture.shape[0], picture.shape[1]
+    count = derivatives.shape[0]
+    jx = np.zeros(count, np.float32)
+    jy = np.zeros(count, np.float32)
+    row = np.zeros(count, np.float32)
+    total = 0.0
+    seen = 0
+    half = np.float32(0.5)
+    for k in range(points.shape[0]):
+        x, y, d = points[k, 0], points[k, 1], points[k, 2]
+        z = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * d + matrix[2, 3]
+        u = (matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * d + matrix[0, 3]) / z
+        v = (matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * d + matrix[1, 3]) / z
+        if not (u >= 2 and v >= 2 and u < width - 3 and v < height - 3):
+            continue
+        if buffer[int(v + 0.5), int(u + 0.5)] > d + bias:
+            continue
+        here = bilinear(picture, u, v)
+        east, west = bilinear(picture, u + half, v), bilinear(picture, u - half, v)
+        south, north = bilinear(picture, u, v + half), bilinear(picture, u, v - half)
+        for p in range(count):
+            m = derivatives[p]
+            dz = m[2, 0] * x + m[2, 1] * y + m[2, 2] * d + m[2, 3]
+            jx[p] = (m[0, 0] * x + m[0, 1] * y + m[0, 2] * d + m[0, 3] - u * dz) / z
+            jy[p] = (m[1, 0] * x + m[1, 1] * y + m[1, 2] * d + m[1, 3] - v * dz) / z
+        seen += 1
+        for c in range(3):
+            e = colours[k, c] - here[c]
+            gx, gy = east[c] - west[c], south[c] - north[c]
+            w = 1 / (1 + e * e / (tau * tau))
+            total += e * e
+            for p in range(count):
+                row[p] = gx * jx[p] + gy * jy[p]
+            for p in range(count):
+                weighted = w * row[p]
+                right[p] += weighted * e
+                for q in range(p, count):
+                    left[p, q] += weighted * row[q]
+    for p in range(count):
+        for q in range(p):
+            left[p, q] = left[q, p]
+    return total, seen
+
+
+@kernel()
+def occlusion_votes(picture, reference, matrix, d, gap, contrast, near, far):  # type: ignore[no-untyped-def]
+    """Which of two surfaces shows where both project to one pixel of `picture`.
+
+    reference: (h, w, 3), the picture that d belongs to (no margin). near, far: (H, W) int64 scratch, -1.
+    Every pixel of `picture` notes the reference pixels of largest and smallest d that land on it. Where these differ
+    by more than `gap` in d and `contrast` grey levels in colour, and one is clearly closer to what is seen, it gets a
+    vote. Returns the votes for the larger d and for the smaller.
+    """
+    height, width = near.shape
+    rows, columns = d.shape
+    for y in range(rows):
+        for x in range(columns):
+            t = d[y, x]
+            z = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * t + matrix[2, 3]
+            i = int(np.floor((matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * t + matrix[0, 3]) / z + 0.5))
+            j = int(np.floor((matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * t + matrix[1, 3]) / z + 0.5))
+            if i < 0 or j < 0 or i >= width or j >= height:
+                continue
+            here = y * columns + x
+            k = near[j, i]
+            if k < 0 or d[k // columns, k % columns] < t:
+                near[j, i] = here
+            k = far[j, i]
+            if k < 0 or d[k // columns, k % columns] > t:
+                far[j, i] = here
+    larger = 0
+    smaller = 0
+    for j in range(height):
+        for i in range(width):
+            k, m = near[j, i], far[j, i]
+            if k < 0 or k == m or d[k // columns, k % columns] - d[m // columns, m % columns] < gap:
+                continue
+            a = 0.0
+            b = 0.0
+            apart = 0.0
+            for c in range(3):
+                seen = np.float64(picture[j, i, c])
+                one = np.float64(reference[k // columns, k % columns, c])
+                other = np.float64(reference[m // columns, m % columns, c])
+                a += abs(seen - one)
+                b += abs(seen - other)
+                apart += abs(one - other)
+            if apart < 3 * contrast:
+                continue
+            if b - a > apart / 2:
+                larger += 1
+            elif a - b > apart / 2:
+                smaller += 1
+    return larger, smaller

@@ -1,0 +1,51 @@
+"""Which cameras are held out: `odd`, `every:K`, or names."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.errors import OptionError
+from eigenfield.core.viewplane import find_grid
+
+LEAST_ENCODED = 3
+
+
+def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(Nc,) bool. coordinates: (Nc, 2) on the view plane.
+
+    `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's order, from
+    number K // 2 on, so that the first is not among them. Otherwise names, separated by commas. Raises OptionError when
+    there is no grid, a name is unknown, or fewer than 3 cameras would remain.
+    """
+    held = np.zeros(len(names), bool)
+    if rule is None or rule == "":
+        return held
+    if rule == "odd":
+        grid = find_grid(coordinates)
+        if grid is None:
+            raise OptionError(
+                "hold-out", "the cameras are on no grid: no rows or columns to hold out", remedy="use every:K"
+            )
+        rows, columns = np.mgrid[: grid.rows, : grid.columns]
+        held[grid.index] = (rows % 2 == 1) | (columns % 2 == 1)
+    elif rule.startswith("every:"):
+        step = rule.removeprefix("every:")
+        if not step.isdecimal() or int(step) < 2:
+            raise OptionError("hold-out", f"{rule}: K must be a number of 2 or more", remedy="for example every:5")
+        held[int(step) // 2 :: int(step)] = True
+    else:
+        wanted = [name.strip() for name in rule.split(",") if name.strip()]
+        unknown = [name for name in wanted if name not in names]
+        if unknown:
+            raise OptionError(
+                "hold-out", f"no camera is called {unknown[0]}", remedy="eigenfield inspect lists the names"
+            )
+        held[[list(names).index(name) for name in wanted]] = True
+    if (~held).sum() < LEAST_ENCODED:
+        raise OptionError(
+            "hold-out", f"{(~held).sum()} cameras would remain to encode", remedy=f"leave at least {LEAST_ENCODED}"
+        )
+    return held

@@ -1,0 +1,124 @@
+"""An arrangement with its photographs looked into: sizes, focal lengths, copies, and what cannot be read."""
+
+from __future__ import annotations
+
+import logging
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.capture.arrangement import Arrangement
+from eigenfield.capture.calibration import printable
+from eigenfield.capture.duplicates import refuse_copies, same_files, told_copies
+from eigenfield.capture.locate import refuse_black, with_masks
+from eigenfield.capture.messages import count, natural, some
+from eigenfield.capture.photographs.exif import focal_of
+from eigenfield.capture.photographs.read import read_header
+from eigenfield.capture.photoset import PhotoSet, Shot
+from eigenfield.core.errors import CaptureError
+from eigenfield.runtime.parallel import parallel_map
+
+FEWEST = 3  # photographs that a scene can be made from
+ONE_LENS = 0.01  # relative spread of focal lengths below which they are one
+
+log = logging.getLogger(__name__)
+
+
+def gather(arrangement: Arrangement, root: Path, *, masks: Path | None, strict: bool) -> PhotoSet:
+    """The set of photographs of an arrangement; headers are read, nothing is decoded.
+
+    Raises CaptureError as `open_photographs` says.
+    """
+    files = arrangement.files
+    order = sorted(range(len(files)), key=lambda i: (natural(files[i].name), files[i].name))
+    outcomes = parallel_map(_shot_or_error, [files[i] for i in order])
+    found = [(i, outcome) for i, outcome in zip(order, outcomes, strict=True) if isinstance(outcome, Shot)]
+    errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
+    if arrangement.layout is not None:
+        found, odd = _one_size(found)
+        errors += odd
+    if strict and errors:
+        raise errors[0]
+    shots = _focal_lengths([shot for _, shot in found], arrangement)
+    copies = same_files([shot.path for shot in shots])
+    if strict:
+        refuse_copies(copies, len(shots), FEWEST, root)
+    problems = [*_left_out(arrangement.others), *arrangement.problems, *told_copies(copies), *map(str, errors)]
+    if masks is not None:
+        shots, missing = with_masks(shots, masks, root)
+        if strict:
+            refuse_black([shot.mask for shot in shots], masks)
+        problems += missing
+    if strict and len(shots) < FEWEST:
+        raise CaptureError(
+            "too-few",
+            f"holds {count(shots, 'photograph', 'photographs')}; {FEWEST} are needed",
+            path=root,
+            remedy="add photographs of the scene from other places, or name the folder that holds them all",
+        )
+    for problem in problems:
+        log.info("%s", problem)
+    layout = None
+    if arrangement.layout is not None:
+        layout = arrangement.layout.subset([i for i, _ in found])
+        layout = replace(layout, focal=common_focal([shot.focal for shot in shots]))
+    return PhotoSet(root, tuple(shots), layout, tuple(problems), arrangement.format)
+
+
+def _left_out(others: Sequence[Path]) -> list[str]:
+    if not others:
+        return []
+    names = some([path.name for path in others])
+    return [f"{count(others, 'photograph is', 'photographs are')} not named like the rest and left out: {names}"]
+
+
+def _shot_or_error(path: Path) -> Shot | CaptureError:
+    try:
+        header = read_header(path)
+    except CaptureError as error:
+        return error
+    return Shot(printable(path.name), path, *header.upright, focal_of(path, header))
+
+
+def _one_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]], list[CaptureError]]:
+    """The photographs of a grid that have the most frequent size, and an error for each of the others."""
+    sizes = Counter((shot.width, shot.height) for _, shot in found)
+    if len(sizes) < 2:
+        return list(found), []
+    (width, height), _ = sizes.most_common(1)[0]
+    errors = [
+        CaptureError(
+            "image-size",
+            f"is {shot.width}x{shot.height}, but the rest of the grid is {width}x{height}",
+            path=shot.path,
+            remedy="bring all photographs of a grid to one size, or say --format folder",
+        )
+        for _, shot in found
+        if (shot.width, shot.height) != (width, height)
+    ]
+    return [(i, shot) for i, shot in found if (shot.width, shot.height) == (width, height)], errors
+
+
+def _focal_lengths(shots: Sequence[Shot], arrangement: Arrangement) -> list[Shot]:
+    """Shots with the focal lengths that names tell, where they do; they go before EXIF's."""
+    if arrangement.calibration is None:
+        return list(shots)
+    entries = {entry.file: entry for entry in arrangement.calibration.entries}
+    result = []
+    for shot in shots:
+        intrinsics = entries[shot.path.name].intrinsics
+        assert intrinsics.focal is not None and intrinsics.width is not None
+        result.append(replace(shot, focal=intrinsics.focal[0] * shot.width / intrinsics.width))
+    return result
+
+
+def common_focal(focals: Sequence[float | None]) -> float | None:
+    """The focal length of all shots, where all have one and it is the same."""
+    known = [focal for focal in focals if focal is not None]
+    if not known or len(known) < len(focals):
+        return None
+    middle = float(np.median(known))
+    return middle if max(known) - min(known) <= ONE_LENS * middle else None

@@ -1,0 +1,1 @@
+"""Photographs from files, their profiles, lenses and metadata."""

@@ -1,0 +1,310 @@
+"""COLMAP's sparse models (https://colmap.github.io/format.html): `cameras` and `images`, binary or text.
+
+Poses are world-to-camera with OpenCV axes, pixel centres at +0.5: ours. Points are passed over, rigs and frames not
+looked at (COLMAP repeats each image's own pose in `images`).
+"""
+
+from __future__ import annotations
+
+import math
+import mmap
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.photographs.lens import Lens
+from eigenfield.core.errors import CaptureError
+
+FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
+# name: (number in the binary format, number of parameters); from colmap/src/colmap/sensor/models.h
+MODELS = {
+    "SIMPLE_PINHOLE": (0, 3), "PINHOLE": (1, 4), "SIMPLE_RADIAL": (2, 4), "RADIAL": (3, 5), "OPENCV": (4, 8),
+    "OPENCV_FISHEYE": (5, 8), "FULL_OPENCV": (6, 12),
+}  # fmt: skip
+OTHERS = {
+    7: "FOV", 8: "SIMPLE_RADIAL_FISHEYE", 9: "RADIAL_FISHEYE", 10: "THIN_PRISM_FISHEYE",
+    11: "RAD_TAN_THIN_PRISM_FISHEYE", 12: "SIMPLE_DIVISION", 13: "DIVISION", 14: "SIMPLE_FISHEYE", 15: "FISHEYE",
+    16: "EUCM", 17: "EQUIRECTANGULAR",
+}  # fmt: skip
+NUMBERS = {number: name for name, (number, _) in MODELS.items()}
+NAME_LIMIT = 4096  # bytes of an image's name
+SIZE_LIMIT = 1_000_000  # pixels along a side
+POINT = 24  # bytes of a 2D point: x, y, point id
+QUATERNION_TOLERANCE = 1e-3
+
+
+@dataclass(frozen=True)
+class _Shot:
+    """One line of `images`: the pose as it stands."""
+
+    quaternion: tuple[float, ...]
+    translation: tuple[float, ...]
+    camera: int
+    name: str
+
+
+def is_model(folder: Path) -> bool:
+    """Whether a folder holds `cameras` and `images` of a COLMAP model, both binary or both text."""
+    return any(
+        (folder / f"cameras.{kind}").is_file() and (folder / f"images.{kind}").is_file() for kind in ("bin", "txt")
+    )
+
+
+def find_colmap(folder: Path) -> Path | None:
+    """The model in a folder, where COLMAP and those who follow it put it."""
+    return next((folder / inner for inner in FOLDERS if is_model(folder / inner)), None)
+
+
+def read_colmap(folder: Path) -> Calibration:
+    """Every image of a COLMAP model as an entry, binary files preferred.
+
+    Raises CaptureError (`colmap-truncated`, `colmap-damaged`, `colmap-line`, `camera-model`, `calibration-empty`)
+    that names the file.
+    """
+    kind = "bin" if (folder / "cameras.bin").is_file() and (folder / "images.bin").is_file() else "txt"
+    images = folder / f"images.{kind}"
+    if kind == "bin":
+        cameras = _cameras_binary(folder / "cameras.bin")
+        shots = list(_shots_binary(images))
+    else:
+        cameras = _cameras_text(folder / "cameras.txt")
+        shots = list(_shots_text(images))
+    if not shots:
+        raise CaptureError("calibration-empty", "lists no image", path=images, remedy="name another model")
+    entries, errors = [], []
+    for shot in shots:
+        try:
+            entries.append(_entry(shot, cameras, images))
+        except CaptureError as error:
+            errors.append(error)
+    return Calibration(folder, "colmap", tuple(entries), tuple(errors))
+
+
+def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path: Path) -> Entry:
+    label = f"image {printable(shot.name)}"
+    if shot.camera not in cameras:
+        raise CaptureError(
+            "colmap-camera",
+            f"{label} names camera {shot.camera}, which is not listed",
+            path=path,
+            remedy="export the model again",
+        )
+    intrinsics, lens = cameras[shot.camera]
+    q, t = np.array(shot.quaternion), np.array(shot.translation)
+    length = math.hypot(*q)
+    if not np.isfinite(t).all() or not math.isfinite(length):
+        raise CaptureError(
+            "camera-not-finite",
+            f"camera {label} has NaN or infinite entries",
+            path=path,
+            remedy="mend or remove its entry",
+        )
+    if abs(length - 1) > QUATERNION_TOLERANCE:
+        raise CaptureError(
+            "camera-not-rotation",
+            f"camera {label}: its quaternion has a length of {length:.4g}",
+            path=path,
+            remedy="mend or remove its entry",
+        )
+    R = _rotation(q / length)
+    with np.errstate(over="ignore", invalid="ignore"):
+        centre = -R.T @ t
+    return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens)
+
+
+def _rotation(q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) from a unit quaternion w, x, y, z."""
+    w, x, y, z = q
+    return np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ])  # fmt: skip
+
+
+def _intrinsics(
+    model: str, width: int, height: int, p: tuple[float, ...], path: Path, camera: int
+) -> tuple[Intrinsics, Lens | None]:
+    if not all(map(math.isfinite, p)):
+        raise CaptureError(
+            "camera-not-finite", f"camera {camera} has NaN or infinite entries", path=path, remedy="mend its entry"
+        )
+    if not (1 <= width <= SIZE_LIMIT and 1 <= height <= SIZE_LIMIT):
+        raise CaptureError(
+            "camera-size", f"camera {camera} has a size of {width}x{height}", path=path, remedy="mend its entry"
+        )
+    if model in ("SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL"):
+        focal, principal, rest = (p[0], p[0]), (p[1], p[2]), p[3:]
+    else:
+        focal, principal, rest = (p[0], p[1]), (p[2], p[3]), p[4:]
+    intrinsics = Intrinsics(width, height, focal, None, principal)
+    if model == "OPENCV_FISHEYE":
+        return intrinsics, Lens("fisheye", rest)
+    if model == "FULL_OPENCV" and any(rest[5:]):
+        return intrinsics, Lens("rational", rest)
+    k1, k2, p1, p2, k3 = (*rest, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]
+    lens = Lens("brown", (k1, k2, p1, p2, k3))
+    return intrinsics, None if lens.does_nothing else lens
+
+
+def _refuse_model(name: str, camera: int, path: Path) -> CaptureError:
+    return CaptureError(
+        "camera-model",
+        f"camera {camera} has the camera model {name}, which is not read",
+        path=path,
+        remedy=f"undistort with `colmap image_undistorter`, or use one of {', '.join(MODELS)}",
+    )
+
+
+# binary: little endian, no padding
+
+
+class _Bytes:
+    """A file's bytes, taken from the front; asking for more than there is raises CaptureError."""
+
+    def __init__(self, data: bytes | mmap.mmap, path: Path) -> None:
+        self.data, self.path, self.at = data, path, 0
+
+    def need(self, size: int) -> None:
+        if size > len(self.data) - self.at:
+            raise CaptureError(
+                "colmap-truncated",
+                f"ends at byte {len(self.data)}, {size} more are needed from byte {self.at}",
+                path=self.path,
+                remedy="copy or export it again",
+            )
+
+    def take(self, layout: str) -> tuple[int | float, ...]:
+        size = struct.calcsize(layout)
+        self.need(size)
+        values = struct.unpack(layout, self.data[self.at : self.at + size])
+        self.at += size
+        return values
+
+    def name(self) -> str:
+        end = self.data.find(b"\0", self.at, self.at + NAME_LIMIT)
+        if end < 0:
+            self.need(NAME_LIMIT)
+            raise CaptureError(
+                "colmap-damaged", f"no end to the name at byte {self.at}", path=self.path, remedy="export it again"
+            )
+        raw = bytes(self.data[self.at : end])
+        self.at = end + 1
+        return raw.decode("utf-8", "surrogateescape")
+
+    def count(self, smallest: int) -> int:
+        """A count of records of at least `smallest` bytes each: they must fit into what is left."""
+        count = int(self.take("<Q")[0])
+        self.need(count * smallest)
+        return count
+
+    def end(self) -> None:
+        if self.at != len(self.data):
+            raise CaptureError(
+                "colmap-damaged",
+                f"{len(self.data) - self.at} bytes too many at the end",
+                path=self.path,
+                remedy="export it again",
+            )
+
+
+def _contents(path: Path) -> bytes | mmap.mmap:
+    try:
+        with path.open("rb") as file:
+            if path.stat().st_size == 0:
+                return b""
+            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _unreadable(path: Path, error: OSError) -> CaptureError:
+    return CaptureError("calibration-missing", error.strerror or "cannot be read", path=path, remedy="check the path")
+
+
+def _cameras_binary(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
+    source = _Bytes(_contents(path), path)
+    cameras = {}
+    for _ in range(source.count(24)):
+        camera, number, width, height = (int(v) for v in source.take("<IiQQ"))
+        if number not in NUMBERS:
+            raise _refuse_model(OTHERS.get(number, f"number {number}"), camera, path)
+        model = NUMBERS[number]
+        parameters = source.take(f"<{MODELS[model][1]}d")
+        cameras[camera] = _intrinsics(model, width, height, parameters, path, camera)
+    source.end()
+    return cameras
+
+
+def _shots_binary(path: Path) -> Iterator[_Shot]:
+    source = _Bytes(_contents(path), path)
+    for _ in range(source.count(4 + 56 + 4 + 1 + 8)):
+        values = source.take("<I7dI")
+        name = source.name()
+        points = source.count(POINT)
+        source.at += points * POINT
+        yield _Shot(tuple(values[1:5]), tuple(values[5:8]), int(values[8]), name)
+    source.end()
+
+
+# text
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    try:
+        with path.open(encoding="utf-8-sig", errors="surrogateescape") as file:
+            for number, line in enumerate(file, 1):
+                yield number, line.strip()
+    except OSError as error:
+        raise _unreadable(path, error) from error
+
+
+def _bad_line(path: Path, number: int, message: str) -> CaptureError:
+    return CaptureError("colmap-line", f"line {number}: {message}", path=path, remedy="export the model again")
+
+
+def _cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
+    cameras = {}
+    for number, line in _lines(path):
+        if not line or line.startswith("#"):
+            continue
+        words = line.split()
+        if len(words) < 4:
+            raise _bad_line(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS")
+        try:
+            camera, width, height = int(words[0]), int(words[2]), int(words[3])
+            parameters = tuple(float(word) for word in words[4:])
+        except ValueError:
+            raise _bad_line(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS") from None
+        if words[1] not in MODELS:
+            raise _refuse_model(words[1], camera, path)
+        if len(parameters) != MODELS[words[1]][1]:
+            raise _bad_line(path, number, f"{words[1]} has {MODELS[words[1]][1]} parameters, not {len(parameters)}")
+        cameras[camera] = _intrinsics(words[1], width, height, parameters, path, camera)
+    return cameras
+
+
+def _shots_text(path: Path) -> Iterator[_Shot]:
+    """Two lines an image; the second, its points, may be empty and is only checked to be what it should."""
+    lines = _lines(path)
+    for number, line in lines:
+        if not line or line.startswith("#"):
+            continue
+        words = line.split(maxsplit=9)
+        try:
+            values = tuple(float(word) for word in words[1:8])
+            camera = int(words[8])
+            name = words[9]
+        except (ValueError, IndexError):
+            raise _bad_line(path, number, "expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME") from None
+        yield _Shot(values[:4], values[4:], camera, name)
+        number, line = next(lines, (number + 1, ""))
+        if len(line.split()) % 3:
+            raise _bad_line(
+                path, number, "expected POINTS2D of the image above, as X Y POINT3D_ID (an empty line if none)"
+            )

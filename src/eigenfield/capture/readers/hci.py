@@ -1,0 +1,203 @@
+"""The HCI 4D Light Field Benchmark (https://lightfield-analysis.uni-konstanz.de): `input_CamNNN.png`, `parameters.cfg`.
+
+NNN counts row by row from the top left: column + 1 is a step to the right, row + 1 a step *down* (Stanford's numbers
+are row and column, and mostly run up). The scenes are rendered: the grid is exact, and the pictures share the plane in
+focus. With the cfg the cameras are whole: f = focal length / sensor x the longer side, a step is the baseline b, and at
+the focus distance F the shifted pinholes have no parallax, so that a step moves a point at depth Z by b f (1/Z - 1/F)
+pixels to the left (HCI's disparity). World: metres, the middle of the grid at the origin, looking along +z; not
+Blender's frame, which the cfg also tells.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.capture.arrangement import (
+    Arrangement,
+    Wanted,
+    missing_line,
+    named_like,
+    nodes,
+    refuse_nothing,
+    told_by,
+)
+from eigenfield.capture.calibration import LARGEST, Calibration, Entry, Intrinsics
+from eigenfield.capture.layout import Layout
+from eigenfield.capture.readers.text import SIDE_LIMIT, text
+from eigenfield.core.errors import CaptureError
+
+log = logging.getLogger(__name__)
+
+NAMES = re.compile(r"input_cam_?(\d{1,5})", re.IGNORECASE)
+PARAMETERS = "parameters.cfg"
+SIZE_LIMIT = 2**20  # bytes of a parameters.cfg
+GRID_LIMIT = 1000  # cameras along a side that a cfg may claim
+
+find_hci = told_by(NAMES)
+
+
+@dataclass(frozen=True)
+class Parameters:
+    """What a parameters.cfg says.
+
+    width, height: pixels. focal: pixels. columns, rows: cameras. baseline, focus: metres.
+    disparities: (lowest, highest) of the scene, pixels a step; None where it does not say.
+    """
+
+    width: int
+    height: int
+    focal: float
+    columns: int
+    rows: int
+    baseline: float
+    focus: float
+    disparities: tuple[float, float] | None
+
+    def depth(self, disparity: float) -> float:
+        """1/Z = d / (b f) + 1/F; infinite beyond the horizon."""
+        inverse = disparity / (self.baseline * self.focal) + 1 / self.focus
+        return 1 / inverse if inverse > 0 else math.inf
+
+
+def read_hci(folder: Path, wanted: Wanted) -> Arrangement:
+    """The grid of a folder with HCI's names, and its cameras where parameters.cfg says them.
+
+    A cfg that is absent, damaged or of another grid leaves the grid without cameras, and a line that says so. The grid
+    is then `wanted.grid`, or a square if the numbers fill one. Raises CaptureError: `names-unknown`, `node-twice`,
+    `grid-size`.
+    """
+    fitting, others = named_like(folder, NAMES)
+    refuse_nothing(fitting, folder, "input_CamNNN")
+    files = tuple(path for path, _ in fitting)
+    numbers = [int(match[1]) for _, match in fitting]
+    parameters, problems = _parameters(files[0].parent, folder, max(numbers), wanted.grid)
+    shape = wanted.grid if parameters is None else (parameters.rows, parameters.columns)
+    if shape is None:
+        shape = _square(numbers, folder)
+    if max(numbers) >= shape[0] * shape[1]:
+        raise CaptureError(
+            "grid-size",
+            f"the last photograph has the number {max(numbers)}, but a grid of {shape[0]}x{shape[1]} ends at "
+            f"{shape[0] * shape[1] - 1}",
+            path=folder,
+            remedy="say the right --grid ROWSxCOLUMNS",
+        )
+    rows, columns = [n // shape[1] for n in numbers], [n % shape[1] for n in numbers]
+    layout, _ = nodes(files, rows, columns, Wanted(), folder)
+    layout = replace(layout, signs=True, rectified=True, exact=True)
+    problems = [*problems, *missing_line(layout)]
+    if parameters is None:
+        return Arrangement("hci", files, layout, tuple(problems), tuple(others))
+    layout = replace(layout, positions=layout.positions * parameters.baseline, measured=True)
+    entries = tuple(_entry(path, layout, i, parameters) for i, path in enumerate(files))
+    calibration = Calibration(files[0].parent / PARAMETERS, "hci", entries)
+    return Arrangement("hci", files, layout, tuple(problems), tuple(others), calibration)
+
+
+def _square(numbers: list[int], folder: Path) -> tuple[int, int]:
+    side = math.isqrt(max(numbers) + 1)
+    if side * side != max(numbers) + 1:
+        raise CaptureError(
+            "grid-size",
+            f"{PARAMETERS} says no grid, and numbers up to {max(numbers)} fill no square one",
+            path=folder,
+            remedy="say --grid ROWSxCOLUMNS",
+        )
+    return side, side
+
+
+def _entry(path: Path, layout: Layout, index: int, parameters: Parameters) -> Entry:
+    x = (layout.columns[index] - (parameters.columns - 1) / 2) * parameters.baseline
+    y = (layout.rows[index] - (parameters.rows - 1) / 2) * parameters.baseline
+    f, width, height = parameters.focal, parameters.width, parameters.height
+    principal = (width / 2 + f * x / parameters.focus, height / 2 + f * y / parameters.focus)
+    bounds = None
+    if parameters.disparities is not None:
+        near, far = (parameters.depth(d) for d in reversed(parameters.disparities))
+        bounds = (near, far) if near <= far < math.inf else None
+    intrinsics = Intrinsics(width, height, (f, f), None, principal)
+    return Entry(path.name, path.name, intrinsics, np.eye(3), np.array([x, y, 0.0]), bounds=bounds)
+
+
+def _parameters(
+    inner: Path, folder: Path, last: int, grid: tuple[int, int] | None
+) -> tuple[Parameters | None, list[str]]:
+    """The cfg beside the photographs or in the folder above, if it can be used; else a line that says why not."""
+    path = next((p for p in (inner / PARAMETERS, folder / PARAMETERS) if p.is_file()), None)
+    if path is None:
+        return None, [f"no {PARAMETERS}: the grid is known, but neither focal length nor distance"]
+    try:
+        found = read_parameters(path)
+    except CaptureError as error:
+        log.warning("%s", error)
+        return None, [f"{PARAMETERS} cannot be used: {error.message}"]
+    size = (found.rows, found.columns)
+    if last >= size[0] * size[1] or (grid is not None and grid != size):
+        asked = f"--grid says {grid[0]}x{grid[1]}" if grid else f"there is a photograph with the number {last}"
+        return None, [f"{PARAMETERS} cannot be used: it is for {size[0]}x{size[1]} cameras, but {asked}"]
+    return found, []
+
+
+def read_parameters(path: Path) -> Parameters:
+    """A parameters.cfg; keys that are not known are passed over. CaptureError `calibration-damaged` and as `text`."""
+    values = _values(text(path, SIZE_LIMIT))
+
+    def number(section: str, key: str) -> float:
+        try:
+            value = float(values[section, key])
+        except (KeyError, ValueError):
+            raise _damaged(path, f"{key} in [{section}] is no number or absent") from None
+        if not abs(value) <= LARGEST:
+            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+        return value
+
+    def positive(section: str, key: str) -> float:
+        value = number(section, key)
+        if not value > 0:
+            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+        return value
+
+    def whole(section: str, key: str, limit: int) -> int:
+        value = number(section, key)
+        if not (1 <= value <= limit and value == round(value)):
+            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+        return int(value)
+
+    width = whole("intrinsics", "image_resolution_x_px", SIDE_LIMIT)
+    height = whole("intrinsics", "image_resolution_y_px", SIDE_LIMIT)
+    focal = positive("intrinsics", "focal_length_mm") / positive("intrinsics", "sensor_size_mm") * max(width, height)
+    columns, rows = (whole("extrinsics", f"num_cams_{axis}", GRID_LIMIT) for axis in "xy")
+    baseline = positive("extrinsics", "baseline_mm") / 1000
+    focus = positive("extrinsics", "focus_distance_m")
+    try:
+        disparities = (number("meta", "disp_min"), number("meta", "disp_max"))
+    except CaptureError:  # a help, not needed
+        disparities = None
+    if disparities is not None and disparities[0] > disparities[1]:
+        disparities = None
+    if not (LARGEST > focal * baseline > 1 / LARGEST):
+        raise _damaged(path, f"a focal length of {focal:g} pixels and a baseline of {baseline:g} m")
+    return Parameters(width, height, focal, columns, rows, baseline, focus, disparities)
+
+
+def _values(lines: str) -> dict[tuple[str, str], str]:
+    """`key = value` lines by section and key; anything else is passed over."""
+    values, section = {}, ""
+    for line in lines.splitlines():
+        head = re.fullmatch(r"\s*\[([^\]]*)\]\s*", line)
+        if head:
+            section = head[1]
+        elif "=" in line:
+            key, value = line.split("=", 1)
+            values[section, key.strip().lower()] = value.strip()
+    return values
+
+
+def _damaged(path: Path, message: str) -> CaptureError:
+    return CaptureError("calibration-damaged", message, path=path, remedy="copy it again")

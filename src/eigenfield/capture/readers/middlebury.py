@@ -1,0 +1,82 @@
+"""Middlebury multi-view sets: `*_par.txt` (https://vision.middlebury.edu/mview/data/).
+
+The first line is the count; then one camera a line: file name, K (9 numbers, row-major), R (9), t (3), for
+P = K [R | t]: world-to-camera, x right, y down, z forward. The file gives no size and no distortion. Nothing says
+where a pixel's centre is; K is taken as it stands.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.readers.skew import without_skew
+from eigenfield.capture.readers.text import check_finite, damaged, numbers, shown, text
+from eigenfield.core.errors import CaptureError
+
+SUFFIX = "_par.txt"
+NUMBERS = 9 + 9 + 3
+HEAD = 32  # bytes in which the count must stand
+
+
+def find_middlebury(folder: Path) -> Path | None:
+    """The first `*_par.txt` of a folder that begins with a count."""
+    for path in sorted(folder.glob(f"*{SUFFIX}")):
+        if path.is_file() and _begins_with_count(path):
+            return path
+    return None
+
+
+def _begins_with_count(path: Path) -> bool:
+    try:
+        with path.open("rb") as file:
+            return file.read(HEAD).removeprefix(b"\xef\xbb\xbf").split(b"\n")[0].strip().isdigit()
+    except OSError:
+        return False
+
+
+def read_middlebury(path: Path) -> Calibration:
+    """Every line as an entry; lines that cannot be used become errors of their own.
+
+    Raises CaptureError (`calibration-missing`, `calibration-too-large`, `calibration-damaged`, `calibration-count`,
+    `calibration-empty`) where the file as a whole cannot be used.
+    """
+    lines = [(i, line.strip()) for i, line in enumerate(text(path).split("\n"), 1) if line.strip()]
+    if not lines or not (lines[0][1].isascii() and lines[0][1].isdigit() and len(lines[0][1]) < 10):
+        raise damaged(path, "does not begin with the number of cameras", "name a *_par.txt of a Middlebury set")
+    count = int(lines[0][1])
+    if count != len(lines) - 1:
+        raise CaptureError(
+            "calibration-count",
+            f"says {count} cameras and lists {len(lines) - 1}",
+            path=path,
+            remedy="copy it again",
+        )
+    if not count:
+        raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
+    entries, errors = [], []
+    for number, line in lines[1:]:
+        try:
+            entries.append(_entry(line, number, path))
+        except CaptureError as error:
+            errors.append(error)
+    return Calibration(path, "middlebury", tuple(entries), tuple(errors))
+
+
+def _entry(line: str, number: int, path: Path) -> Entry:
+    words = line.rsplit(maxsplit=NUMBERS)  # names may hold spaces
+    if len(words) != NUMBERS + 1:
+        raise damaged(path, f"line {number} is not a name and {NUMBERS} numbers ({shown(line)})")
+    name = words[0]
+    label = f"line {number} ({printable(name)})"
+    values = numbers(words[1:], NUMBERS, label, path)
+    check_finite([values], label, path)
+    K, R, t = values[:9].reshape(3, 3), values[9:18].reshape(3, 3), values[18:]
+    K, lens = without_skew(K, label, path)
+    intrinsics = Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2]))
+    with np.errstate(over="ignore", invalid="ignore"):
+        centre = -R.T @ t
+    check_finite([centre], label, path)
+    return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)

@@ -1,0 +1,131 @@
+"""3 x 4 projection matrices: one file a photograph with twelve numbers, world to pixels up to scale.
+
+Files `NAME_P.txt` or `NAME.P` beside the photographs or in a folder, or `NAME.txt` in a folder named for it (PMVS's
+`txt/`, with its first line CONTOUR and photographs in `visualize/`). P is taken apart by RQ decomposition with
+positive focal lengths and a right-handed rotation, which makes it unique: of P and -P, the one whose left 3 x 3 has
+a positive determinant. What is left of skew goes the way of a lens. Nothing says where a pixel's centre is: P is taken
+as it stands. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.readers.skew import without_skew
+from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, text
+from eigenfield.core.errors import CaptureError
+
+SUFFIXES = ("_P.txt", "_p.txt", ".P")
+FOLDERS = ("", "P", "projections", "projection", "calib", "calibration", "cameras", "txt", "images")
+PLAIN = ("P", "projections", "projection", "txt")  # folders where NAME.txt is a matrix too, if it looks like one
+CONTOUR = "CONTOUR"
+VISUALIZE = "visualize"
+FILE_LIMIT = 64 * 1024
+SINGULAR = 1e-9
+
+
+def find_projections(folder: Path) -> Path | None:
+    """The folder itself or a usual one in it that holds projection matrices, at least the first of which is one."""
+    for name in FOLDERS:
+        files = _files(folder / name, name in PLAIN)
+        if files and _is_matrix(files[0]):
+            return folder / name
+    return None
+
+
+def _files(folder: Path, plain: bool) -> list[Path]:
+    """`NAME_P.txt` and the like, in name order; only where there is none and `plain`, `NAME.txt`."""
+    paths = files_in(folder)
+    named = [path for path in paths if path.name.endswith(SUFFIXES) and _photograph(path)]
+    return named or [path for path in paths if plain and path.suffix == ".txt"]
+
+
+def _is_matrix(path: Path) -> bool:
+    try:
+        _matrix(path)
+    except CaptureError:
+        return False
+    return True
+
+
+def _photograph(path: Path) -> str:
+    for suffix in SUFFIXES:
+        if path.name.endswith(suffix):
+            return path.name.removesuffix(suffix)
+    return path.stem
+
+
+def read_projections(path: Path) -> Calibration:
+    """Every matrix of a folder (or of the folder of the file that is named) as an entry, named as its file.
+
+    Files that cannot be used become errors of their own; `*.txt` beside matrices that are none are passed over only
+    where files are told by `_P.txt`. Raises CaptureError `calibration-empty` where there is no such file.
+    """
+    folder = path.parent if path.is_file() else path
+    files = _files(folder, True)
+    if not files:
+        raise CaptureError(
+            "calibration-empty", "holds no NAME_P.txt and no NAME.txt", path=folder, remedy="name another folder"
+        )
+    entries, errors = [], []
+    for file in files:
+        try:
+            entries.append(_entry(file))
+        except CaptureError as error:
+            errors.append(error)
+    return Calibration(folder, "projections", tuple(entries), tuple(errors))
+
+
+def _matrix(path: Path) -> NDArray[np.float64]:
+    words = text(path, FILE_LIMIT).split()
+    if words[:1] == [CONTOUR]:
+        words = words[1:]
+    return numbers(words, 12, "the projection matrix", path).reshape(3, 4)
+
+
+def _entry(path: Path) -> Entry:
+    name = _photograph(path)
+    label = printable(name)
+    P = _matrix(path)
+    check_finite([P], label, path)
+    K, R, centre = decompose(P, label, path)
+    check_finite([K, centre], label, path)
+    K, lens = without_skew(K, label, path)
+    focal, principal = (float(K[0, 0]), float(K[1, 1])), (float(K[0, 2]), float(K[1, 2]))
+    visualised = path.parent.name == "txt" and (path.parent.parent / VISUALIZE).is_dir()
+    file = f"{VISUALIZE}/{name}" if visualised else name
+    return Entry(file, label, Intrinsics(None, None, focal, None, principal), R, centre, lens)
+
+
+def decompose(
+    P: NDArray[np.float64], label: str, path: Path
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """K (3, 3) upper triangular with a positive diagonal and last entry 1, R (3, 3) a rotation, and the centre (3,) of
+    P (3, 4) ~ K R [I | -centre]. CaptureError `camera-singular` where the camera's centre is at infinity."""
+    P = P / max(np.abs(P).max(), np.finfo(float).tiny)
+    M = P[:, :3]
+    scales = np.linalg.norm(M, axis=1)
+    # rows of a projection differ by the focal length: their directions, not their lengths, tell whether it is singular
+    if scales.min() == 0 or abs(np.linalg.det(M / scales[:, None])) < SINGULAR:
+        raise CaptureError(
+            "camera-singular",
+            f"the projection matrix of {label} is singular: a camera at infinity, or none",
+            path=path,
+            remedy="mend or remove it",
+        )
+    if np.linalg.det(M / scales[:, None]) < 0:
+        P, M = -P, -M
+    # RQ by QR of the reversed transpose
+    q, r = np.linalg.qr(M[::-1].T)
+    K: NDArray[np.float64]
+    R: NDArray[np.float64]
+    K, R = r.T[::-1, ::-1], q.T[::-1]
+    signs = np.sign(np.diag(K))
+    K, R = K * signs, signs[:, None] * R
+    if not K[2, 2] > 0:
+        raise damaged(path, f"the projection matrix of {label} cannot be taken apart")
+    return K / K[2, 2], R, np.asarray(-np.linalg.solve(M, P[:, 3]), np.float64)

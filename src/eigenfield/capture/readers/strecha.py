@@ -1,0 +1,85 @@
+"""Strecha's dense multi-view sets: one `*.camera` file a photograph, named `0000.jpg.camera`.
+
+Three rows of K; three zeros (distortion: the photographs are without); three rows of R; the camera's centre; width and
+height that K is for. **R is camera-to-world**: its columns are the camera's axes, x right, y down, z forward, so
+P = K [R^T | -R^T C]. C. Strecha et al., "On Benchmarking Camera Calibration and Multi-View Stereo for High
+Resolution Imagery", CVPR 2008.
+"""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.readers.skew import without_skew
+from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, size_of, text
+from eigenfield.core.errors import CaptureError
+
+SUFFIX = ".camera"
+FOLDERS = ("", "gt_dense_cameras", "cameras", "images")  # then any other, in name order
+NUMBERS = 9 + 3 + 9 + 3 + 2
+FILE_LIMIT = 64 * 1024
+LOOKED_AT = 1000  # folders beside the photographs that are looked into
+
+
+def find_strecha(folder: Path) -> Path | None:
+    """The folder itself or one directly in it that holds `*.camera` files, usual names first."""
+    for name in FOLDERS:
+        if _files(folder / name):
+            return folder / name
+    for inner in _inner(folder):
+        if _files(inner):
+            return inner
+    return None
+
+
+def _inner(folder: Path) -> list[Path]:
+    if not folder.is_dir():
+        return []
+    with os.scandir(folder) as entries:
+        return sorted(Path(e.path) for e in entries if not e.name.startswith(".") and e.is_dir())[:LOOKED_AT]
+
+
+def _files(folder: Path) -> list[Path]:
+    return [path for path in files_in(folder) if path.name.endswith(SUFFIX)]
+
+
+def read_strecha(path: Path) -> Calibration:
+    """Every `*.camera` file of a folder (or of the folder of the file that is named) as an entry.
+
+    Files that cannot be used become errors of their own. Raises CaptureError `calibration-empty` where there is none.
+    """
+    folder = path.parent if path.is_file() else path
+    files = _files(folder)
+    if not files:
+        raise CaptureError("calibration-empty", f"holds no *{SUFFIX}", path=folder, remedy="name another folder")
+    entries, errors = [], []
+    for file in files:
+        try:
+            entries.append(_entry(file))
+        except CaptureError as error:
+            errors.append(error)
+    return Calibration(folder, "strecha", tuple(entries), tuple(errors))
+
+
+def _entry(path: Path) -> Entry:
+    name = path.name.removesuffix(SUFFIX)
+    label = printable(name)
+    values = numbers(text(path, FILE_LIMIT).split(), NUMBERS, "it", path)
+    check_finite([values], label, path)
+    K, distortion, R, centre, size = values[:9], values[9:12], values[12:21], values[21:24], values[24:]
+    if distortion.any():
+        raise CaptureError(
+            "camera-model",
+            f"{label} has distortion coefficients, of which the format does not say what they mean",
+            path=path,
+            remedy="undistort the photographs and write zeros",
+        )
+    straight, lens = without_skew(K.reshape(3, 3), label, path)
+    width, height = size_of(size[0], size[1], label, path)
+    if straight[0, 2] > 10 * width or straight[1, 2] > 10 * height:
+        raise damaged(path, f"the principal point of {label} is far outside its {width}x{height} pixels")
+    principal = (float(straight[0, 2]), float(straight[1, 2]))
+    intrinsics = Intrinsics(width, height, (float(straight[0, 0]), float(straight[1, 1])), None, principal)
+    return Entry(name, label, intrinsics, R.reshape(3, 3).T, centre, lens)

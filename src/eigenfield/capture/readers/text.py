@@ -1,0 +1,113 @@
+"""Small calibration files from others: read whole, up to a limit; numbers from words; errors that name the file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.capture.calibration import LARGEST, printable
+from eigenfield.core.errors import CaptureError
+
+TEXT_LIMIT = 64 * 2**20  # bytes of one calibration file that is read whole
+SIDE_LIMIT = 1_000_000  # pixels along a side that a calibration may claim
+LENS_LIMIT = 1e6  # of lens coefficients, which belong to coordinates around 1
+SHOWN = 40  # characters of a bad word that a message repeats
+
+
+def contents(path: Path, limit: int = TEXT_LIMIT) -> bytes:
+    """The bytes of a file. CaptureError: `calibration-missing`, `calibration-too-large`."""
+    try:
+        size = path.stat().st_size
+        if size > limit:
+            raise CaptureError(
+                "calibration-too-large",
+                f"has {size} bytes, more than the {limit} that such a calibration may have",
+                path=path,
+                remedy="name the calibration file",
+            )
+        with path.open("rb") as file:
+            return file.read(limit)
+    except OSError as error:
+        raise unreadable(path, error) from error
+
+
+def text(path: Path, limit: int = TEXT_LIMIT) -> str:
+    """The file as text with \\n line ends: UTF-8, or UTF-16 where a byte order mark says so; odd bytes stay."""
+    data = contents(path, limit)
+    if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        decoded = data.decode("utf-16", "replace")
+    else:
+        decoded = data.decode("utf-8-sig", "surrogateescape")
+    return decoded.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def files_in(folder: Path) -> list[Path]:
+    """The files of one folder in name order, hidden ones left out; none where it is no folder or cannot be read."""
+    try:
+        with os.scandir(folder) as entries:
+            return sorted(Path(e.path) for e in entries if not e.name.startswith(".") and e.is_file())
+    except OSError:
+        return []
+
+
+def unreadable(path: Path, error: OSError) -> CaptureError:
+    return CaptureError("calibration-missing", error.strerror or "cannot be read", path=path, remedy="check the path")
+
+
+def damaged(path: Path, message: str, remedy: str = "copy or export it again") -> CaptureError:
+    """Something in a calibration that is not as its format has it."""
+    return CaptureError("calibration-damaged", message, path=path, remedy=remedy)
+
+
+def shown(word: object) -> str:
+    """A word from a file as a message repeats it: one short line."""
+    line = printable(str(word)[: SHOWN + 1])
+    return line if len(line) <= SHOWN else f"{line[:SHOWN]}..."
+
+
+def numbers(words: Sequence[str], count: int, what: str, path: Path) -> NDArray[np.float64]:
+    """(count,) from words, NaN and infinities allowed; CaptureError `calibration-damaged`."""
+    if len(words) != count:
+        raise damaged(path, f"{what} has {len(words)} numbers, not {count}")
+    values = np.empty(count)
+    for i, word in enumerate(words):
+        try:
+            values[i] = float(word)
+        except ValueError:
+            raise damaged(path, f"{what} holds {shown(word)!r}, which is no number") from None
+    return values
+
+
+def check_finite(values: Iterable[ArrayLike], label: str, path: Path) -> None:
+    """CaptureError `camera-not-finite` where a camera holds NaN, infinities, or numbers beyond LARGEST."""
+    if not all(np.isfinite(v).all() and (np.abs(v) <= LARGEST).all() for v in map(np.asarray, values)):
+        raise CaptureError(
+            "camera-not-finite",
+            f"{label} has NaN, infinite or huge entries",
+            path=path,
+            remedy="mend or remove its entry",
+        )
+
+
+def check_lens(coefficients: Iterable[float], label: str, path: Path) -> None:
+    """CaptureError `lens` where coefficients are no distortion that a lens could have."""
+    if not all(abs(c) <= LENS_LIMIT for c in coefficients):  # False for NaN
+        raise CaptureError(
+            "lens", f"{label} has lens coefficients that are huge or not finite", path=path, remedy="mend them"
+        )
+
+
+def size_of(width: float, height: float, label: str, path: Path) -> tuple[int, int]:
+    """Whole pixels from numbers; CaptureError `camera-size`."""
+    if not all(1 <= side <= SIDE_LIMIT and side == round(side) for side in (width, height)):
+        raise CaptureError(
+            "camera-size",
+            f"{label} has a size of {width:g}x{height:g}",
+            path=path,
+            remedy="a size is a whole number of pixels: mend it",
+        )
+    return int(width), int(height)

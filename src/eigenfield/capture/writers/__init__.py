@@ -1,0 +1,1 @@
+"""Calibrations as other tools read them."""

@@ -1,0 +1,121 @@
+"""Writing COLMAP's sparse models, binary (https://colmap.github.io/format.html): what `colmap.py` reads, and points.
+
+Image names are relative to the light field's root: `colmap gui --image_path ROOT` finds them.
+"""
+
+from __future__ import annotations
+
+import os
+import struct
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.capture.lightfield import LightField, View
+from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.points import SparsePoints
+from eigenfield.capture.readers.colmap import MODELS
+from eigenfield.core.camera import Camera
+
+NO_POINT = 2**64 - 1
+FULL = 8  # coefficients of OpenCV's rational lens that COLMAP's FULL_OPENCV has
+
+
+def colmap_camera(camera: Camera, lens: Lens | None) -> tuple[str, tuple[float, ...]] | None:
+    """The name of the simplest of COLMAP's models and its parameters; None where none describes the lens."""
+    K = camera.K
+    fx, fy, cx, cy = (float(v) for v in (K[0, 0], K[1, 1], K[0, 2], K[1, 2]))
+    if K[0, 1] != 0:
+        return None
+    if lens is None:
+        return "PINHOLE", (fx, fy, cx, cy)
+    c = tuple(float(v) for v in lens.coefficients)
+    if lens.model == "fisheye":
+        return "OPENCV_FISHEYE", (fx, fy, cx, cy, *c)
+    if lens.model == "rational" and not any(c[FULL:]):
+        return "FULL_OPENCV", (fx, fy, cx, cy, *c[:FULL])
+    if lens.model != "brown":
+        return None
+    if c[4]:
+        return "FULL_OPENCV", (fx, fy, cx, cy, *c, 0.0, 0.0, 0.0)
+    if fx == fy and not any(c[1:]):
+        return "SIMPLE_RADIAL", (fx, cx, cy, c[0])
+    return "OPENCV", (fx, fy, cx, cy, *c[:4])
+
+
+def colmap_model(light_field: LightField, points: SparsePoints | None) -> dict[str, bytes] | None:
+    """`cameras.bin`, `images.bin` and `points3D.bin`; None where COLMAP has no model for one of the lenses."""
+    numbers: dict[tuple[object, ...], int] = {}
+    records, owner = [], []
+    for view in light_field.views:
+        described = colmap_camera(view.camera, view.lens)
+        if described is None:
+            return None
+        key = (*described, view.camera.width, view.camera.height)
+        if key not in numbers:
+            numbers[key] = len(numbers) + 1
+            model, parameters = described
+            head = struct.pack("<IiQQ", numbers[key], MODELS[model][0], view.camera.width, view.camera.height)
+            records.append(head + struct.pack(f"<{len(parameters)}d", *parameters))
+        owner.append(numbers[key])
+    return {
+        "cameras.bin": struct.pack("<Q", len(records)) + b"".join(records),
+        "images.bin": _images(light_field, owner, points),
+        "points3D.bin": _points(light_field, points),
+    }
+
+
+def _images(light_field: LightField, owner: list[int], points: SparsePoints | None) -> bytes:
+    records = [struct.pack("<Q", len(light_field))]
+    for index, (view, camera) in enumerate(zip(light_field.views, owner, strict=True)):
+        record = np.zeros(0, np.dtype([("x", "<f8"), ("y", "<f8"), ("point", "<u8")]))
+        if points is not None:
+            here = np.flatnonzero(points.view == index)
+            record = np.zeros(len(here), record.dtype)
+            record["x"], record["y"] = points.pixels[here].T
+            record["point"] = points.point[here] + 1
+        pose = struct.pack("<I7dI", index + 1, *quaternion(view.camera.R), *view.camera.t, camera)
+        name = relative_name(view, light_field.root).encode("utf-8", "surrogateescape") + b"\0"
+        records.append(pose + name + struct.pack("<Q", len(record)) + record.tobytes())
+    return b"".join(records)
+
+
+def _points(light_field: LightField, points: SparsePoints | None) -> bytes:
+    if points is None:
+        return struct.pack("<Q", 0)
+    place = np.zeros(len(points.view), np.int64)  # of each observation in its image's list
+    for index in range(len(light_field)):
+        here = np.flatnonzero(points.view == index)
+        place[here] = np.arange(len(here))
+    order = np.argsort(points.point, kind="stable")
+    ends = np.cumsum(points.track_lengths)
+    records = [struct.pack("<Q", len(points))]
+    for row, (position, colour, error) in enumerate(zip(points.positions, points.colours, points.errors, strict=True)):
+        seen = order[ends[row] - points.track_lengths[row] : ends[row]]
+        track = np.column_stack([points.view[seen] + 1, place[seen]]).astype("<u4")
+        head = struct.pack("<Q3d3BdQ", row + 1, *position, *colour.tolist(), float(error), len(seen))
+        records.append(head + track.tobytes())
+    return b"".join(records)
+
+
+def relative_name(view: View, root: Path) -> str:
+    """A photograph's path relative to `root`, with forward slashes."""
+    return Path(os.path.relpath(view.path.absolute(), root.absolute())).as_posix()
+
+
+def quaternion(R: NDArray[np.float64]) -> tuple[float, float, float, float]:
+    """(w, x, y, z), w >= 0, of a rotation matrix, by the largest of the four (Shepperd 1978)."""
+    squares = 1 + np.array([
+        np.trace(R), R[0, 0] - R[1, 1] - R[2, 2], R[1, 1] - R[0, 0] - R[2, 2], R[2, 2] - R[0, 0] - R[1, 1]
+    ])  # fmt: skip
+    largest = int(np.argmax(squares))
+    products = np.array([
+        [squares[0], R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]],
+        [R[2, 1] - R[1, 2], squares[1], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0]],
+        [R[0, 2] - R[2, 0], R[0, 1] + R[1, 0], squares[2], R[1, 2] + R[2, 1]],
+        [R[1, 0] - R[0, 1], R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], squares[3]],
+    ])[largest]  # fmt: skip
+    q = products / np.linalg.norm(products)
+    w, x, y, z = (float(v) for v in (q if q[0] >= 0 else -q))
+    return w, x, y, z

@@ -1,0 +1,145 @@
+"""Saving a calibration as other tools read it: `transforms.json` and a COLMAP model in one folder, or nothing."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import logging
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.points import SparsePoints
+from eigenfield.capture.readers.transforms import NAME
+from eigenfield.capture.writers.colmap import colmap_model
+from eigenfield.capture.writers.transforms import transforms_document
+from eigenfield.core.errors import OutputError
+from eigenfield.runtime.files import mended
+
+log = logging.getLogger("eigenfield.capture")
+
+MODEL = "sparse/0"
+POINTS = "points.ply"
+
+
+def save_calibration(
+    light_field: LightField,
+    folder: str | os.PathLike[str],
+    points: SparsePoints | None = None,
+    *,
+    overwrite: bool = False,
+    more: Mapping[str, bytes] | None = None,
+) -> None:
+    """Write the cameras of `light_field` into `folder`: `transforms.json` (nerfstudio, instant-ngp) and `sparse/0`
+    (COLMAP, binary), with the sparse points, also as `points.ply`.
+
+    more: further files by name, written with them. overwrite: replace what an earlier calibration wrote there; other
+    files in the folder stay as they are. `open_capture` reads both forms back to the same cameras. A lens that
+    COLMAP has no model for leaves `sparse` out, with a warning. Skew is refused.
+
+    Raises OutputError: `output-exists` (the folder is not empty), `output-is-file`, `camera-skew`, `disk-full`,
+    `not-writable`.
+    """
+    place = Path(folder)
+    refuse_folder(place, overwrite)
+    for view in light_field.views:
+        if view.camera.K[0, 1] != 0:
+            raise OutputError(
+                "camera-skew",
+                f"camera {view.name} has skew, which neither transforms.json nor COLMAP can say",
+                path=place,
+                remedy="remove it from the photographs",
+            )
+    files = _contents(light_field, place, points)
+    files |= more or {}
+    with mended(place), _part(place) as part:
+        for name, data in files.items():
+            (part / name).parent.mkdir(parents=True, exist_ok=True)
+            with (part / name).open("wb") as file:
+                file.write(data)
+                file.flush()
+                os.fsync(file.fileno())
+        _put(part, place)
+
+
+def refuse_folder(folder: Path, overwrite: bool) -> None:
+    """Before any work: raise OutputError where a calibration may not or cannot be written to `folder`."""
+    if folder.exists() and not folder.is_dir():
+        raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
+    with mended(folder):
+        if folder.is_dir() and not overwrite and any(folder.iterdir()):
+            raise OutputError(
+                "output-exists",
+                "exists and is not empty",
+                path=folder,
+                remedy="use --overwrite or another name",
+            )
+    parent = folder.absolute().parent
+    while not parent.exists():
+        parent = parent.parent
+    if not parent.is_dir() or not os.access(parent, os.W_OK):
+        raise OutputError("not-writable", "cannot be made here", path=folder, remedy="name another place")
+
+
+def _contents(light_field: LightField, place: Path, points: SparsePoints | None) -> dict[str, bytes]:
+    document = transforms_document(light_field, place, POINTS if points is not None else None)
+    files = {NAME: (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()}
+    model = colmap_model(light_field, points)
+    if model is None:
+        log.warning("%s: COLMAP has no model for the lens: only %s is written", place, NAME)
+    else:
+        files |= {f"{MODEL}/{name}": data for name, data in model.items()}
+    if points is not None:
+        files[POINTS] = _ply(points)
+    return files
+
+
+def _ply(points: SparsePoints) -> bytes:
+    record = np.zeros(len(points), [(axis, "<f4") for axis in "xyz"] + [(c, "u1") for c in ("red", "green", "blue")])
+    for axis, values in zip("xyz", points.positions.T, strict=True):
+        record[axis] = values
+    for name, values in zip(("red", "green", "blue"), points.colours.T, strict=True):
+        record[name] = values
+    lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
+    lines += [f"property float {axis}" for axis in "xyz"]
+    lines += [f"property uchar {name}" for name in ("red", "green", "blue")]
+    return ("\n".join([*lines, "end_header"]) + "\n").encode() + record.tobytes()
+
+
+@contextlib.contextmanager
+def _part(place: Path) -> Iterator[Path]:
+    """A folder beside `place`, on the same disk, gone after the block."""
+    parent = place.absolute().parent
+    parent.mkdir(parents=True, exist_ok=True)
+    part = Path(tempfile.mkdtemp(prefix=f".{place.name}-", suffix=".part", dir=parent))
+    try:
+        yield part
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+
+
+def _put(part: Path, place: Path) -> None:
+    """`part` as `place` by rename; entry by entry where `place` holds something that is to stay."""
+    mode = place.stat().st_mode & 0o7777 if place.is_dir() else 0o777 & ~_umask()
+    part.chmod(mode)
+    if not place.exists() or not any(place.iterdir()):
+        if place.exists():
+            place.rmdir()
+        part.replace(place)
+        return
+    for entry in sorted(part.iterdir()):
+        target = place / entry.name
+        if target.is_dir() and not target.is_symlink():
+            target.replace(part / f"old-{entry.name}")  # goes with `part`
+        entry.replace(target)
+
+
+def _umask() -> int:
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,1 @@
+"""Arrays to payloads and back; knows no scene and no file."""

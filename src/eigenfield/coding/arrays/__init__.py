@@ -1,0 +1,1 @@
+"""Weights, cameras, names and triangles in few bytes."""

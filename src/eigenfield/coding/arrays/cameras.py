@@ -1,0 +1,169 @@
+"""Intrinsics and poses of cameras in few bytes.
+
+A camera is eleven numbers: fx, fy, skew, cx, cy in pixels; its rotation against that of the first camera as modified
+Rodrigues parameters p = tan(angle / 4) axis, |p| <= 1; its centre. Each is rounded to a step. On a regular grid the
+plane over rows and columns that fits each of them best is taken off. What is left is coded as it is, or less that of
+the camera before, whichever takes fewer bytes.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+from eigenfield.coding import limits
+from eigenfield.coding.arrays.grid import checked_grid, read_grid, write_grid
+from eigenfield.coding.entropy.range_coder import (
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+    float32_numbers,
+)
+from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
+from eigenfield.core.camera import Camera
+
+HEADER = struct.Struct("<BBHHI3d4d8d")  # version, kind, rows, columns, cameras; steps; first rotation; first numbers
+NUMBERS = 11
+ON_GRID, FROM_BEFORE = 1, 2  # bits of the kind
+LARGEST = 2**20  # steps
+
+
+def code_cameras(
+    cameras: Sequence[Camera],
+    *,
+    intrinsic_step: float,
+    rotation_step: float,
+    centre_step: float,
+    grid: ArrayLike | None = None,
+) -> tuple[bytes, NDArray[np.float32], NDArray[np.float32]]:
+    """The bytes, and what a decoder finds: intrinsics (Nc, 5) and poses (Nc, 3, 4) float32 as a scene file keeps them.
+
+    Steps, positive: of intrinsics in pixels, of rotations in radians, of centres in world units; every number is off by
+    at most half of its step. grid: (rows, columns) camera indices, -1 where there is none.
+
+    Raises ValueError for no cameras, no grid, or numbers more than 2^20 steps off what is expected.
+    """
+    steps = np.array([intrinsic_step, rotation_step / 4, centre_step])
+    if not cameras or not (np.isfinite(steps).all() and (steps > 0).all()):
+        raise ValueError("cameras are needed, and steps that are positive")
+    count = len(cameras)
+    cells = None if grid is None else checked_grid(grid, count)
+    if cells is not None and max(cells.shape) > 65535:
+        raise ValueError("a grid has at most 65535 rows and columns")
+    turn = Rotation.from_matrix([camera.R for camera in cameras])
+    first = turn[0].as_quat()
+    numbers = np.zeros((count, NUMBERS))
+    numbers[:, :5] = [[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras]
+    numbers[:, 5:8] = (turn * turn[0].inv()).as_mrp()
+    numbers[:, 8:] = [camera.centre for camera in cameras]
+    base = numbers[0, [0, 1, 2, 3, 4, 8, 9, 10]]
+    unit = np.repeat(steps, [5, 3, 3])
+    places = _places(cells, count)
+    planes = np.zeros((3, NUMBERS), np.float32)
+    rest = numbers - _base(base)
+    if cells is not None:
+        planes = np.linalg.lstsq(places, rest, rcond=None)[0].astype(np.float32)
+        rest = rest - places @ planes.astype(np.float64)
+    table = np.rint(rest / unit)
+    if not np.abs(table).max() <= LARGEST:
+        raise ValueError(f"cameras more than {LARGEST} steps off what is expected")
+    order = np.arange(count) if cells is None else cells[cells >= 0]
+    whole = table.astype(np.int64)[order]
+
+    def stream(kind: int) -> bytes:
+        def run(coder: Any) -> None:
+            if cells is not None:
+                write_grid(coder, cells)
+            code_lines(coder, whole.copy(), _before(kind, count))
+
+        shape = (0, 0) if cells is None else cells.shape
+        front = HEADER.pack(VERSION, kind, *shape, count, *steps, *first, *base)
+        surface = b"" if cells is None else planes.astype("<f4").tobytes()
+        body = coded(run, CONTEXTS, MIXTURES, room=4 * NUMBERS * count + 1024)
+        return filled_up(front + surface + body, max(NUMBERS * count, 0 if cells is None else cells.size))
+
+    kind = 0 if cells is None else ON_GRID
+    data = min(stream(kind), stream(kind | FROM_BEFORE), key=len)
+    return data, *_assembled(whole[np.argsort(order)] * unit + _base(base) + places @ planes.astype(np.float64), first)
+
+
+def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32. Raises
+    FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    check_header(data, HEADER.size, where)
+    _, kind, rows, columns, count, *rest = HEADER.unpack_from(data)
+    steps, first, base = np.array(rest[:3]), np.array(rest[3:7]), np.array(rest[7:])
+    gridded = bool(kind & ON_GRID)
+    if kind > 3 or count == 0 or not np.isfinite(rest).all():
+        raise damaged("cameras of an unknown kind, none, or not finite", where)
+    if count > limits.MAX_CAMERAS or (gridded and rows * columns < count):
+        raise damaged("a number of cameras that cannot be", where)
+    check_numbers(data, max(NUMBERS * count, rows * columns if gridded else 0), NUMBERS * limits.MAX_CAMERAS, where)
+    body = HEADER.size + (3 * NUMBERS * 4 if gridded else 0)
+    check_header(data, body, where)
+    planes = np.zeros((3, NUMBERS))
+    if gridded:
+        planes = float32_numbers(data, 3 * NUMBERS, HEADER.size).reshape(3, NUMBERS)
+    coder = decoder(data[body:], CONTEXTS, MIXTURES)
+    cells = read_grid(coder, rows, columns, count, where) if gridded else None
+    whole = np.zeros((count, NUMBERS), np.int64)
+    code_lines(coder, whole, _before(kind, count))
+    check_end(coder, where)
+    order = np.arange(count) if cells is None else cells[cells >= 0]
+    unit = np.repeat(steps, [5, 3, 3])
+    with np.errstate(all="ignore"):
+        numbers = whole[np.argsort(order)] * unit + _base(base) + _places(cells, count) @ planes
+        intrinsics, poses = _assembled(numbers, first)
+    if not (np.isfinite(intrinsics).all() and np.isfinite(poses).all()):
+        raise damaged("cameras that are not finite", where)
+    return intrinsics, poses
+
+
+def _base(base: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(11,) the first camera's numbers, rotation apart."""
+    return np.concatenate([base[:5], np.zeros(3), base[5:]])
+
+
+def _places(cells: NDArray[np.int64] | None, count: int) -> NDArray[np.float64]:
+    """(Nc, 3): 1, row, column of every camera."""
+    places = np.zeros((count, 3))
+    if cells is not None:
+        row, column = np.nonzero(cells >= 0)
+        places[cells[row, column]] = np.stack([np.ones(count), row, column], axis=1)
+    return places
+
+
+def _before(kind: int, count: int) -> NDArray[np.int64]:
+    return np.arange(count) - 1 if kind & FROM_BEFORE else np.full(count, -1)
+
+
+def _assembled(
+    numbers: NDArray[np.float64], first: NDArray[np.float64]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Intrinsics and poses of the eleven numbers; first: (4,) the first rotation as a quaternion x, y, z, w."""
+    p = numbers[:, 5:8]
+    square = (p * p).sum(axis=1, keepdims=True)
+    turn = _matrices(np.concatenate([2 * p, 1 - square], axis=1) / (1 + square)) @ _matrices(first[None])
+    shift = -(turn @ numbers[:, 8:, None])
+    return numbers[:, :5].astype(np.float32), np.concatenate([turn, shift], axis=2).astype(np.float32)
+
+
+def _matrices(q: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 3, 3) rotations of unit quaternions (n, 4) x, y, z, w."""
+    x, y, z, w = q.T
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.moveaxis(np.array(rows), 2, 0)

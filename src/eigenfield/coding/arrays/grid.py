@@ -1,0 +1,37 @@
+"""Cameras on a regular grid: which one stands where."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.coding.entropy.range_coder import damaged
+from eigenfield.coding.entropy.table_kernels import code_cells
+
+
+def checked_grid(grid: ArrayLike, cameras: int) -> NDArray[np.int64]:
+    """(rows, columns) int64 with every camera once and -1 where there is none. Raises ValueError for anything else."""
+    cells = np.asarray(grid, np.int64)
+    if (
+        cells.ndim != 2
+        or cells.min(initial=0) < -1
+        or not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras))
+    ):
+        raise ValueError("a grid has every camera once, and -1 where there is none")
+    return cells
+
+
+def write_grid(coder: Any, grid: NDArray[np.int64]) -> None:
+    """Code a checked grid."""
+    code_cells(coder, grid.reshape(-1).copy())
+
+
+def read_grid(coder: Any, rows: int, columns: int, cameras: int, where: str) -> NDArray[np.int64]:
+    """Raises FormatError `coded-damaged` for what is no grid of so many cameras."""
+    cells = np.full(rows * columns, -1, np.int64)
+    code_cells(coder, cells)
+    if not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras)):
+        raise damaged("a grid that has not every camera once", where)
+    return cells.reshape(rows, columns)

@@ -1,0 +1,61 @@
+"""Triangles of the view plane in few bytes: sorted, each less the one before."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.entropy.range_coder import (
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+)
+from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
+
+HEADER = struct.Struct("<BI")  # version, triangles
+
+
+def sorted_triangles(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The same (T, 3), each with its sense but beginning with its least corner, in rising order."""
+    first = triangles.argmin(axis=1)
+    turned = np.take_along_axis(triangles, (first[:, None] + np.arange(3)) % 3, axis=1)
+    return turned[np.lexsort(turned.T[::-1])]
+
+
+def code_triangles(triangles: NDArray[np.int32]) -> bytes:
+    """Sorted triangles (T, 3)."""
+    count = len(triangles)
+    lines = _lines(triangles)
+    body = coded(
+        lambda coder: code_lines(coder, lines.copy(), np.arange(count) - 1), CONTEXTS, MIXTURES, room=4 * count + 256
+    )
+    return filled_up(HEADER.pack(VERSION, count) + body, 3 * count)
+
+
+def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]:
+    """(T, 3). Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    check_header(data, HEADER.size, where)
+    _, count = HEADER.unpack_from(data)
+    check_numbers(data, 3 * count, 6 * limits.MAX_CAMERAS, where)
+    coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
+    lines = np.zeros((count, 3), np.int64)
+    code_lines(coder, lines, np.arange(count) - 1)
+    check_end(coder, where)
+    found = np.stack([lines[:, 0], lines[:, 0] + lines[:, 1], lines[:, 0] + lines[:, 2]], axis=1)
+    if found.min(initial=0) < 0 or found.max(initial=0) >= limits.MAX_CAMERAS:
+        raise damaged("triangles of cameras that there cannot be", where)
+    return found.astype(np.int32)
+
+
+def _lines(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
+    """The least corner, and the others less that."""
+    wide = triangles.astype(np.int64)
+    return np.stack([wide[:, 0], wide[:, 1] - wide[:, 0], wide[:, 2] - wide[:, 0]], axis=1)

@@ -1,0 +1,188 @@
+"""A triangle mesh with texture coordinates in few bytes.
+
+Positions are rounded to a lattice; vertices at one lattice point are one *place*. Then come, one after the other:
+
+1. the faces between places, each over an edge of those before (`mesh_kernels`), and with every new place its x, y and,
+   where the lattice is not flat, z;
+2. the z of a flat lattice, inverse depth (`mesh_value_kernels.code_depths`);
+3. which vertex of its place each face's corner is, and the charts (`mesh_corner_kernels`);
+4. texture coordinates of charts that are not a map of x and y (`mesh_value_kernels.code_textures`).
+
+docs/coding.md describes the bytes.
+"""
+
+from __future__ import annotations
+
+import struct
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.entropy.range_coder import (
+    VERSION,
+    check_end,
+    check_header,
+    check_numbers,
+    coded,
+    damaged,
+    decoder,
+    filled_up,
+)
+from eigenfield.coding.mesh.charts import chart_kinds, mapped_texture
+from eigenfield.coding.mesh.corner_kernels import MAPPED, Corners, code_corners, corner_lists, new_vertices, no_corners
+from eigenfield.coding.mesh.face_kernels import Source, new_built, no_source, traverse
+from eigenfield.coding.mesh.front_kernels import new_front
+from eigenfield.coding.mesh.value_kernels import CONTEXTS, MIXTURES, code_depths, code_textures
+from eigenfield.core.lattice import Lattice
+from eigenfield.core.mesh import Mesh
+
+HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
+REACH = 2**20 - 1  # of lattice coordinates, either way
+MOST_FINE = 8  # last digits of x and y
+MOST_DIGITS = 18  # of texture coordinates in 0..1
+
+
+@dataclass(frozen=True, eq=False)
+class _Welded:
+    """places: (n, 3) int64. place: (v,) of each vertex. faces: (m, 3) of vertices, no two corners at one place. label,
+    kinds, maps: see `chart_kinds`. codes: (v, 2) int64 texture coordinates."""
+
+    places: NDArray[np.int64]
+    place: NDArray[np.int32]
+    faces: NDArray[np.int32]
+    label: NDArray[np.int32]
+    kinds: NDArray[np.int8]
+    maps: NDArray[np.int64]
+    codes: NDArray[np.int64]
+
+
+def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 0) -> tuple[bytes, Mesh]:
+    """The bytes, and the mesh that a decoder finds: the same faces, each with its sense, in another order.
+
+    Positions are rounded to the lattice. Texture coordinates are off by at most half of 2^-uv_bits where they are
+    coded; in charts that are an affine map of lattice x and y to within that, they are that map of the rounded x and
+    y, so that texture and surface move together. Left out: vertices without a face, and faces two
+    of whose corners fall onto one lattice point.
+
+    fine: on a flat lattice, how many of the last binary digits of x and y are 0 at most vertices, 0 to 8. Where those
+    inside a relief are at pixels and those of its contours between them, a step of 2^-fine pixels costs the latter
+    alone.
+
+    Raises ValueError for a mesh without texture coordinates, or one that reaches 2^20 steps from the lattice's origin,
+    or behind its camera; for `uv_bits` beyond 1 to 18, `fine` beyond
+    0 to 8 or in space.
+    """
+    if mesh.uv is None or not 1 <= uv_bits <= MOST_DIGITS:
+        raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
+    if not 0 <= fine <= (MOST_FINE if lattice.flat else 0):
+        raise ValueError("0 to 8 fine digits, and only on a flat lattice")
+    welded = _welded(mesh, lattice, uv_bits)
+    n, m, v = len(welded.places), len(welded.faces), len(welded.place)
+    found: list[Mesh] = []
+
+    def run(coder: Any) -> None:
+        source, built = _source(welded), new_built(n, m)
+        complete = traverse(coder, source, built, new_front(n, m), lattice.flat, fine)
+        first, corners = corner_lists(built.faces, n)
+        if lattice.flat:
+            code_depths(coder, built, first, corners)
+        blank = np.full(v, -1, np.int32)
+        given = Corners(
+            welded.faces, welded.label, source.number[welded.place], welded.kinds, welded.maps, blank, blank.copy()
+        )
+        vertices = new_vertices(v, n, m)
+        complete = complete and code_corners(coder, given, source.face_order, built, vertices, first, corners)
+        assert complete
+        codes = welded.codes[given.order]
+        code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
+        found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
+
+    header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
+    body = coded(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
+    return filled_up(header + body, max(n, m, v)), found[0]
+
+
+def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
+    """Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    check_header(data, HEADER.size, where)
+    _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
+    if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
+        raise damaged(f"{v} vertices and {m} faces, more than a scene may have", where)
+    check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
+    if flat > 1 or not 1 <= uv_bits <= MOST_DIGITS or fine > MOST_FINE * flat or not np.isfinite(numbers).all():
+        raise damaged("a lattice that cannot be", where)
+    lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
+    coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
+    built = new_built(n, m)
+    if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat, fine):
+        raise damaged("faces that cannot be", where)
+    check_end(coder, where)
+    first, corners = corner_lists(built.faces, n)
+    if lattice.flat:
+        code_depths(coder, built, first, corners)
+    vertices = new_vertices(v, n, m)
+    if not code_corners(coder, no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
+        raise damaged("corners of faces that cannot be", where)
+    codes = np.zeros((v, 2), np.int64)
+    code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
+    check_end(coder, where)
+    mesh = _mesh(lattice, uv_bits, built, vertices, codes)
+    assert mesh.uv is not None
+    if not (np.abs(mesh.vertices) <= limits.LARGEST).all() or not (np.abs(mesh.uv) <= limits.LARGEST).all():
+        raise damaged("positions or texture coordinates that are not finite", where)
+    return mesh
+
+
+def _welded(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
+    """The mesh on the lattice, without what takes part in no face."""
+    assert mesh.uv is not None
+    exact = lattice.coordinates(mesh.vertices)
+    steps = np.rint(exact)
+    if not (np.abs(steps) <= REACH).all() or (lattice.flat and steps[:, 2].min(initial=0) < 0):
+        raise ValueError("the mesh reaches beyond the lattice, or behind its camera")
+    uv = mesh.uv.astype(np.float64)
+    scale = 2.0**uv_bits
+    if not (np.abs(uv) * scale <= REACH).all():
+        raise ValueError("texture coordinates that are not finite, or far beyond 0 to 1")
+    label, kinds, maps = chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
+    codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)
+    alike = np.concatenate([steps.astype(np.int64), codes, label[:, None]], axis=1)
+    _, first, same = np.unique(alike, axis=0, return_index=True, return_inverse=True)
+    faces = first[same.reshape(-1)][mesh.faces]
+    _, place = np.unique(steps[first], axis=0, return_inverse=True)
+    at = np.zeros(len(steps), np.int64)
+    at[first] = place.reshape(-1)
+    corner = at[faces]
+    faces = faces[(corner != np.roll(corner, 1, axis=1)).all(axis=1)]
+    used, faces = np.unique(faces, return_inverse=True)
+    places, place = np.unique(steps[used].astype(np.int64).reshape(-1, 3), axis=0, return_inverse=True)
+    return _Welded(
+        places, place.reshape(-1).astype(np.int32), faces.reshape(-1, 3).astype(np.int32), label[used], kinds, maps,
+        codes[used],
+    )  # fmt: skip
+
+
+def _source(welded: _Welded) -> Source:
+    n, m = len(welded.places), len(welded.faces)
+    faces = welded.place[welded.faces]
+    f = faces.astype(np.int64)
+    edges = (f * n + np.roll(f, -1, axis=1)).reshape(-1)
+    order = np.argsort(edges, kind="stable")
+    seeds = np.argsort(welded.places[f, 0].sum(axis=1), kind="stable").astype(np.int32)
+    blank = np.full(n, -1, np.int32)
+    return Source(
+        welded.places, faces, seeds, edges[order], (order // 3).astype(np.int32), np.zeros(m, np.bool_), blank,
+        blank.copy(), np.zeros(m, np.int32),
+    )  # fmt: skip
+
+
+def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDArray[np.int64]) -> Mesh:
+    uv = codes / 2.0**uv_bits
+    mapped = vertices.kinds[vertices.chart] == MAPPED
+    place = vertices.place
+    uv[mapped] = mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
+    with np.errstate(over="ignore", invalid="ignore"):
+        return Mesh(lattice.points(built.points)[place].astype(np.float32), vertices.faces, uv.astype(np.float32))

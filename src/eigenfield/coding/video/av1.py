@@ -1,0 +1,139 @@
+"""Films of 10-bit Y'CbCr, 4:2:0: AV1 as a bare stream of its own units, one key frame.
+
+SVT-AV1 codes them, tuned for squared error; dav1d decodes them, a frame at a time.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Iterable, Iterator
+from fractions import Fraction
+from itertools import chain
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.pictures.pictures_10bit import BITS
+from eigenfield.core.errors import FormatError
+from eigenfield.core.scene import Residual
+from eigenfield.runtime.parallel import ordinary_scheduling
+
+Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
+
+PIXELS = "yuv420p10le"
+CONTAINER = "obu"
+RATE = 25  # frames a second: means nothing here, but a film has one
+PARALLEL = 2  # SVT-AV1's level of parallelism, fixed: its memory grows with it, and the bytes are the same
+FOREVER = 99999  # frames between key frames
+
+
+def encode_film(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
+    """The film of luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023, the same bytes
+    each time.
+
+    size: rows and columns, even and at least `deep.SMALLEST`. crf: 1..63, the coarser the higher. preset: SVT-AV1's.
+    """
+    os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
+    import av
+
+    buffer = io.BytesIO()
+    with av.open(buffer, "w", format=CONTAINER) as container:
+        stream: Any = container.add_stream("libsvtav1", rate=RATE)
+        stream.height, stream.width = size
+        stream.pix_fmt = PIXELS
+        context = stream.codec_context
+        context.gop_size = FOREVER
+        context.color_range, context.colorspace = 2, 1  # full, BT.709
+        stream.options = {
+            "crf": str(crf), "preset": str(preset), "svtav1-params": f"keyint=-1:scd=0:tune=1:lp={PARALLEL}",
+        }  # fmt: skip
+        with ordinary_scheduling():
+            context.open()
+        for number, planes in enumerate(frames):
+            container.mux(stream.encode(_frame(planes, number)))
+        container.mux(stream.encode(None))
+    return buffer.getvalue()
+
+
+def _frame(planes: Planes, number: int) -> Any:
+    import av
+
+    height, width = planes[0].shape
+    frame = av.VideoFrame(width, height, PIXELS)
+    for target, plane in zip(frame.planes, planes, strict=True):
+        values = np.zeros((target.height, target.line_size // 2), "<u2")
+        values[:, : plane.shape[1]] = plane
+        target.update(values.tobytes())
+    frame.pts, frame.time_base = number, Fraction(1, RATE)
+    return frame
+
+
+def residual_frames(residual: Residual) -> Iterator[Planes]:
+    """The frames of a residual, in its order. FormatError `residual-damaged`."""
+    return decode_film(residual.film, residual.frame, len(residual.order), f"/extensions/{limits.EXTENSION}/residual")
+
+
+def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
+    """The frames of a film one after the other, as they were given to `encode_film`. No frame larger than `size` (rows,
+    columns) takes memory, and none beyond `count` is decoded.
+
+    FormatError `residual-damaged` where the film is damaged, ends early, or has frames of another size or kind.
+    """
+    import av
+
+    def damaged(what: str) -> FormatError:
+        return FormatError("residual-damaged", f"the residual cannot be decoded: {what}", where=where)
+
+    context: Any = av.CodecContext.create("libdav1d", "r")
+    context.options = {"max_pixels": str(size[0] * size[1])}
+    context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged film
+    number = 0
+    for unit in chain(_units(data), [None]):
+        try:
+            frames = context.decode(None if unit is None else av.Packet(unit))
+        except MemoryError:
+            raise
+        except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
+            raise damaged(" ".join(str(error).split())[:80] or type(error).__name__) from error
+        for frame in frames:
+            if (frame.height, frame.width) != size or frame.format.name != PIXELS:
+                found = f"{frame.width}x{frame.height}, {frame.format.name}"
+                raise damaged(f"a frame of {found}; {size[1]}x{size[0]} of {BITS} bits announced")
+            luma, blue, red = (_samples(plane) for plane in frame.planes)
+            yield luma, blue, red
+            number += 1
+            if number == count:
+                return
+    raise damaged(f"ends after {number} of {count} frames")
+
+
+def _units(data: bytes) -> Iterator[bytes]:
+    """The open bitstream units of a film, as far as they are whole: each shows one frame at most, so that a decoder
+    that is given one at a time never has more to hand out."""
+    start = 0
+    while start < len(data):
+        header = data[start]
+        at = start + (2 if header & 4 else 1)  # an extension's byte
+        length = shift = 0
+        if not header & 2:  # no length: to the end
+            yield data[start:]
+            return
+        while True:  # little-endian, 7 bits a byte
+            if at >= len(data) or shift > 28:
+                return
+            length |= (data[at] & 127) << shift
+            shift, at = shift + 7, at + 1
+            if data[at - 1] < 128:
+                break
+        if at + length > len(data):
+            return
+        yield data[start : at + length]
+        start = at + length
+
+
+def _samples(plane: Any) -> NDArray[np.uint16]:
+    values = np.frombuffer(plane, "<u2").reshape(-1, plane.line_size // 2)
+    return np.ascontiguousarray(values[: plane.height, : plane.width], np.uint16)

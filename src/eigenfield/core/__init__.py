@@ -1,0 +1,1 @@
+"""Plain data: cameras, meshes, the view plane, scenes; errors and progress."""

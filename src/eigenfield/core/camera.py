@@ -1,0 +1,88 @@
+"""A pinhole camera: world-to-camera, OpenCV axes (x right, y down, z forward), pixels with centres at +0.5."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.core.errors import CaptureError
+
+ROTATION_TOLERANCE = 1e-4  # calibrations are often printed with six digits
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """One calibrated pinhole.
+
+    K: (3, 3) float64, pixels, upper triangular, last row 0 0 1.
+    R: (3, 3) float64, rotation from world to camera axes.
+    t: (3,) float64, x_camera = R x_world + t.
+    width, height: the photograph's size in pixels; the top-left pixel's centre is (0.5, 0.5).
+    """
+
+    K: NDArray[np.float64]
+    R: NDArray[np.float64]
+    t: NDArray[np.float64]
+    width: int
+    height: int
+
+    @staticmethod
+    def checked(K: ArrayLike, R: ArrayLike, t: ArrayLike, width: int, height: int, name: str) -> Camera:
+        """A camera from outside: raises CaptureError (codes `camera-not-finite`, `camera-not-rotation`,
+        `camera-focal`, `camera-size`) that names it, and snaps R to the nearest rotation."""
+        k, r, p = (np.array(a, dtype=np.float64) for a in (K, R, t))
+        if k.shape != (3, 3) or r.shape != (3, 3) or p.shape != (3,):
+            raise CaptureError("camera-shape", f"camera {name}: matrices of the wrong shape", remedy="mend its entry")
+        if not (np.isfinite(k).all() and np.isfinite(r).all() and np.isfinite(p).all()):
+            raise CaptureError(
+                "camera-not-finite", f"camera {name} has NaN or infinite entries", remedy="mend or remove its entry"
+            )
+        if k[0, 0] <= 0 or k[1, 1] <= 0:
+            raise CaptureError(
+                "camera-focal",
+                f"camera {name} has a focal length of {k[0, 0]:g} x {k[1, 1]:g}",
+                remedy="mend its entry",
+            )
+        if width < 1 or height < 1:
+            raise CaptureError("camera-size", f"camera {name} has a size of {width}x{height}", remedy="mend its entry")
+        u, s, vt = np.linalg.svd(r)
+        if np.abs(s - 1).max() > ROTATION_TOLERANCE or np.linalg.det(r) < 0:
+            raise CaptureError(
+                "camera-not-rotation",
+                f"camera {name}: the rotation has singular values {s.round(4).tolist()} and determinant "
+                f"{np.linalg.det(r):.4f}",
+                remedy="a pose needs an orthonormal, right-handed rotation: mend or remove its entry",
+            )
+        return Camera(k, u @ vt, p, int(width), int(height))
+
+    @property
+    def centre(self) -> NDArray[np.float64]:
+        """(3,) the camera's centre in the world."""
+        return -self.R.T @ self.t
+
+    @property
+    def matrix(self) -> NDArray[np.float64]:
+        """(3, 4) K [R | t]: world to homogeneous pixels, whose third entry is the depth along z."""
+        return self.K @ np.hstack([self.R, self.t[:, None]])
+
+    def project(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """(n, 3) world points to (n, 2) pixels and (n,) depths; pixels mean nothing where the depth is not positive."""
+        homogeneous = np.asarray(points, dtype=np.float64) @ self.matrix[:, :3].T + self.matrix[:, 3]
+        depth = homogeneous[:, 2]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return homogeneous[:, :2] / depth[:, None], depth
+
+    def resized(self, width: int, height: int) -> Camera:
+        """The same view on a `width` x `height` raster that it covers entirely: scaled evenly, centred, cropped."""
+        scale = max(width / self.width, height / self.height)
+        shift = np.array(
+            [[1, 0, (width - scale * self.width) / 2], [0, 1, (height - scale * self.height) / 2], [0, 0, 1]]
+        )
+        return Camera(shift @ np.diag([scale, scale, 1.0]) @ self.K, self.R, self.t, width, height)
+
+    def rounded(self) -> Camera:
+        """The camera as a file keeps it: every number a float32."""
+        k, r, p = (a.astype(np.float32).astype(np.float64) for a in (self.K, self.R, self.t))
+        return Camera(k, r, p, self.width, self.height)

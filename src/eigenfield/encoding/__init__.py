@@ -1,0 +1,1 @@
+"""A calibrated capture and a proxy in, an eigen-texture scene out."""

@@ -1,0 +1,250 @@
+"""The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
+
+Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
+weights, in turns, until a round changes less than `STOP`; from the second round on pixels of `doubtable` shots count
+less the farther they are from what is drawn (`DOUBT`). Then closed loop, at any rates: the textures are coded, weights
+and mean are fitted again to what the coded ones draw, and the mean is coded last.
+"""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding.arrays.weights import code_weights
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.progress import Progress
+from eigenfield.core.scene import Basis, Plane
+from eigenfield.encoding.fitted.code_planes import coded_plane, with_weights
+from eigenfield.encoding.fitted.coverage import fill_unseen
+from eigenfield.encoding.fitted.model import Block, Composer, Model, make_composer
+from eigenfield.encoding.fitted.observations import Shots
+from eigenfield.encoding.fitted.passes import look, psnr_of
+from eigenfield.encoding.fitted.rate import Rate, code_worthwhile, price_of_mean
+from eigenfield.encoding.fitted.regions import find_regions
+from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
+from eigenfield.encoding.fitted.start import principal_block, residual_energy
+
+log = logging.getLogger("eigenfield.fit")
+
+STOP = 0.05  # dB by which a round must change the pictures for another to follow
+DOUBT = 4.0  # times what the round before left, root mean square: an error that makes a pixel count for half
+MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
+TEXTURE_STEPS = 5
+WEIGHT_STEPS = 4
+WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
+WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
+CLOSING_STEPS = 3  # for the mean, after coding
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneSettings:
+    """What one plane is to be.
+
+    matrix: (C, 3) its channels from R, G, B. mean, grid: (rows, columns) of mean and components. textures: N. local:
+    so many more for each region that needs them.
+    """
+
+    matrix: NDArray[np.float32]
+    mean: tuple[int, int]
+    grid: tuple[int, int]
+    textures: int
+    local: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Pixels:
+    """Those of all photographs; those (`thinned`, `doubtable`) that mean and textures, and weights are fitted to."""
+
+    every: Shots
+    fitted: Shots
+    weighed: Shots
+
+
+@dataclass(frozen=True, eq=False)
+class MeanAlone:
+    """How far the photographs are from what the mean draws: (Ne,) squared deviations over (Ne,) pixels of so many
+    channels; total: those of all of them from one colour."""
+
+    squares: NDArray[np.float64]
+    pixels: NDArray[np.float64]
+    channels: int
+    total: float
+
+
+@dataclass(frozen=True, eq=False)
+class OpenFit:
+    """A plane fitted, not coded. uncoded: dB of its channels, mean over cameras, what is drawn not rounded."""
+
+    name: str
+    pixels: Pixels
+    model: Model
+    scales: Scales
+    composer: Composer
+    mean_alone: MeanAlone
+    uncoded: float
+
+
+def fit_plane(
+    pixels: Pixels,
+    settings: PlaneSettings,
+    name: str,
+    rounds: int,
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> OpenFit:
+    """Fit one plane in open loop, by at most so many rounds. Raises CaptureError `nothing-seen` where no camera covers
+    a pixel."""
+    fitted, channels = pixels.fitted, len(settings.matrix)
+    grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
+    model = Model(settings.matrix, grey.astype(np.float32), settings.grid, [])
+    tick = _ticker(progress, f"fit {name}", 3 + 2 * rounds)
+    scales = measure_scales(fitted, model)
+    if not scales.mean.any():
+        raise CaptureError(
+            "nothing-seen",
+            "no camera sees any texel of the proxy",
+            remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
+        )
+    mean_alone = fit_mean(fitted, model, scales)
+    tick()
+    count = min(settings.textures, len(fitted) - 1)
+    if count:
+        rows, columns = settings.grid
+        model.blocks = [principal_block(fitted, model, scales, count, (0, rows, 0, columns), work)]
+        whiten(model, scales)
+        _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
+    tick()
+    reached, half = -math.inf, None
+    for number in range(rounds if count else 0):
+        left = residual(fitted, model, half=half)
+        before, reached = reached, psnr_of(left.squares, left.pixels, channels)
+        log.info("%s, after round %d: %.2f dB", name, number, reached)
+        if abs(reached - before) < STOP:
+            break
+        fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
+        tick()
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
+        half = DOUBT**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
+        whiten(model, scales)
+        tick()
+    fill_unseen(model, scales, pixels.every.surface)
+    composer = make_composer(pixels.every.surface, model)
+    uncoded = _drawn(pixels.every, model, composer)
+    tick(last=True)
+    return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
+
+
+def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work: Path | None) -> None:
+    """So many components for each rectangle of which the model's leave most."""
+    if not count:
+        return
+    for rectangle in find_regions(*residual_energy(pixels.weighed, model)):
+        model.blocks.append(principal_block(pixels.fitted, model, scales, count, rectangle, work))
+        log.info("%d components of their own for rows %d to %d, columns %d to %d", count, *rectangle)
+    whiten(model, scales)
+
+
+def code_plane(
+    fit: OpenFit,
+    rate: Rate,
+    grid: NDArray[np.int64] | None = None,
+    precision: NDArray[np.float32] | None = None,
+    progress: Progress | None = None,
+) -> Plane:
+    """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
+    As its files give it back.
+
+    The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
+    -1 where none stands, None where they do not. precision: of the mean, see `mean_precision`; None: alike everywhere.
+    """
+    pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
+    tick = _ticker(progress, f"code {fit.name}", 3)
+    model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
+    bases: list[Basis] = []
+    price = price_of_mean(open_loop, scales, rate, precision)
+    for block in open_loop.blocks:
+        coded = code_worthwhile(block, model.grid, scales, rate, price)
+        if not coded.count:
+            continue
+        values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])
+        model.blocks.append(replace(block, textures=np.ascontiguousarray(values), weights=weights))
+        bases.append(coded)
+    tick()
+    if bases:
+        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
+        for number, block in enumerate(model.blocks):
+            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
+            bases[number] = with_weights(bases[number], block.weights, stream)
+    tick()
+    left = residual(pixels.fitted, model, True, fit.composer)
+    fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
+    mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
+    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.coder, precision)
+    tick(last=True)
+    return plane
+
+
+def coded_psnr(fit: OpenFit, plane: Plane) -> float:
+    """As `OpenFit.uncoded`, of the plane that the fit was coded to."""
+    blocks = []
+    for basis in plane.bases:
+        top, left = basis.corner
+        height, width = basis.textures.shape[1:3]
+        textures = np.ascontiguousarray(basis.values().transpose(0, 3, 1, 2))
+        blocks.append(Block((top, top + height, left, left + width), textures, basis.weights))
+    mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
+    return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
+
+
+def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
+    """dB of the photographs as the renderers draw the model."""
+    found = look(
+        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+        weights=[block.weights for block in model.blocks], photographs=True, wanted=(False, False, False),
+        composer=composer,
+    )  # fmt: skip
+    return psnr_of(found.squares, found.pixels, model.channels)
+
+
+def fit_mean(shots: Shots, model: Model, scales: Scales) -> MeanAlone:
+    """Fit the model's mean alone, from one colour."""
+    left = residual(shots, model, mean_only=True)
+    # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
+    sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
+    total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
+    fit_textures(shots, model, scales, left, MEAN_STEPS, mean_only=True)
+    found = look(
+        shots, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
+    )
+    return MeanAlone(found.squares, found.pixels, model.channels, total)
+
+
+def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
+    """(n,) steps so that a weight's error moves all pictures alike: in inverse proportion to what its component draws,
+    the root mean square over a picture's pixels."""
+    share = scales.coarse[block.window]
+    squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
+    drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
+    return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
+
+
+def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[..., None]:
+    """A function that reports one more of `total` steps, or all of them."""
+    done = 0
+    if progress is not None:
+        progress(stage, 0, total)
+
+    def tick(last: bool = False) -> None:
+        nonlocal done
+        done = total if last else min(done + 1, total - 1)
+        if progress is not None:
+            progress(stage, done, total)
+
+    return tick

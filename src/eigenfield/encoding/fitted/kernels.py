@@ -1,0 +1,298 @@
+"""Kernels of the fit: what is drawn of textures of any size, its exact transpose, so that least squares can be solved
+by them; coarse textures made finer."""
+
+# mypy: disable-error-code="no-untyped-def,no-untyped-call"
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenfield.rendering.software.kernels import filter_weights
+from eigenfield.rendering.software.simd import give_cubic, take_cubic
+from eigenfield.runtime.jit import kernel
+
+# Where the pixels of a camera land: `many` (h, w) uint8 is how many places of the atlas a pixel shows, 0 to 4; places
+# (n, 2) float32 are their columns and rows, pixel by pixel. A single one is all that the pixel shows, each of several a
+# quarter of it.
+
+
+@kernel()
+def count_places(near, spans, parted, finer, many):
+    """Fill `many` from a covered `Frame`; how many places that makes. Of a pixel at the border of what there is, those
+    samples that show something are counted, if there are two: a single one tells too little of a photograph's pixel."""
+    total = 0
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            many[row, pixel] = near[row, pixel] > 0
+        for at in range(spans[row, 0], spans[row, 1]):
+            hits = 0
+            for sample in range(4 * at, 4 * at + 4):
+                hits += finer[0, sample] > 0
+            many[row, parted[at]] = 0 if hits == 1 else hits
+        for pixel in range(many.shape[1]):
+            total += many[row, pixel]
+    return total
+
+
+@kernel(inline=True)
+def put_place(near, column, row, right, bottom, places, at):
+    """places[at] = a sample's column and row, if it shows something, which is returned."""
+    if near > 0:
+        places[at, 0] = min(max(column / near, np.float32(0)), right)
+        places[at, 1] = min(max(row / near, np.float32(0)), bottom)
+    return near > 0
+
+
+@kernel()
+def place_pixels(near, column_of, row_of, spans, parted, finer, height, width, many, places):
+    """Fill `places`, for `many` as `count_places` makes it, in an atlas of height x width."""
+    right, bottom = np.float32(width - 1), np.float32(height - 1)
+    count = 0
+    for row in range(many.shape[0]):
+        at = spans[row, 0]
+        for pixel in range(many.shape[1]):
+            if at < spans[row, 1] and parted[at] == pixel:
+                if many[row, pixel]:
+                    for s in range(4 * at, 4 * at + 4):
+                        count += put_place(finer[0, s], finer[1, s], finer[2, s], right, bottom, places, count)
+                at += 1
+            elif many[row, pixel]:
+                count += put_place(
+                    near[row, pixel], column_of[row, pixel], row_of[row, pixel], right, bottom, places, count
+                )  # fmt: skip
+
+
+@kernel(inline=True)
+def share_of(count):
+    """What each place of a pixel that has `count` is of it."""
+    return np.float32(1) if count == 1 else np.float32(0.25)
+
+
+@kernel()
+def aim(many, codes, matrix, image):
+    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows what
+    there is."""
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            part = np.float32(many[row, pixel]) * share_of(many[row, pixel])
+            for k in range(image.shape[0]):
+                value = np.float32(0)
+                if part > 0:
+                    value = part * (
+                        matrix[k, 0] * np.float32(codes[row, pixel, 0])
+                        + matrix[k, 1] * np.float32(codes[row, pixel, 1])
+                        + matrix[k, 2] * np.float32(codes[row, pixel, 2])
+                    )
+                image[k, row, pixel] = value
+
+
+@kernel(inline=True)
+def position(place, ratio, last):
+    """A place in the atlas among texels of another size, `ratio` of them to one of the atlas's; clamped to 0..last."""
+    half = np.float32(0.5)
+    return min(max((place + half) * ratio - half, np.float32(0)), last)
+
+
+@kernel(inline=True)
+def footprint(place, across, down, width, height):
+    """Column and row of the texel left above where a pixel lands in a texture of width x height, and Catmull-Rom's
+    weights of the columns and rows from the one before on. place (2,): in the finest atlas; across, down: see
+    `position`."""
+    x = position(place[0], across, np.float32(width - 1))
+    y = position(place[1], down, np.float32(height - 1))
+    left, top = np.int64(x), np.int64(y)
+    return left, top, filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
+
+
+@kernel(inline=True)
+def tap(left, top, u, v, width, height):
+    """Where tap (u, v) of a footprint lies in its texture, those beyond the border on it."""
+    return min(max(top + v - 1, 0), height - 1) * width + min(max(left + u - 1, 0), width - 1)
+
+
+@kernel()
+def draw(many, places, size, texture, sign, image):
+    """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom. places: in an atlas
+    of `size` (H, W), which need not be the texture's."""
+    channels, height, width = texture.shape
+    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    flat, plane = texture.reshape(-1), height * width
+    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    at = 0
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            count = many[row, pixel]
+            into, part = row * wide + pixel, sign * share_of(count)
+            for _ in range(count):
+                left, top, a, d = footprint(places[at], across, down, width, height)
+                at += 1
+                if 1 <= left < width - 2 and 1 <= top < height - 2:
+                    first = (top - 1) * width + left - 1
+                    for k in range(channels):
+                        drawn[k * area + into] += part * take_cubic(flat, first + k * plane, width, a, d)
+                else:
+                    for k in range(channels):
+                        for v in range(4):
+                            for u in range(4):
+                                value = flat[k * plane + tap(left, top, u, v, width, height)]
+                                drawn[k * area + into] += part * d[v] * a[u] * value
+
+
+@kernel(inline=True)
+def part_of(weight, row, pixel):
+    """What a pixel counts for, 0 to 1. weight (h, w) uint8, 255 for whole; (0, 0): all do."""
+    return np.float32(weight[row, pixel]) * np.float32(1 / 255) if weight.shape[0] > 0 else np.float32(1)
+
+
+@kernel()
+def put_back(many, places, size, image, weight, out):
+    """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
+    channels, height, width = out.shape
+    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    flat, plane = out.reshape(-1), height * width
+    drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
+    at = 0
+    for row in range(many.shape[0]):
+        for pixel in range(many.shape[1]):
+            count = many[row, pixel]
+            source, w = row * wide + pixel, part_of(weight, row, pixel) * share_of(count)
+            if w <= 0:
+                at += count
+                continue
+            for _ in range(count):
+                left, top, a, d = footprint(places[at], across, down, width, height)
+                at += 1
+                if 1 <= left < width - 2 and 1 <= top < height - 2:
+                    first = (top - 1) * width + left - 1
+                    for k in range(channels):
+                        give_cubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
+                else:
+                    for k in range(channels):
+                        for v in range(4):
+                            for u in range(4):
+                                into = k * plane + tap(left, top, u, v, width, height)
+                                flat[into] += d[v] * a[u] * w * drawn[k * area + source]
+
+
+@kernel()
+def squares_of(many, image, weight):
+    """Over the covered pixels: the sum of w image^2, and of w. weight: see `part_of`."""
+    squares, total = 0.0, 0.0
+    for row in range(many.shape[0]):
+        line_squares, line_total = np.float32(0), np.float32(0)
+        for pixel in range(many.shape[1]):
+            w = part_of(weight, row, pixel)
+            if many[row, pixel] == 0 or w <= 0:
+                continue
+            for k in range(image.shape[0]):
+                line_squares += w * image[k, row, pixel] * image[k, row, pixel]
+            line_total += w
+        squares += np.float64(line_squares)
+        total += np.float64(line_total)
+    return squares, total
+
+
+@kernel()
+def distrust(image, weight, half, out):
+    """out (h, w) uint8 = weight times 1 / (1 + e^2 / half), the weight of Cauchy's likelihood for an error of e, the
+    channels of image (C, h, w) together. weight: see `part_of`. half: the squared error of pixels that count half."""
+    for row in range(out.shape[0]):
+        for pixel in range(out.shape[1]):
+            square = np.float32(0)
+            for k in range(image.shape[0]):
+                square += image[k, row, pixel] * image[k, row, pixel]
+            trusted = part_of(weight, row, pixel) / (np.float32(1) + square / half)
+            out[row, pixel] = np.uint8(np.float32(255) * trusted + np.float32(0.5))
+
+
+@kernel()
+def enlarge(coarse, row_at, row_weight, column_at, column_weight, spans, lines, start, fine):
+    """fine (C, H, W) = start (C, H, W), or (0, 0, 0) for zeros, + coarse (C, h, w) by the taps of
+    `eigenfield.rendering.resample.Taps`, within `spans`.
+
+    spans (H, 2): first and last + 1 column that is needed of each fine row, equal where none is; what lies outside
+    stays as it is. lines (h, W): room.
+    """
+    low, high, begun = spans[:, 0].min(), spans[:, 1].max(), start.shape[0] > 0
+    for k in range(coarse.shape[0]):
+        for row in range(coarse.shape[1]):
+            line, out = coarse[k, row], lines[row]
+            for x in range(low, high):
+                a, w = column_at[x], column_weight[x]
+                out[x] = (w[0] * line[a[0]] + w[1] * line[a[1]]) + (w[2] * line[a[2]] + w[3] * line[a[3]])
+        for y in range(fine.shape[1]):
+            first, last = spans[y, 0], spans[y, 1]
+            if first == last:
+                continue
+            w, out = row_weight[y], fine[k, y]
+            l0, l1, l2, l3 = lines[row_at[y, 0]], lines[row_at[y, 1]], lines[row_at[y, 2]], lines[row_at[y, 3]]
+            if begun:
+                before = start[k, y]
+                for x in range(first, last):
+                    out[x] = before[x] + ((w[0] * l0[x] + w[1] * l1[x]) + (w[2] * l2[x] + w[3] * l3[x]))
+            else:
+                for x in range(first, last):
+                    out[x] = (w[0] * l0[x] + w[1] * l1[x]) + (w[2] * l2[x] + w[3] * l3[x])
+
+
+# One part of a conjugate gradient's vectors, (C, h, w): the mean, or one component. Its diagonal is about
+# energy x (share + extra), share (h, w) what a texel answers for.
+
+
+@kernel(inline=True)
+def preconditioner(share, extra, energy):
+    """The inverse of the diagonal."""
+    return np.float32(1) / (energy * (share + extra) + np.float32(1e-6))
+
+
+@kernel()
+def bend(direction, strength, image):
+    """image += strength times the Laplacian of direction: 4 x itself less its neighbours, those beyond the border
+    counting as itself. Returns their scalar product."""
+    channels, height, width = direction.shape
+    total = 0.0
+    for k in range(channels):
+        for y in range(height):
+            for x in range(width):
+                here = direction[k, y, x]
+                rest = np.float32(0)
+                if y > 0:
+                    rest += here - direction[k, y - 1, x]
+                if y + 1 < height:
+                    rest += here - direction[k, y + 1, x]
+                if x > 0:
+                    rest += here - direction[k, y, x - 1]
+                if x + 1 < width:
+                    rest += here - direction[k, y, x + 1]
+                image[k, y, x] += strength * rest
+                total += np.float64(here) * np.float64(image[k, y, x])
+    return total
+
+
+@kernel()
+def advance(state, rest, direction, image, length, share, extra, energy):
+    """state += length direction, rest -= length image; returns rest . preconditioned rest."""
+    channels, height, width = state.shape
+    total = 0.0
+    for k in range(channels):
+        for y in range(height):
+            for x in range(width):
+                state[k, y, x] += length * direction[k, y, x]
+                left = rest[k, y, x] - length * image[k, y, x]
+                rest[k, y, x] = left
+                total += np.float64(left) * np.float64(left * preconditioner(share[y, x], extra, energy))
+    return total
+
+
+@kernel()
+def turn(direction, rest, ratio, share, extra, energy):
+    """direction = preconditioned rest + ratio direction; returns rest . preconditioned rest."""
+    channels, height, width = direction.shape
+    total = 0.0
+    for k in range(channels):
+        for y in range(height):
+            for x in range(width):
+                ready = rest[k, y, x] * preconditioner(share[y, x], extra, energy)
+                direction[k, y, x] = ready + ratio * direction[k, y, x]
+                total += np.float64(rest[k, y, x]) * np.float64(ready)
+    return total

@@ -1,0 +1,238 @@
+"""Least squares over the photographs: conjugate gradients for mean and textures together, and for the weights.
+
+Minimised is the sum over cameras c of |photograph - G_c M - G_c sum_j w_cj E_j|^2, where G_c draws a texture of any
+size as the renderer does (see `passes`), plus small Laplacians of mean and textures, which settle what no photograph
+sees. Only pixels that a camera covers count, each against what is drawn there: nothing is filled in
+first, so that this is principal component analysis with missing data, in the pictures instead of the texture maps.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.encoding.fitted.kernels import advance, bend, put_back, turn
+from eigenfield.encoding.fitted.model import COLUMNS, Composer, Model
+from eigenfield.encoding.fitted.observations import Shots
+from eigenfield.encoding.fitted.passes import PIECE, Look, Textures, look
+from eigenfield.runtime.parallel import parallel_map, pieces
+
+MEAN_SMOOTHNESS = 0.004  # of a seen texel's own part in the pictures, the median
+TEXTURE_SMOOTHNESS = 0.0025
+RIDGE = 1e-5  # of the mean diagonal, for weights
+
+
+@dataclass(frozen=True, eq=False)
+class Scales:
+    """How much of the pictures a texel answers for, summed over the cameras.
+
+    mean: (rows, columns) float32 of the mean. coarse: (h, w) float32 of a component whose weights have mean square 1.
+    smooth: strength of the Laplacians of mean and components.
+    """
+
+    mean: NDArray[np.float32]
+    coarse: NDArray[np.float32]
+    smooth: tuple[float, float]
+
+
+def measure_scales(shots: Shots, model: Model) -> Scales:
+    """Row sums of the normal matrix, G^T G 1 = G^T 1: what Catmull-Rom's negative taps leave of its diagonal plus all
+    around it, on either grid."""
+    fine, coarse = np.zeros((1, *model.mean.shape[1:]), np.float32), np.zeros((1, *model.grid), np.float32)
+    size = shots.surface.size
+
+    def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
+        for index in range(*part):
+            ones = np.ones((1, *shots.shapes[index]), np.float32)
+            put_back(*shots.places(index), size, ones, shots.weight(index), mean)
+            put_back(*shots.places(index), size, ones, shots.weight(index), grid)
+        return mean, grid
+
+    for mean, grid in parallel_map(piece, pieces(len(shots), PIECE)):
+        fine += mean
+        coarse += grid
+    np.maximum(fine, 0, out=fine)
+    np.maximum(coarse, 0, out=coarse)
+    return Scales(fine[0], coarse[0], (MEAN_SMOOTHNESS * _median(fine), TEXTURE_SMOOTHNESS * _median(coarse)))
+
+
+def _median(values: NDArray[np.float32]) -> float:
+    seen = values[values > 0]
+    return float(np.median(seen)) if len(seen) else 1.0
+
+
+def residual(
+    shots: Shots,
+    model: Model,
+    mean_only: bool = False,
+    composer: Composer | None = None,
+    half: float | None = None,
+) -> Look:
+    """What the model leaves of the photographs, and what that asks of mean and textures. composer: what it leaves as
+    the renderers draw it. half: see `look`."""
+    return look(
+        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+        weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
+        composer=composer, half=half,
+    )  # fmt: skip
+
+
+def fit_textures(
+    shots: Shots,
+    model: Model,
+    scales: Scales,
+    left: Look,
+    iterations: int,
+    mean_only: bool = False,
+) -> None:
+    """Mean and textures of the model for its weights, or the mean alone for its textures as well. left: `residual` of
+    the model as it is; its sums are used up."""
+    blocks = [] if mean_only else model.blocks
+    weights = [block.weights for block in model.blocks]
+    kinds = [_Kind(scales.mean, scales.smooth[0], 1.0)]
+    for block in blocks:
+        share, energy = np.ascontiguousarray(scales.coarse[block.window]), np.square(block.weights, dtype=np.float64)
+        kinds += [_Kind(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
+    mean, textures = np.zeros_like(model.mean), [np.zeros_like(block.textures) for block in blocks]
+    descent = _Descent(
+        kinds, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
+        _parts(mean, textures),
+    )  # fmt: skip
+    product = descent.begin()
+    for _ in range(iterations):
+        if product <= 0:
+            break
+        back = look(
+            shots, model, mean=mean, textures=None if mean_only else textures, weights=weights, photographs=False,
+            wanted=(True, not mean_only, False),
+        )  # fmt: skip
+        image = _parts(back.mean, back.textures)
+        length = product / descent.bent(image)
+        product, before = descent.advance(image, length), product
+        descent.turn(product / before)
+
+
+def _parts(mean: NDArray[np.float32], textures: Textures) -> Textures:
+    """The mean and each component, (C, rows, columns)."""
+    return [mean, *(texture for found in textures for texture in found)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Descent:
+    """The vectors of preconditioned conjugate gradients, in parts. rest: what the state leaves."""
+
+    kinds: list[_Kind]
+    state: Textures
+    rest: Textures
+    direction: Textures
+
+    def begin(self) -> float:
+        """The first direction, of what is left without the Laplacian; how much is left, by the preconditioner."""
+        self._sum(lambda i: bend(self.state[i], -self.kinds[i].strength, self.rest[i]))
+        return self.turn(0.0)
+
+    def bent(self, image: Textures) -> float:
+        """direction . A direction; image: A direction, but for the Laplacian."""
+        return self._sum(lambda i: bend(self.direction[i], self.kinds[i].strength, image[i]))
+
+    def advance(self, image: Textures, length: float) -> float:
+        """A step along the direction; how much is left, by the preconditioner."""
+        step, state, rest, along = np.float32(length), self.state, self.rest, self.direction
+        return self._sum(lambda i: advance(state[i], rest[i], along[i], image[i], step, *self.kinds[i].diagonal))
+
+    def turn(self, ratio: float) -> float:
+        """The next direction, with `ratio` of the present one."""
+        part = np.float32(ratio)
+        return self._sum(lambda i: turn(self.direction[i], self.rest[i], part, *self.kinds[i].diagonal))
+
+    def _sum(self, function: Callable[[int], float]) -> float:
+        return float(np.sum(parallel_map(function, range(len(self.kinds)))))
+
+
+@dataclass(frozen=True, eq=False)
+class _Kind:
+    """The mean, or one component: what its texels answer for (h, w), its Laplacian's strength at weights of mean square
+    1, and the mean square of its weights."""
+
+    share: NDArray[np.float32]
+    smooth: float
+    energy: float
+
+    @property
+    def strength(self) -> np.float32:
+        return np.float32(self.smooth * self.energy)
+
+    @property
+    def diagonal(self) -> tuple[NDArray[np.float32], np.float32, np.float32]:
+        return self.share, np.float32(4 * self.smooth), np.float32(self.energy)
+
+
+def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
+    """The weights of all cameras for the model's mean and textures, each camera its own least squares, solved side by
+    side."""
+    blocks = model.blocks
+    textures = [block.textures for block in blocks]
+    sizes = [block.count for block in blocks]
+    cuts = np.cumsum([0, *sizes])
+
+    def split(rows: NDArray[np.float32]) -> Textures:
+        return [np.ascontiguousarray(rows[:, a:b]) for a, b in pairwise(cuts)]
+
+    def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
+        found = look(
+            shots, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
+            photographs=photographs, wanted=(False, False, True),
+        )  # fmt: skip
+        return np.concatenate(found.weights, axis=1)
+
+    state = np.concatenate([block.weights for block in blocks], axis=1)
+    rest = asked(state, True)
+    # Whitened components draw pictures of about one size, so that the diagonal is about one number a camera
+    energy = np.concatenate([np.einsum("nchw,nchw->n", texture, texture) for texture in textures])
+    ridge = np.float32(RIDGE * max(float(energy.mean()), 1e-12))
+    direction = rest.copy()
+    product = np.square(rest, dtype=np.float64).sum(axis=1)
+    for _ in range(iterations):
+        image = asked(direction, False) + ridge * direction
+        bent = (direction.astype(np.float64) * image).sum(axis=1)
+        length = np.divide(product, bent, out=np.zeros_like(product), where=bent > 0).astype(np.float32)[:, None]
+        state += length * direction
+        rest -= length * image
+        before, product = product, np.square(rest, dtype=np.float64).sum(axis=1)
+        turn = np.divide(product, before, out=np.zeros_like(product), where=before > 0).astype(np.float32)[:, None]
+        direction = rest + turn * direction
+    for block, rows in zip(blocks, split(state), strict=True):
+        block.weights = rows
+
+
+def whiten(model: Model, scales: Scales) -> None:
+    """Turn each block's components so that their weights are uncorrelated, of mean square 1, and the textures
+    orthogonal in the pictures (texels counted by what they answer for), the strongest first; signs as eigen textures
+    have them. What is drawn stays the same."""
+    for block in model.blocks:
+        if not block.count:
+            continue
+        weights = block.weights.astype(np.float64)
+        rows = len(weights)
+        q, r = np.linalg.qr(weights)
+        flat = block.textures.reshape(block.count, -1)
+        share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), model.channels)
+        gram = np.zeros((block.count, block.count))
+        for first, last in pieces(flat.shape[1], COLUMNS):
+            part = flat[:, first:last] * share[first:last]
+            gram += part @ part.T
+        _, turn = np.linalg.eigh(r @ gram @ r.T)
+        turn = turn[:, ::-1]
+        textures = (turn.T @ r / np.sqrt(rows)).astype(np.float32) @ flat
+        low, high = textures.min(axis=1), textures.max(axis=1)
+        signs = np.where(-low > high, -1.0, 1.0)  # of the largest
+        textures *= signs[:, None].astype(np.float32)
+        block.textures = textures.reshape(-1, *block.textures.shape[1:])
+        block.weights = np.ascontiguousarray((q @ turn * signs * np.sqrt(rows)).astype(np.float32))

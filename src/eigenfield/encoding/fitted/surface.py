@@ -1,0 +1,285 @@
+"""The proxy's surface moved to where the photographs agree on it.
+
+A mesh that was estimated or scanned is off by fractions of a pixel nearly everywhere, which blurs the mean and has
+eigen textures spent on parallax. Each vertex may move along a line, a relief's along the ray of the camera that it
+was made on, others along their normal. Where a point moves, a camera draws another texel of the mean there: by the
+mean's slopes, the picture changes by g for a unit of the step. Gauss-Newton on all vertices: what the mean leaves of
+the photographs, r, is to be g x for the steps x, less what is the same in all cameras, for the mean takes that. Then
+the mean is fitted again on the moved mesh, in turns.
+
+Errors count by those around, so that glass and gloss, which no depth draws, move nothing; and no vertex moves far from
+its given place, or apart from its neighbours, that the photographs do not hold to another. Open edges of what is no
+relief stay where they are: another surface may touch them there without a common vertex, and a gap would show what is
+behind.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+from scipy.sparse import coo_array, csr_array, diags_array
+from scipy.sparse.linalg import cg
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.lattice import Lattice
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.encoding.fitted.colour import split_matrix
+from eigenfield.encoding.fitted.fit import fit_mean
+from eigenfield.encoding.fitted.kernels import aim, draw, put_back
+from eigenfield.encoding.fitted.model import Model
+from eigenfield.encoding.fitted.observations import Decode, Shots, on_mesh, open_shots, thinned
+from eigenfield.encoding.fitted.passes import MINUS, psnr_of
+from eigenfield.encoding.fitted.solve import measure_scales
+from eigenfield.encoding.fitted.surface_kernels import gather_steps
+from eigenfield.encoding.geometry import spread_cameras, texels_of
+from eigenfield.runtime.parallel import parallel_stream
+
+log = logging.getLogger("eigenfield.fit")
+
+ROUNDS = 4
+CAMERAS = 49  # of the array, spread over it, are looked at
+THINNED_FROM = 25  # of them, from which every second pixel each way is enough,
+PIXELS = 1 << 25  # and of all together
+STOP = 0.003  # of the squared error that a round must promise to take off
+STIFF = 0.5  # what it costs that vertices a texel apart are a pixel further apart than given, beside `Asked.weight`
+RIDGE = 0.015  # likewise, that a texel is a pixel off its given place
+LONGEST = 4.0  # pixels that a vertex may move a round
+AROUND = 4.0  # texels, the deviation over which errors are averaged
+LEAST_ERROR = 0.002  # of the photographs' range: what rounding leaves
+FEWEST = 1 / 8  # of the pixels that show most texels must show one for it to count
+SIDE_MOST = 2048  # texels
+SOME = 2000  # vertices by which pixels are measured
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A mesh as it was given, whose p points may move along `lines` (p, 3), of which a unit is about a pixel in the
+    camera that moves most. lattice: of a relief. shape: rows and columns of the atlas.
+
+    same: (n,) the point at which each vertex is, those that are doubled for their texture at one. free: (p,) which may
+    move. owners: the face of each texel, spread: (t, p) from points to covered texels, prior: (p, p) what displacements
+    cost."""
+
+    given: Mesh
+    lattice: Lattice | None
+    lines: NDArray[np.float64]
+    shape: tuple[int, int]
+    same: NDArray[np.int64]
+    free: NDArray[np.bool_]
+    owners: NDArray[np.int32]
+    spread: csr_array
+    prior: csr_array
+
+    def moved(self, off: NDArray[np.float64]) -> Mesh:
+        """With the points so many units (p,) off."""
+        vertices = self.given.vertices + (off[:, None] * self.lines)[self.same]
+        return replace(self.given, vertices=vertices.astype(np.float32))
+
+
+@dataclass(frozen=True, eq=False)
+class Asked:
+    """What t texels ask of the steps of the points in them: to be `pull` / `weight`, counted by `weight`, which is the
+    square of what a unit changes beside that of the errors around, less for fewer cameras. scale: (t,) by which both
+    are more than in the pictures. squares: of all errors there."""
+
+    pull: NDArray[np.float64]
+    weight: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    squares: float
+
+
+def fit_surface(
+    mesh: Mesh,
+    lattice: Lattice | None,
+    cameras: Sequence[Camera],
+    decode: Decode,
+    side: int,
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
+    """The mesh with its vertices moved to where a mean texture draws the photographs best; as it was where that does
+    not help.
+
+    lattice: of a relief, whose vertices stay on their rays; None: they move along their normals. decode: the photograph
+    of a camera, and its mask. side: texels of the atlas, about a pixel each. Raises CaptureError, OutputError.
+    """
+    some = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    used, shape = [cameras[index] for index in some], (min(side, SIDE_MOST),) * 2
+    step = 2 if len(used) >= THINNED_FROM or sum(one.width * one.height for one in used) > PIXELS else 1
+    sheet = _sheet(mesh, lattice, used, shape)
+    best, reached, off = mesh, -np.inf, np.zeros(len(sheet.lines))
+    with open_shots(used, lambda index: decode(some[index]), mesh, shape, work) as every:
+        for number in range(ROUNDS + 1):
+            if progress is not None:
+                progress("fit surface", number, ROUNDS + 1)
+            drawn = on_mesh(every, used, mesh, work) if number else nullcontext(every)
+            with drawn as placed, thinned(placed, step, work) as shots:
+                model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
+                left = fit_mean(shots, model, measure_scales(shots, model))
+                if not left.pixels.any():
+                    break
+                now = psnr_of(left.squares, left.pixels)
+                log.info("surface, after round %d: %.2f dB by the mean alone", number, now)
+                if now <= reached:
+                    break
+                best, reached = mesh, now
+                if number == ROUNDS:
+                    break
+                further, promised = _step(sheet, mesh, off, shots, used, model)
+            if promised < STOP:
+                break
+            off += further
+            mesh = sheet.moved(off)
+    if progress is not None:
+        progress("fit surface", ROUNDS + 1, ROUNDS + 1)
+    return best
+
+
+def _sheet(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape: tuple[int, int]) -> Sheet:
+    assert mesh.uv is not None
+    found, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    points, same = found.astype(np.float64), same.reshape(-1)
+    owners, corners, weights = texels_of(mesh, shape)
+    rows = np.repeat(np.arange(len(corners)), 3)
+    size = len(corners), len(points)
+    spread = coo_array((weights.reshape(-1), (rows, same[corners].reshape(-1))), shape=size).tocsr()
+    area: NDArray[np.float64] = np.asarray(spread.sum(axis=0)).reshape(-1)
+    uv = mesh.uv.astype(np.float64) * [shape[1], shape[0]]
+    prior = STIFF * _laplacian(same, mesh.faces, uv) + RIDGE * diags_array(np.maximum(area, 1))
+    lines = _lines(points, same[mesh.faces], lattice, cameras)
+    free = np.ones(len(points), bool)
+    if lattice is None:
+        free[_open_points(same[mesh.faces])] = False
+    return Sheet(mesh, lattice, lines, shape, same, free, owners, spread, prior.tocsr())
+
+
+def _step(
+    sheet: Sheet, mesh: Mesh, off: NDArray[np.float64], shots: Shots, cameras: Sequence[Camera], model: Model
+) -> tuple[NDArray[np.float64], float]:
+    """(p,) by how much points that are `off` (p,), as in `mesh`, move in a round, and the part of the squared error
+    that this is reckoned to take off."""
+    step, spread, free = np.zeros(len(off)), sheet.spread, np.flatnonzero(sheet.free)
+    if not len(free):
+        return step, 0.0
+    asked = _asked(sheet, mesh, shots, cameras, model)
+    normal = (spread.T @ diags_array(asked.weight) @ spread + sheet.prior).tocsr()[free][:, free]
+    pull = np.asarray(spread.T @ asked.pull - sheet.prior @ off)[free]
+    found, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
+    step[free] = found.clip(-LONGEST, LONGEST)
+    moved = spread @ step
+    less = ((2 * moved * asked.pull - moved * moved * asked.weight) / asked.scale).sum()
+    return step, float(less) / max(asked.squares, 1e-12)
+
+
+def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], model: Model) -> Asked:
+    """What all cameras together ask of the covered texels."""
+    covered, mean, size = sheet.owners >= 0, model.mean[0], shots.surface.size
+    places = np.zeros(sheet.lines.shape)
+    places[sheet.same] = mesh.vertices
+    points, steps = sheet.spread @ places, sheet.spread @ sheet.lines
+    slopes = np.stack([np.gradient(mean, axis=1)[covered], np.gradient(mean, axis=0)[covered]], axis=1)
+    tangents, faces = _tangents(mesh, sheet.lattice, sheet.shape), sheet.owners[covered]
+    matrix = (model.matrix / np.float32(255)).astype(np.float32)
+
+    def look(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+        places, weight = shots.places(index), shots.weight(index)
+        image = np.zeros((1, *shots.shapes[index]), np.float32)
+        aim(places[0], shots.photograph(index), matrix, image)
+        draw(*places, size, model.mean, MINUS, image)
+        asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
+        put_back(*places, size, image, weight, asked)
+        put_back(*places, size, np.ones_like(image), weight, seen)
+        put_back(*places, size, np.square(image), weight, errors)
+        return asked[0][covered], seen[0][covered], errors[0]
+
+    sums, squares = np.zeros((5, len(points))), np.zeros_like(mean)
+    for camera, (asked, seen, errors) in zip(cameras, parallel_stream(look, list(range(len(shots)))), strict=True):
+        gather_steps(camera.matrix, points, steps, tangents, faces, slopes, asked, seen, sums)
+        squares += errors
+    pull, weight, first, shown, rest = sums
+    least = np.maximum(shown, 1e-6)
+    weight -= np.square(first) / least  # what is the same in all of them the mean takes
+    pull -= first * rest / least
+    usual = float(np.median(shown[shown > 0])) if (shown > 0).any() else 1.0
+    trusted = (weight > 0) & (shown > FEWEST * usual)
+    often = np.zeros_like(mean)
+    often[covered] = shown
+    error = gaussian_filter(squares, AROUND) / np.maximum(gaussian_filter(often, AROUND), 1e-6)
+    sure = len(shots) / CAMERAS  # fewer cameras tell light from depth less well
+    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), LEAST_ERROR**2))
+    return Asked(np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum()))
+
+
+def _lines(
+    points: NDArray[np.float64], faces: NDArray[np.int64], lattice: Lattice | None, cameras: Sequence[Camera]
+) -> NDArray[np.float64]:
+    """(p, 3) of a `Sheet`; longer with the square of the distance, so that a unit is as much parallax everywhere.
+    faces: (m, 3) of points."""
+    if lattice is not None:
+        exact = lattice.coordinates(points)
+        lines = lattice.points(exact + np.array([0, 0, 1])) - lattice.points(exact)
+    else:
+        corners = points[faces]
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = np.zeros_like(points)
+        for k in range(3):
+            np.add.at(normals, faces[:, k], across)
+        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+        middle = np.mean([camera.centre for camera in cameras], axis=0)
+        lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
+    few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SOME)).astype(int))
+    length = max(float(np.linalg.norm(lines[few])), 1e-30)
+    small = 1e-4 * float(np.linalg.norm(points[few] - cameras[0].centre)) / length
+    most = 0.0
+    for camera in cameras:
+        (at, depth), (beside, _) = camera.project(points[few]), camera.project(points[few] + small * lines[few])
+        if (depth > 0).any():
+            most = max(most, float(np.median(np.linalg.norm(beside - at, axis=1)[depth > 0])) / small)
+    return lines / most if most > 0 else np.zeros_like(lines)
+
+
+def _tangents(mesh: Mesh, lattice: Lattice | None, shape: tuple[int, int]) -> NDArray[np.float64]:
+    """(m, 2, 3) for each face how the world's point moves for a texel to the right, and one down. A relief's faces are
+    taken as if they faced its camera: those that are steep, across steps of depth, would ask for more than all
+    others."""
+    assert mesh.uv is not None
+    uv = (mesh.uv.astype(np.float64) * [shape[1], shape[0]])[mesh.faces]
+    points = mesh.vertices.astype(np.float64)[mesh.faces]
+    if lattice is not None:
+        exact = lattice.coordinates(points.reshape(-1, 3)).reshape(-1, 3, 3)
+        exact[..., 2] = exact[..., 2].mean(axis=1, keepdims=True)
+        points = lattice.points(exact.reshape(-1, 3)).reshape(-1, 3, 3)
+    (a, b), (c, d) = (uv[:, 1] - uv[:, 0]).T, (uv[:, 2] - uv[:, 0]).T
+    one, other = points[:, 1] - points[:, 0], points[:, 2] - points[:, 0]
+    area = a * d - b * c
+    over = np.divide(1, area, out=np.zeros_like(area), where=np.abs(area) > 1e-12)[:, None]
+    return np.stack([(one * d[:, None] - other * b[:, None]) * over, (other * a[:, None] - one * c[:, None]) * over], 1)
+
+
+def _open_points(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Points on edges of one face only. faces: (m, 3) of points."""
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    ends, count = np.unique(edges, axis=0, return_counts=True)
+    return np.unique(ends[count == 1])
+
+
+def _laplacian(same: NDArray[np.int64], faces: NDArray[np.int32], uv: NDArray[np.float64]) -> coo_array:
+    """(p, p) of the mesh's edges, the weight of one in inverse proportion to its length in texels, which are what uv
+    (n, 2) counts. same: see `Sheet`."""
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    ends, some = np.unique(np.sort(same[edges], axis=1), axis=0, return_index=True)
+    strength = 1 / np.maximum(np.linalg.norm(uv[edges[some, 0]] - uv[edges[some, 1]], axis=1), 1)
+    one, other = ends.T
+    places = np.concatenate([one, other, one, other]), np.concatenate([one, other, other, one])
+    count = int(same.max()) + 1
+    return coo_array((np.concatenate([strength, strength, -strength, -strength]), places), shape=(count, count))

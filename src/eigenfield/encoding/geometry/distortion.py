@@ -1,0 +1,216 @@
+"""What the pictures lose where the depth of a relief is off.
+
+A point whose inverse depth is off by d is drawn b d pixels off in a camera, b being its parallax there. With the
+gradient g of the photograph the error is (g . b) d, squared and summed over the cameras that see the point; what is
+the same in all of them is no loss, the texture takes it. However far it is off, it is not worse than something
+else in its place: the variance of the photographs around. Only where the surface is gone and none lies behind, the
+picture is black.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt, uniform_filter
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.lattice import Lattice
+from eigenfield.core.mesh import Mesh
+from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.runtime.parallel import parallel_stream
+
+Grey = Callable[[int], NDArray[np.float32]]  # (h, w) of the camera of that number
+
+CAMERAS = 25  # of the array, spread over it, are looked at
+OUTERMOST = 9  # of them for holes
+SIDE_MOST = 1536  # texels
+AROUND = 9  # pixels over which photographs vary
+SMOOTH = 3  # texels over which errors are averaged
+BEHIND = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
+CELL = 4  # pixels within which one point must lie behind another to stand for it
+APART = 0.01  # of inverse depth, by which it must
+
+
+@dataclass(frozen=True, eq=False)
+class Effect:
+    """to_ground: texels of the ground along an axis of the atlas, and where the atlas begins in it. seen: pixels, of
+    all photographs, that most texels are seen in."""
+
+    ground: Ground
+    to_ground: tuple[float, NDArray[np.float64]]
+    seen: float
+
+    def places(self, uv: NDArray[np.float32]) -> NDArray[np.int64]:
+        """(n, 2) texture coordinates as the kernels have them."""
+        return _places(uv, *self.to_ground)
+
+
+def depth_effect(mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[Camera], grey: Grey) -> Effect:
+    """The effect of lattice depths of a relief on photographs, in squared units of those, all cameras together.
+
+    pixel: steps of the lattice. grey: photographs of `cameras`, of which CAMERAS are asked for.
+    """
+    assert mesh.uv is not None
+    exact = lattice.coordinates(mesh.vertices)
+    side = _side(mesh, exact, pixel)
+    start = 1 - _phase(mesh.uv.astype(np.float64) * side)
+    places = _places(mesh.uv, side, start)
+    owners = np.zeros((side + 2, side + 2), np.int32)
+    draw_owners(places, mesh.faces, owners)
+    given = owners >= 0
+    points = texel_values(places, mesh.faces, owners, exact)
+    depth = np.zeros(owners.shape, np.float32)
+    depth[given] = points[:, 2]
+    world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
+
+    def look(index: int) -> NDArray[np.float64]:
+        return _looked(mesh, cameras[index], grey(index), world, deeper)
+
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    seen, first, second, most, black, pixels = np.zeros((6, len(points)))
+    for found in parallel_stream(look, chosen):  # in order: the same numbers at any number of threads
+        for total, one in zip((seen, first, second, most, black, pixels), found, strict=True):
+            total += one
+    if not seen.any():
+        return Effect(_ground(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
+    of_texel = len(cameras) / len(chosen) * float(pixels[0] / seen.sum())
+    curve = second - np.square(first) / np.maximum(seen, 1)
+    for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
+        values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
+    bare = np.where(_covering(points / [pixel, pixel, 1]), most, np.maximum(black, most))
+    ground = _ground(depth, given, curve * of_texel, most * of_texel, bare * of_texel)
+    return Effect(ground, (side, start), float(np.median(seen[seen > 0])) * of_texel)
+
+
+def texel_values(
+    places: NDArray[np.int64], faces: NDArray[np.int32], owners: NDArray[np.int32], values: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(t, ...) what vertices' values are at the texels that are covered, row by row."""
+    corners, weights = texel_weights(places, faces, owners)
+    return np.asarray(np.einsum("tk,tk...->t...", weights, values[corners]))
+
+
+def texels_of(mesh: Mesh, shape: tuple[int, ...]) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
+    """Of an atlas of (rows, columns): (rows, columns) the face that covers each texel or -1, and as `texel_weights`."""
+    assert mesh.uv is not None
+    owners = np.zeros(shape, np.int32)
+    places = _places(mesh.uv, np.array(shape[::-1]), np.zeros(2))
+    draw_owners(places, mesh.faces, owners)
+    return owners, *texel_weights(places, mesh.faces, owners)
+
+
+def texel_weights(
+    places: NDArray[np.int64], faces: NDArray[np.int32], owners: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
+    row, column = np.nonzero(owners >= 0)
+    corners = faces[owners[row, column]]
+    p = places[corners] - (np.stack([column, row], axis=1)[:, None] * STEPS + HALF)
+    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
+    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
+    return corners, area / area.sum(axis=1, keepdims=True)
+
+
+def _looked(
+    mesh: Mesh, camera: Camera, photograph: NDArray[np.float32], world: NDArray[np.float64], deeper: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """(6, t): whether the camera sees each texel, error for a step of depth and its square, variance around, the
+    photograph's square, and how many pixels see the mesh."""
+    drawn = rasterise_view(mesh, camera)
+    (at, depth), (beside, _) = camera.project(world), camera.project(deeper)
+    column, row = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
+    inside = (depth > 0) & (column >= 0) & (row >= 0) & (column < camera.width) & (row < camera.height)
+    column, row = np.where(inside, column, 0), np.where(inside, row, 0)
+    with np.errstate(divide="ignore"):
+        inside &= 1 / depth >= drawn.inverse_depth[row, column] * (1 - BEHIND)
+    down, right = np.gradient(photograph, axis=0), np.gradient(photograph, axis=1)
+    mean = uniform_filter(photograph, AROUND)
+    varies = np.maximum(uniform_filter(np.square(photograph), AROUND) - np.square(mean), 0)
+    shift = np.nan_to_num(beside - at)
+    error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
+    pixels = np.full(len(world), float((drawn.face >= 0).sum()))
+    found = [np.where(inside, picture[row, column], 0) for picture in (varies, np.square(photograph))]
+    return np.stack([inside, error, np.square(error), *found, pixels])
+
+
+def _covering(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(t,) whether more of the surface lies behind each of some points (pixel, pixel, inverse depth)."""
+    _, cell = np.unique(np.floor(points[:, :2] / CELL), axis=0, return_inverse=True)
+    cell = cell.reshape(-1)
+    farthest = np.full(int(cell.max(initial=-1)) + 1, np.inf)
+    np.minimum.at(farthest, cell, points[:, 2])
+    return points[:, 2] > farthest[cell] * (1 + APART)
+
+
+def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> tuple[float, NDArray[np.int64]]:
+    """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`, and
+    the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of what
+    lies behind."""
+    some = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+    error, seen = 0.0, []
+    for index in some:
+        before = rasterise_view(given, cameras[index]).face
+        through = (rasterise_view(mesh, cameras[index]).face < 0) & (before >= 0)
+        if through.any():
+            error += float(np.square(grey(index)[through], dtype=np.float64).sum())
+            seen.append(given.faces[before[through]].reshape(-1))
+    vertices = np.unique(np.concatenate(seen)) if seen else np.zeros(0, np.int64)
+    return error * len(cameras) / len(some), vertices.astype(np.int64)
+
+
+def _ground(
+    depth: NDArray[np.float32],
+    given: NDArray[np.bool_],
+    curve: NDArray[np.float64],
+    most: NDArray[np.float64],
+    bare: NDArray[np.float64],
+) -> Ground:
+    """The curve smoothed; beside the surface a texel costs what the nearest on it does."""
+    full = np.zeros((3, *given.shape), np.float32)
+    full[:, given] = curve, most, bare
+    share = np.maximum(uniform_filter(given.astype(np.float32), SMOOTH), 1e-6)
+    smooth = np.where(given, uniform_filter(full[0], SMOOTH) / share, 0).astype(np.float32)
+    row, column = distance_transform_edt(~given, return_distances=False, return_indices=True)
+    return Ground(
+        depth, given.astype(np.uint8), smooth, np.ascontiguousarray(full[1][row, column]), full[2],
+        np.zeros(given.shape, np.int16),
+    )  # fmt: skip
+
+
+def _places(uv: NDArray[np.float32], side: float | NDArray[np.int64], start: NDArray[np.float64]) -> NDArray[np.int64]:
+    return np.rint((uv.astype(np.float64) * side + start) * STEPS).astype(np.int64)
+
+
+def _phase(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(2,) the fraction, 0 to 1, at which coordinates usually are: corners of faces are to be corners of texels, where
+    no texel's centre is on a border."""
+    return np.asarray(np.angle(np.exp(2j * np.pi * values).mean(axis=0)) / (2 * np.pi) % 1)
+
+
+def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
+    """Texels of the atlas along an axis, about a pixel each."""
+    assert mesh.uv is not None
+
+    def areas(points: NDArray[np.float64]) -> float:
+        one, other = (points[mesh.faces[:, k]] - points[mesh.faces[:, 0]] for k in (1, 2))
+        return float(np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]).sum())
+
+    pixels = areas(exact[:, :2]) / pixel**2 / max(areas(mesh.uv.astype(np.float64)), 1e-12)
+    return int(np.clip(round(np.sqrt(pixels)), 16, SIDE_MOST))
+
+
+def spread_cameras(centres: NDArray[np.float64], count: int) -> list[int]:
+    """Indices of cameras, each the farthest from those before; the first is the middle one."""
+    apart = np.linalg.norm(centres - centres.mean(axis=0), axis=1)
+    chosen = [int(np.argmin(apart))]
+    apart = np.linalg.norm(centres - centres[chosen[0]], axis=1)
+    while len(chosen) < min(count, len(centres)):
+        chosen.append(int(np.argmax(apart)))
+        apart = np.minimum(apart, np.linalg.norm(centres - centres[chosen[-1]], axis=1))
+    return chosen

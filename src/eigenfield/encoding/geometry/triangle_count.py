@@ -1,0 +1,160 @@
+"""How many triangles a mesh is worth.
+
+A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and charts that it cuts short.
+Where a simplified mesh puts a pixel's point elsewhere, a texture of what the other cameras see is off: by what they see
+beside the point, the mean over them of gradient times displacement. A view that no camera has is drawn so. However far
+it is off, it is no worse than something else in its place: the variance of the photograph around. Where nothing is
+left, the picture is black.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, Grey, spread_cameras
+from eigenfield.encoding.geometry.simplify_relief import LEFT
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy import DEFAULT_TRIANGLES, simplified, welded
+from eigenfield.runtime.parallel import parallel_map
+
+log = logging.getLogger("eigenfield.encode")
+
+CAMERAS = 16  # spread over the array, are looked at
+LARGEST = 1 << 20  # pixels a view: larger ones are made smaller
+PIXELS = 8000  # of each, evenly spread
+FINER = 2**0.5  # times as many triangles as the next that is tried
+FEWEST = 250  # triangles: below, a mesh takes next to nothing
+TRIANGLE_BYTES = 6.0  # its own 2.6, and what its share of the charts' borders takes in textures: measured on the cube
+PAYS = 0.6  # of the triangles, or less, must be enough for new charts to be cut
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """What a camera shows of the mesh. grey, right, down: luma and its gradient; around: its variance around. pixels:
+    of the photograph, for one of these."""
+
+    camera: Camera
+    grey: NDArray[np.float32]
+    right: NDArray[np.float32]
+    down: NDArray[np.float32]
+    around: NDArray[np.float32]
+    inverse_depth: NDArray[np.float32]
+    pixels: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """Some pixels (row, column) of a view and the mesh's points there. each: how many of its pixels one stands for.
+    beside: for each other view whether it sees the points and, where it does, its gradient there."""
+
+    pixel: tuple[NDArray[np.int64], NDArray[np.int64]]
+    world: NDArray[np.float64]
+    each: float
+    beside: list[tuple[_View, NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]]
+
+    @property
+    def seen(self) -> NDArray[np.int64]:
+        """(n,) in how many views, this one too."""
+        return np.ones(len(self.world), np.int64) + sum(there for _, there, _, _ in self.beside)
+
+
+def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: float) -> int | None:
+    """The number of triangles, by `proxy.simplified`, at which bytes and errors together are least; None where those
+    that it has, or DEFAULT_TRIANGLES, are.
+
+    grey: photographs of `cameras`, of which CAMERAS are asked for. price: squared error that a byte takes off the
+    pictures elsewhere, for each pixel that a texel is seen in, per texel for a pixel.
+    """
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    views = parallel_map(lambda index: _view(mesh, cameras[index], grey(index)), chosen)
+    looked = parallel_map(lambda number: _points(views, number), range(len(views)))
+    share = len(cameras) / len(chosen)
+    seen = np.concatenate([points.seen for points in looked])
+    if not (seen > 1).any():
+        return None  # one camera tells no depth
+    price *= share * float(np.median(seen)) * TRIANGLE_BYTES
+    plain = welded(mesh)
+    best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
+    least, count = price * most, float(most)
+    # Fewer than of a mesh that is worse may still be better
+    while (count := count / FINER) >= FEWEST and price * count < least:
+        if count >= len(plain.faces):  # more went than was asked for
+            continue
+        try:
+            plain = simplified(plain, int(count))
+        except ProxyError:  # nothing is left
+            break
+        cost = price * len(plain.faces) + LEFT * share * _loss(plain, views, looked)
+        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(plain.faces), cost, price * len(plain.faces))
+        if cost < least:
+            best, least = len(plain.faces), cost
+    return best if best <= PAYS * most else None
+
+
+def _view(mesh: Mesh, camera: Camera, grey: NDArray[np.float32]) -> _View:
+    pixels = max(1.0, camera.width * camera.height / LARGEST)
+    if pixels > 1:
+        camera = camera.resized(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
+        grey = np.asarray(cv2.resize(grey, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.float32)
+    mean = uniform_filter(grey, AROUND)
+    around = np.maximum(uniform_filter(np.square(grey), AROUND) - np.square(mean), 0)
+    down, right = np.asarray(np.gradient(grey, axis=0)), np.asarray(np.gradient(grey, axis=1))
+    return _View(camera, grey, right, down, around, rasterise_view(mesh, camera).inverse_depth, pixels)
+
+
+def _points(views: Sequence[_View], number: int) -> _Points:
+    view = views[number]
+    step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / PIXELS)))
+    row, column = step * np.array(np.nonzero(view.inverse_depth[::step, ::step] > 0))
+    world = _unprojected(view.camera, row, column, view.inverse_depth[row, column])
+    beside = []
+    for other in views:
+        if other is not view:
+            (at, depth), camera = other.camera.project(world), other.camera
+            x, y = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
+            there = (depth > 0) & (x >= 0) & (y >= 0) & (x < camera.width) & (y < camera.height)
+            x, y = np.where(there, x, 0), np.where(there, y, 0)
+            with np.errstate(divide="ignore"):
+                there &= 1 / depth >= other.inverse_depth[y, x] * (1 - BEHIND)
+            gradient = np.stack([other.right[y, x], other.down[y, x]], axis=1).astype(np.float64)
+            beside.append((other, there, at, gradient))
+    each = float((view.inverse_depth > 0).sum()) / max(len(row), 1)
+    return _Points((row, column), world, each, beside)
+
+
+def _unprojected(
+    camera: Camera, row: NDArray[np.int64], column: NDArray[np.int64], inverse_depth: NDArray[np.float32]
+) -> NDArray[np.float64]:
+    """(n, 3) the points in the middles of pixels."""
+    rays = np.linalg.solve(camera.K, np.stack([column + 0.5, row + 0.5, np.ones(len(row))]))
+    return np.asarray((rays / inverse_depth - camera.t[:, None]).T @ camera.R)
+
+
+def _loss(mesh: Mesh, views: Sequence[_View], looked: Sequence[_Points]) -> float:
+    """Squared error of luma in all views together; where nothing is left more, for no texture mends it."""
+
+    def of_view(number: int) -> float:
+        view, points = views[number], looked[number]
+        drawn = rasterise_view(mesh, view.camera).inverse_depth
+        black = (drawn <= 0) & (view.inverse_depth > 0)
+        holes = float(np.square(view.grey[black], dtype=np.float64).sum())
+        here = drawn[points.pixel]
+        moved = _unprojected(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
+        error = np.zeros(len(moved))
+        for other, there, at, gradient in points.beside:
+            shift = np.nan_to_num(other.camera.project(moved)[0] - at)
+            error += np.where(there, (gradient * shift).sum(axis=1), 0)
+        squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), view.around[points.pixel])
+        return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / LEFT)
+
+    return sum(parallel_map(of_view, range(len(views))))

@@ -1,0 +1,94 @@
+"""Whether the photographs show the same thing on the proxy: what a wrong camera, mesh or photograph gives away."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from eigenfield.encoding.projected.mean import Mean
+from eigenfield.encoding.projected.project import TextureMaps
+
+log = logging.getLogger("eigenfield.encode")
+
+# beyond the typical difference from the mean texture: robust standard deviations, parts of it, and grey levels
+STRANGE = (5.0, 0.6, 4.0)
+NORMAL = 1.4826  # standard deviation of a normal distribution over its median deviation
+SHARED = 0.5  # of the photographs' contrast that the mean texture must hold; real captures: 0.95, three of noise: 0.33
+BESIDE = 24  # cameras nearest to one: what they have too, such as light that falls off towards a corner, is not strange
+FEWEST_SEEN = 50  # texels or pixels of a camera from which it is judged
+
+
+def disagreement_of(
+    maps: TextureMaps,
+    mean: Mean,
+    gram: NDArray[np.float64],
+    names: Sequence[str],
+    places: NDArray[np.float64],
+    aligned: bool = False,
+) -> NDArray[np.float64]:
+    """`warn_of_disagreement` of texture maps. gram: (Nc, Nc) of `basis.gram_matrix`; its diagonal holds the squared
+    deviations from the mean. aligned: the maps were aligned, which may have failed for one."""
+    seen = np.array([int(np.count_nonzero(row)) for row in maps.seen])
+    squares = np.diag(gram)
+    count, values = mean.count.astype(np.float64)[:, None], mean.values.astype(np.float64)
+    centre = (count * values).sum(axis=0) / max(float(count.sum()), 1.0)
+    total = float((count * (values - centre) ** 2).sum()) + float(squares.sum())
+    return warn_of_disagreement(squares, seen, maps.channels, total, names, places, aligned)
+
+
+def warn_of_disagreement(
+    squares: NDArray[np.float64],
+    seen: NDArray[Any],
+    channels: int,
+    total: float,
+    names: Sequence[str],
+    places: NDArray[np.float64],
+    aligned: bool = False,
+) -> NDArray[np.float64]:
+    """Log a warning for each camera whose photograph is far from the mean texture, farther than those beside it, or
+    one if all of them are.
+
+    squares: (Nc,) squared deviations from the mean, of values 0..1, over `seen` (Nc,) texels or pixels of so many
+    channels. total: squared deviations of all of them from one colour. places: (Nc, 2) of the cameras. Returns (Nc,)
+    the root mean square deviations in grey levels, NaN for a camera that sees next to nothing.
+    """
+    error = np.where(seen >= FEWEST_SEEN, 255 * np.sqrt(squares / np.maximum(seen * channels, 1)), np.nan)
+    for index in np.flatnonzero(seen < FEWEST_SEEN).tolist():
+        log.warning("%s sees next to nothing of the proxy: its camera or its mask may be wrong", names[index])
+    if not np.isfinite(error).any():
+        return error
+    typical = float(np.nanmedian(error))
+    spread = NORMAL * float(np.nanmedian(np.abs(error - typical)))
+    beyond = max(STRANGE[0] * spread, STRANGE[1] * typical, STRANGE[2])
+    why = (
+        "an alignment that failed, another scene, or a wrong camera" if aligned else "another scene, or a wrong camera"
+    )
+    strange = np.flatnonzero(error > np.maximum(typical, _beside(error, places)) + beyond).tolist()
+    for index in strange:
+        log.warning(
+            "%s does not show what the others do: it differs by %.0f grey levels from the mean texture (they by %.0f); "
+            "%s? take it out of the capture, or leave it out with --hold-out",
+            names[index], error[index], typical, why,
+        )  # fmt: skip
+    shared = 1 - float(squares.sum()) / total if total > 0 else 1.0
+    log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
+    if shared < SHARED and not strange:  # which spoil the mean for all
+        log.warning(
+            "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at cameras "
+            "and mesh (eigenfield inspect --overlay)", 100 * shared,
+        )  # fmt: skip
+    return error
+
+
+def _beside(error: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(Nc,) the median error of each camera and the BESIDE nearest to it; NaN for those that see next to nothing."""
+    known = np.flatnonzero(np.isfinite(error))
+    nearest = KDTree(places[known]).query(places[known], min(BESIDE + 1, len(known)))[1].reshape(len(known), -1)
+    result = np.full(len(error), np.nan)
+    result[known] = np.median(error[known][nearest], axis=1)
+    return result

@@ -1,0 +1,133 @@
+"""Where the texels of an atlas lie in the world."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
+
+SIDE_STEP = 64  # atlas sides are multiples of this
+TEXELS_A_PIXEL = 2.0  # of all photographs, that a density leads to at most
+SIDE_CAP = 4096  # largest side that a density leads to; `atlas=` may ask for more
+SIDE_LIMIT = 16384
+
+
+@dataclass(frozen=True, eq=False)
+class Atlas:
+    """The texels whose centre lies in a triangle ("chart texels"), n of them, in row-major order.
+
+    mesh: with UVs. width, height: of the atlas in texels.
+    texel: (n,) int64, row * width + column.
+    face: (n,) int32. position: (n, 3) float32, world.
+    normal: (m, 3) float32 of each face.
+    along, down: (m, 3) float32, how far one texel to the right, and one down, leads in the world, on each face.
+    """
+
+    mesh: Mesh
+    width: int
+    height: int
+    texel: NDArray[np.int64]
+    face: NDArray[np.int32]
+    position: NDArray[np.float32]
+    normal: NDArray[np.float32]
+    along: NDArray[np.float32]
+    down: NDArray[np.float32]
+
+    @property
+    def count(self) -> int:
+        return len(self.texel)
+
+    def image(self, values: NDArray[np.float32], blank: float = 0.0) -> NDArray[np.float32]:
+        """(n, C) values at the chart texels as an (H, W, C) picture, `blank` elsewhere."""
+        picture = np.full((self.height * self.width, values.shape[1]), blank, np.float32)
+        picture[self.texel] = values
+        return picture.reshape(self.height, self.width, -1)
+
+
+def make_atlas(mesh: Mesh, width: int, height: int) -> Atlas:
+    """Rasterise a mesh in UV space: the inverse texturing map at every texel centre.
+
+    Raises ProxyError `atlas-empty` when no texel centre lies in a triangle.
+    """
+    assert mesh.uv is not None
+    raster = rasterise_atlas(mesh, width, height)
+    texel = np.flatnonzero(raster.face >= 0)
+    if len(texel) == 0:
+        raise ProxyError(
+            "atlas-empty", f"no texel of a {width}x{height} atlas lies in a triangle", remedy="ask for a larger --atlas"
+        )
+    face = raster.face.reshape(-1)[texel]
+    row, column = np.divmod(texel, width)
+    centre = np.stack([column + 0.5, row + 0.5, np.ones(len(texel))], axis=1)
+    corners = mesh.vertices[mesh.faces].astype(np.float64)  # (m, 3, 3)
+    affine = np.einsum("fke,fkx->fxe", raster.edges, corners)  # (m, 3, 3): world = affine @ (column, row, 1)
+    position = np.empty((len(texel), 3), np.float32)
+    for start in range(0, len(texel), 1 << 18):  # the gathered matrices are the largest thing here
+        part = slice(start, start + (1 << 18))
+        position[part] = np.einsum("nxe,ne->nx", affine[face[part]], centre[part])
+    return Atlas(
+        mesh,
+        width,
+        height,
+        texel,
+        face,
+        position,
+        mesh.face_normals().astype(np.float32),
+        affine[:, :, 0].astype(np.float32),
+        affine[:, :, 1].astype(np.float32),
+    )
+
+
+def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
+    """Median over the visible surface of sqrt(UV area / pixel area): times the atlas side, this is the density.
+
+    Raises ProxyError `proxy-not-seen` when the camera sees nothing of the mesh.
+    """
+    assert mesh.uv is not None
+    seen = rasterise_view(mesh, camera).face
+    faces, pixels = np.unique(seen[seen >= 0], return_counts=True)
+    uv = mesh.uv[mesh.faces[faces]].astype(np.float64)
+    flat, depth = camera.project(mesh.vertices[mesh.faces[faces]].reshape(-1, 3))
+    usable = (depth.reshape(-1, 3) > 0).all(axis=1)
+    area = _areas(flat.reshape(-1, 3, 2))
+    usable &= area > 0
+    if not usable.any():
+        raise ProxyError(
+            "proxy-not-seen",
+            "the camera nearest the centre of the array sees nothing of the mesh",
+            remedy="bring the mesh into the frame of the cameras (eigenfield inspect --overlay shows both)",
+        )
+    ratio = np.sqrt(_areas(uv)[usable] / area[usable])
+    order = np.argsort(ratio, kind="stable")
+    mass = np.cumsum(pixels[usable][order])
+    return float(ratio[order][np.searchsorted(mass, mass[-1] / 2)])
+
+
+def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+
+
+def check_density(density: float) -> None:
+    """Raise OptionError `density` for one that no atlas can have."""
+    if not 0.01 <= density <= 100:
+        raise OptionError("density", f"a density of {density:g} was asked for", remedy="ask for one between 0.1 and 4")
+
+
+def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = None) -> int:
+    """Side of a square atlas whose density in `camera` is at least `density`, at most SIDE_CAP.
+
+    pixels: of all photographs together. The atlas has at most TEXELS_A_PIXEL times as many texels: where most of the
+    surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
+    """
+    check_density(density)
+    side = density / texels_per_pixel(mesh, camera)
+    cap = SIDE_CAP if pixels is None else min(SIDE_CAP, math.sqrt(TEXELS_A_PIXEL * pixels))
+    return int(np.clip(np.ceil(min(side, cap) / SIDE_STEP) * SIDE_STEP, SIDE_STEP, SIDE_CAP))

@@ -1,0 +1,53 @@
+"""The mean texture and the filling of what a camera does not see (the paper's equations 1 and 2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.projected.project import TextureMaps
+from eigenfield.runtime.parallel import parallel_stream, pieces
+
+TILE = 4096  # chart texels worked on at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Mean:
+    """values: (n, C) float32, 0 where no camera sees the texel. count: (n,) int32, how many cameras see it."""
+
+    values: NDArray[np.float32]
+    count: NDArray[np.int32]
+
+    @property
+    def seen(self) -> NDArray[np.bool_]:
+        """(n,) bool, texels that at least one camera sees."""
+        return self.count > 0
+
+
+def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
+    """Equation 1: at each texel the mean over the cameras that see it, Σ v(c) T(c) / Σ v(c), summed in float64."""
+    values = np.zeros((maps.atlas.count, maps.channels), np.float32)
+    count = np.zeros(maps.atlas.count, np.int32)
+
+    def piece(part: tuple[int, int]) -> None:
+        first, last = part
+        seen = maps.seen[:, first:last] > 0
+        number = seen.sum(axis=0, dtype=np.int32)
+        total = np.zeros((last - first, maps.channels))
+        for camera in range(maps.cameras):
+            total += maps.values[camera, first:last] * seen[camera, :, None]
+        values[first:last] = total / np.maximum(number, 1)[:, None]
+        count[first:last] = number
+
+    parts = pieces(maps.atlas.count, TILE)
+    for _ in track(parallel_stream(piece, parts), "mean", len(parts), progress):
+        pass
+    return Mean(values, count)
+
+
+def filled(values: NDArray[np.float32], seen: NDArray[np.uint8], mean: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Equation 2: a camera's map with the mean where it sees nothing. All (n, C) or (n,) over chart texels."""
+    return np.where(seen[:, None] > 0, values, mean)

@@ -1,0 +1,100 @@
+"""One texture map for each camera (the paper's section 3.2)."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.progress import Progress, track
+from eigenfield.encoding.projected import kernels
+from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.runtime.files import scratch_array
+from eigenfield.runtime.parallel import parallel_stream
+
+FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
+DEPTH_BIAS = 2e-3  # of a view's range of inverse depths
+GRAZING = 0.0872  # cosine of 85 degrees
+
+
+@dataclass(frozen=True, eq=False)
+class TextureMaps:
+    """What every camera sees of the atlas' chart texels, before filling.
+
+    values: (Nc, n, C) float32, T(c); zero where not seen.
+    seen: (Nc, n) uint8, v(c): 1 where the camera sees the texel.
+    """
+
+    atlas: Atlas
+    values: NDArray[np.float32]
+    seen: NDArray[np.uint8]
+
+    @property
+    def cameras(self) -> int:
+        return int(self.values.shape[0])
+
+    @property
+    def channels(self) -> int:
+        return int(self.values.shape[2])
+
+
+def texture_map(
+    atlas: Atlas,
+    camera: Camera,
+    pixels: NDArray[np.float32],
+    mask: NDArray[np.float32] | None = None,
+    resampling: str = "bicubic",
+) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Project one (H, W, C) photograph into the atlas: (n, C) float32 values and (n,) uint8 visibility.
+
+    resampling: "bilinear", "bicubic" (Catmull-Rom) or "lanczos", stretched where the photograph is denser than the
+    atlas. mask: (H, W) 0..1; what it hides is not seen. Bicubic and Lanczos values may overshoot its range.
+    """
+    depth = rasterise_view(atlas.mesh, camera).inverse_depth
+    covered = depth[depth > 0]
+    bias = DEPTH_BIAS * float(np.ptp(covered)) + 1e-6 * float(covered.max()) if len(covered) else 0.0
+    values = np.empty((atlas.count, pixels.shape[2]), np.float32)
+    seen = np.empty(atlas.count, np.uint8)
+    kernels.project_texels(
+        0, atlas.count, atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
+        np.ascontiguousarray(pixels), np.ones((1, 1), np.float32) if mask is None else np.ascontiguousarray(mask),
+        mask is not None, depth, bias, GRAZING, FILTERS[resampling], values, seen,
+    )  # fmt: skip
+    return values, seen
+
+
+@contextlib.contextmanager
+def texture_maps(
+    atlas: Atlas,
+    cameras: Sequence[Camera],
+    photograph: Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]],
+    channels: int = 3,
+    *,
+    resampling: str = "bicubic",
+    work: Path | None = None,
+    progress: Progress | None = None,
+) -> Iterator[TextureMaps]:
+    """The texture maps of all cameras, in a memory-mapped scratch file that lives as long as the block.
+
+    photograph: index to (pixels, mask), called once a camera, from several threads. work: folder for the scratch file.
+    Memory does not grow with the number of cameras: as many photographs and maps as there are threads are held.
+    """
+    total = len(cameras)
+    with (
+        scratch_array((total, atlas.count, channels), np.float32, work) as values,
+        scratch_array((total, atlas.count), np.uint8, work) as seen,
+    ):
+
+        def project(index: int) -> None:
+            pixels, mask = photograph(index)
+            values[index], seen[index] = texture_map(atlas, cameras[index], pixels, mask, resampling)
+
+        for _ in track(parallel_stream(project, range(total)), "texture maps", total, progress):
+            pass
+        yield TextureMaps(atlas, values, seen)

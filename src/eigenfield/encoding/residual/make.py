@@ -1,0 +1,91 @@
+"""The residual of a scene: every encoded camera drawn, taken from its photograph, and coded as a film."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from eigenfield.capture import LightField
+from eigenfield.coding.pictures.pictures_10bit import SMALLEST
+from eigenfield.coding.video.av1 import Planes, encode_film
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress, track
+from eigenfield.core.scene import Residual, Scene
+from eigenfield.encoding.residual.colour import to_planes
+from eigenfield.encoding.residual.orders import film_order
+from eigenfield.encoding.residual.views import surface_colours
+from eigenfield.rendering import Renderer, camera_colour, camera_weights
+from eigenfield.runtime.parallel import parallel_stream
+
+DEFAULT_QUALITY = 40
+CODE = 1 / 510  # what a code of luma stands for: every difference of photographs has one
+CHROMA_GAIN = 1.6  # codes of chroma are as much finer
+FULL_FROM = 90  # the quality from which chroma is as fine as luma: half as fine it alone holds Tarot below 43.5 dB
+LARGEST = 16_384, 8_704  # columns and rows that SVT-AV1 takes
+PRESET = 2  # SVT-AV1's: 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
+
+
+def with_residual(
+    scene: Scene,
+    capture: LightField,
+    quality: int = DEFAULT_QUALITY,
+    progress: Progress | None = None,
+) -> Scene:
+    """The scene with a residual.
+
+    scene: as its file gives it back (`format.read_scene`), since what coding has lost is in the residual too. capture:
+    what it was encoded from. quality: 0 to 100, the film's: `crf_of`.
+
+    Raises OptionError `not-photographs`, as `check_residual`, and what reading photographs raises.
+    """
+    if scene.channels != 3:
+        raise OptionError(
+            "not-photographs",
+            f"the scene has {scene.channels} channels, not R, G, B",
+            remedy="leave the residual out",
+        )
+    encoded = scene.encoded
+    cameras = [scene.cameras[index] for index in encoded]
+    rows, columns = check_residual(cameras, quality)
+    scale = CODE, CODE / CHROMA_GAIN
+    renderer, full = Renderer(scene), quality >= FULL_FROM
+
+    def planes(row: int) -> Planes:
+        index = int(encoded[row])
+        shown = capture.photograph(index)
+        drawn = renderer.draw(scene.cameras[index], camera_weights(scene, index), colour=camera_colour(scene, index))
+        counted = drawn.coverage > 0 if shown.mask is None else (drawn.coverage > 0) & (shown.mask > 0.5)
+        return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full)
+
+    way = film_order(cameras)
+    frames = track(parallel_stream(planes, way.tolist()), "residual", len(way), progress)
+    made = Residual(b"", (rows, columns), way, scale, full, smooth=True)
+    film = encode_film(frames, made.frame, crf_of(quality), PRESET)
+    settings = {**scene.settings, "residual": {"quality": quality}}
+    return replace(scene, residual=replace(made, film=film), settings=settings)
+
+
+def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
+    """Rows and columns of the pictures in a film of these cameras. Raises OptionError `residual-quality` outside 0 to
+    100, `residual` where the encoder does not take frames so large."""
+    if not 0 <= quality <= 100:
+        raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
+    rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
+    high = 3 * rows if quality >= FULL_FROM else rows
+    if columns > LARGEST[0] or high > LARGEST[1]:
+        raise OptionError(
+            "residual",
+            f"frames of {columns}x{high}, the film's encoder takes {LARGEST[0]}x{LARGEST[1]}",
+            remedy=f"ask for less than {FULL_FROM}" if rows <= LARGEST[1] else "scale the photographs down",
+        )
+    return rows, columns
+
+
+def crf_of(quality: int) -> int:
+    """SVT-AV1's crf, 63 (coarse) at quality 0 to 1 at 100."""
+    return round(63 - 0.62 * quality)
+
+
+def _even(side: int) -> int:
+    return max(SMALLEST, side + side % 2)

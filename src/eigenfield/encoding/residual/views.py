@@ -1,0 +1,110 @@
+"""Captured views as they were photographed: what the scene draws of an encoded camera, and the residual on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding.video.av1 import residual_frames
+from eigenfield.core.errors import OptionError
+from eigenfield.core.scene import Residual, Scene
+from eigenfield.encoding.residual.colour import to_difference
+from eigenfield.rendering import Picture, Shots, camera_colour, camera_weights, renderer_of
+
+
+def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
+    """Camera, counted among all, and its (H, W, 3) residual, one after the other in the film's order.
+
+    Raises OptionError `residual` where the scene has none, FormatError `residual-damaged`.
+    """
+    residual = _residual(scene)
+    for row, planes in zip(residual.order, residual_frames(residual), strict=True):
+        index = int(scene.encoded[row])
+        camera = scene.cameras[index]
+        yield index, to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
+
+
+def with_differences(
+    scene: Scene, cameras: Iterable[int], wanted: bool = True
+) -> Iterator[tuple[int, NDArray[np.float32] | None]]:
+    """Each of these cameras once: those that have a residual with it, in the film's order, then the others, or all
+    unless it is wanted. Errors as `differences`."""
+    left = dict.fromkeys(cameras)
+    if wanted:
+        for index, difference in differences(scene):
+            if index in left:
+                del left[index]
+                yield index, difference
+    yield from left.items()
+
+
+def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
+    """(H, W, 3): the residual of an encoded camera, counted among all. Every frame before it is decoded.
+
+    Raises OptionError `residual` where the camera has none; as `differences`.
+    """
+    residual = _residual(scene)
+    if scene.held_out[index]:
+        raise OptionError(
+            "residual", f"{scene.names[index]} is held out: it has no residual", remedy="name an encoded camera"
+        )
+    position = int(np.flatnonzero(residual.order == np.searchsorted(scene.encoded, index))[0])
+    camera = scene.cameras[index]
+    for number, planes in enumerate(residual_frames(residual)):
+        if number == position:
+            return to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
+    raise AssertionError("a film ends with an error")
+
+
+def corrected(picture: Picture, difference: NDArray[np.float32], background: Sequence[float] = (0.0,)) -> Picture:
+    """The picture of a captured camera, drawn with this background, with its residual: on the surface's own colours,
+    cut to 0..1 before and after."""
+    part = picture.coverage[..., None]
+    behind = (1 - part) * np.asarray(background, np.float32)
+    own = surface_colours(picture, background)
+    own += difference
+    return Picture(np.clip(own, 0, 1) * part + behind, picture.coverage)
+
+
+def captured_samples(scene: Scene, index: int) -> int | None:
+    """`samples` of a renderer for the picture of a camera that the scene's residual belongs to."""
+    return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.cameras[index])
+
+
+def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """`Shots.pixels` of a captured camera with its residual. Raises OptionError `residual` where the shots are not
+    drawn as those that it was taken from."""
+    scene = shots.scene
+    changed = {
+        "resolution": shots.resolution is not None,
+        "filter": shots.filter != "bicubic",
+        "textures": shots.textures is not None,
+        "samples": shots.samples is not None,
+        "renderer": shots.renderer != "software",
+    }
+    for name, given in changed.items():
+        if given:
+            raise OptionError(
+                "residual",
+                f"--{name} draws other pictures than the residual belongs to",
+                remedy="leave one of them out",
+            )
+    shots = replace(shots, samples=captured_samples(scene, index))
+    picture = shots.picture(scene.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
+    return shots.pixels_of(corrected(picture, difference, shots.background or (0.0,)))
+
+
+def surface_colours(picture: Picture, background: Sequence[float] = (0.0,)) -> NDArray[np.float32]:
+    """(H, W, 3): what the proxy shows in each pixel without the background, cut to 0..1; 0 where it shows nothing."""
+    part = picture.coverage[..., None]
+    surface = picture.image - (1 - part) * np.asarray(background, np.float32)
+    return np.clip(np.divide(surface, part, out=np.zeros_like(surface), where=part > 0), 0, 1)
+
+
+def _residual(scene: Scene) -> Residual:
+    if scene.residual is None:
+        raise OptionError("residual", "the scene has no residual", remedy="encode it with --residual")
+    return scene.residual

@@ -1,0 +1,23 @@
+"""The file: a glTF 2.0 binary with `EIGENFIELD_eigen_textures`, as docs/format.md specifies it."""
+
+from __future__ import annotations
+
+from eigenfield.gltf.contents import describe, parts, store_scores, without_residual
+from eigenfield.gltf.findings import Finding
+from eigenfield.gltf.read import file_bytes, load, outline, read_scene, validate
+from eigenfield.gltf.write import encode_scene, save
+
+__all__ = [
+    "Finding",
+    "describe",
+    "encode_scene",
+    "file_bytes",
+    "load",
+    "outline",
+    "parts",
+    "read_scene",
+    "save",
+    "store_scores",
+    "validate",
+    "without_residual",
+]

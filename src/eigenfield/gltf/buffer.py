@@ -1,0 +1,47 @@
+"""The binary chunk of a .glb while it is written."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
+
+
+@dataclass
+class Buffer:
+    """The binary chunk while it grows, and the JSON entries that point into it."""
+
+    parts: list[bytes] = field(default_factory=list)
+    length: int = 0
+    views: list[dict[str, Any]] = field(default_factory=list)
+    accessors: list[dict[str, Any]] = field(default_factory=list)
+    once: dict[bytes, int] = field(default_factory=dict)
+
+    def view(self, data: bytes, target: int | None = None) -> int:
+        """Append a buffer view at a multiple of 4; its index."""
+        entry: dict[str, Any] = {"buffer": 0, "byteOffset": self.length, "byteLength": len(data)}
+        if target is not None:
+            entry["target"] = target
+        self.views.append(entry)
+        self.parts.append(data + bytes(-len(data) % 4))
+        self.length += len(self.parts[-1])
+        return len(self.views) - 1
+
+    def shared(self, data: bytes) -> int:
+        """As `view`; the same one for the same bytes."""
+        if data not in self.once:
+            self.once[data] = self.view(data)
+        return self.once[data]
+
+    def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
+        """Append an array as an accessor of its own buffer view; its index."""
+        dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2", UINT8: "u1"}[component]
+        view = self.view(np.ascontiguousarray(array, dtype).tobytes(), target)
+        self.accessors.append(
+            {"bufferView": view, "componentType": component, "count": len(array), "type": kind, **more}
+        )
+        return len(self.accessors) - 1

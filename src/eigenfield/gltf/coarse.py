@@ -1,0 +1,94 @@
+"""A proxy and its picture for viewers that know nothing of coded ones: in a small file they are small."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TypeVar
+
+import numpy as np
+
+from eigenfield.core.mesh import Mesh
+
+T = TypeVar("T")
+
+COARSE = (128, 64, 32)  # triangles: with fewer than the first the rim of Tarot's ball comes apart
+SHARE = 0.1  # of the bytes of what is coded, that the mesh may take, and the picture
+ENOUGH = 1.5  # times as many are taken from the first way
+
+
+def affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) -> T:
+    """The first of some ways, in falling order, whose bytes are SHARE of what is coded; else the last."""
+    ways = iter(ways)
+    found = next(ways)
+    while size(found) > SHARE * coded and (smaller := next(ways, None)) is not None:
+        found = smaller
+    return found
+
+
+def shown_mesh(mesh: Mesh, coded: int) -> Mesh:
+    """The mesh in as many triangles as `coded`, the bytes of what is coded, allow."""
+    return affordable((coarse_mesh(mesh, triangles) for triangles in COARSE), _plain_bytes, coded)
+
+
+def _plain_bytes(mesh: Mesh) -> int:
+    """What a small mesh takes as plain floats with a byte a corner."""
+    assert mesh.uv is not None
+    return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
+
+
+def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
+    """The mesh simplified; of the vertices that fell together the one nearest to
+    where they came to lie gives the texture coordinates."""
+    import fast_simplification
+
+    assert mesh.uv is not None
+    if len(mesh.faces) <= triangles:
+        return mesh
+    _, _, collapses = fast_simplification.simplify(
+        mesh.vertices, mesh.faces, target_count=triangles, return_collapses=True
+    )
+    points, faces, fell = fast_simplification.replay_simplification(mesh.vertices, mesh.faces, collapses)
+    if not len(faces):
+        return mesh
+    if len(faces) > ENOUGH * triangles:  # many pieces, none of which it lets vanish: a relief's layers
+        clustered = _clustered(mesh, triangles)
+        if clustered is not None:
+            return clustered
+    apart = np.linalg.norm(mesh.vertices - points[fell], axis=1)
+    uv = np.zeros((len(points), 2))
+    farthest_first = np.argsort(-apart, kind="stable")
+    uv[fell[farthest_first]] = mesh.uv[farthest_first]  # the last to be written stays
+    used, corners = np.unique(faces, return_inverse=True)
+    return Mesh(
+        np.ascontiguousarray(points[used], np.float32), corners.reshape(-1, 3).astype(np.int32),
+        np.ascontiguousarray(uv[used], np.float32),
+    )  # fmt: skip
+
+
+def _clustered(mesh: Mesh, triangles: int) -> Mesh | None:
+    """One vertex for each chart in each cell of a square grid over the atlas, that nearest to the middle of those in
+    it; as fine a grid as gives at most so many triangles. None where none does."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    assert mesh.uv is not None
+    finest, number = None, len(mesh.vertices)
+    ends = mesh.faces.reshape(-1), np.roll(mesh.faces, 1, axis=1).reshape(-1)
+    _, chart = connected_components(coo_array((np.ones(len(ends[0])), ends), (number, number)), directed=False)
+    for cells in range(2, 128):
+        cell = np.floor(mesh.uv * cells).astype(np.int64) @ [1, 1 << 10] + (chart.astype(np.int64) << 20)
+        _, own, count = np.unique(cell, return_inverse=True, return_counts=True)
+        middle = np.stack([np.bincount(own, axis) / count for axis in mesh.uv.T], axis=1)
+        apart = np.square(mesh.uv - middle[own]).sum(axis=1)
+        chosen = np.zeros(len(count), np.int64)
+        farthest_first = np.argsort(-apart, kind="stable")
+        chosen[own[farthest_first]] = farthest_first
+        faces = own[mesh.faces]
+        kept = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+        _, first = np.unique(np.sort(faces[kept], axis=1), axis=0, return_index=True)
+        if len(first) > triangles:
+            break
+        if len(first):
+            used, corners = np.unique(faces[kept][np.sort(first)], return_inverse=True)
+            finest = Mesh(mesh.vertices[chosen[used]], corners.reshape(-1, 3).astype(np.int32), mesh.uv[chosen[used]])
+    return finest

@@ -1,0 +1,162 @@
+"""The GLB container: a 12-byte header, a JSON chunk, a binary chunk (glTF 2.0, section 4)."""
+
+from __future__ import annotations
+
+import json
+import os
+import stat
+import struct
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eigenfield.coding import limits
+from eigenfield.core.errors import FormatError, OutputError
+from eigenfield.gltf import strict_json
+
+MAGIC = b"glTF"
+JSON_CHUNK = b"JSON"
+BINARY_CHUNK = b"BIN\0"
+HEADER = struct.Struct("<4sII")  # magic, version, length of the file
+CHUNK = struct.Struct("<I4s")  # length of the data, type
+EXACT = 2.0**53  # below which a float is a whole number exactly
+
+
+@dataclass(frozen=True, eq=False)
+class Glb:
+    """A container whose chunks lie where they say.
+
+    json: the parsed JSON chunk.
+    binary: the first buffer's bytes, empty if there is no binary chunk.
+    size: bytes of the file.
+    rest: offset of the first byte behind the JSON chunk.
+    missing: bytes of the binary chunk that lie behind the end of the file.
+    """
+
+    json: Any
+    binary: memoryview
+    size: int
+    rest: int
+    missing: int = 0
+
+    def cut_off(self) -> FormatError:
+        """What is to be raised where the missing bytes are needed."""
+        return _truncated(self.size, self.size + self.missing)
+
+
+def read_file(path: Path) -> bytes:
+    """The whole file. FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`."""
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end
+            raise FormatError("not-a-file", "is no regular file", where="byte 0", remedy="name a .glb")
+        if status.st_size > limits.MAX_FILE:
+            raise FormatError("file-size", f"{status.st_size} bytes, {limits.MAX_FILE} are allowed", where="byte 0")
+        return path.read_bytes()
+    except FileNotFoundError as error:
+        raise FormatError("file-missing", "does not exist", where="byte 0", remedy="check the name") from error
+    except (OSError, ValueError) as error:  # ValueError: a name with a null byte
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise FormatError("file-unreadable", f"cannot be read: {reason}", where="byte 0") from error
+
+
+def parse_glb(data: bytes) -> Glb:
+    """Take a container apart. One that ends within its binary chunk is not refused here: see `Glb.missing`.
+
+    FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
+    """
+    if data[:4] != MAGIC:
+        raise FormatError("not-glb", "does not begin with 'glTF'", where="byte 0", remedy="name a .glb")
+    if len(data) < HEADER.size:
+        raise FormatError("truncated", f"ends after {len(data)} bytes, within the header", where=f"byte {len(data)}")
+    _, version, length = HEADER.unpack_from(data)
+    if version != 2:
+        raise FormatError("glb-version", f"glTF {version}, not 2", where="byte 4")
+    if length > len(data):
+        return _cut(data, length)
+    if length < len(data):
+        raise FormatError("glb-length", f"{len(data) - length} bytes follow the end", where="byte 8")
+    chunks = _chunks(data)
+    start, end = chunks[JSON_CHUNK]
+    first, last = chunks.get(BINARY_CHUNK, (end, end))
+    value = strict_json.parse(data[start:end], f"byte {start}")
+    return Glb(value, memoryview(data)[first:last], len(data), end)
+
+
+def _cut(data: bytes, length: int) -> Glb:
+    """A container of `length` bytes that ends within its binary chunk; FormatError `truncated` where it ends before."""
+    start = HEADER.size + CHUNK.size
+    if len(data) >= start:
+        size, kind = CHUNK.unpack_from(data, HEADER.size)
+        end, first = start + size, start + size + CHUNK.size
+        if kind == JSON_CHUNK and first <= len(data):
+            extent, kind = CHUNK.unpack_from(data, end)
+            if kind == BINARY_CHUNK and len(data) < first + extent <= length:
+                value = strict_json.parse(data[start:end], f"byte {start}")
+                return Glb(value, memoryview(data)[first:], len(data), end, first + extent - len(data))
+    raise _truncated(len(data), length)
+
+
+def _truncated(size: int, length: int) -> FormatError:
+    return FormatError(
+        "truncated",
+        f"ends after {size} of {length} bytes",
+        where=f"byte {size}",
+        remedy="copy or download it again",
+    )
+
+
+def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:
+    """Where each chunk's data lie, by type; unknown types are skipped, as glTF asks."""
+    found: dict[bytes, tuple[int, int]] = {}
+    offset, count = HEADER.size, 0
+    while offset < len(data):
+        where = f"byte {offset}"
+        if offset + CHUNK.size > len(data):
+            raise FormatError("glb-chunk", "a chunk's header is cut off by the end", where=where)
+        length, kind = CHUNK.unpack_from(data, offset)
+        start = offset + CHUNK.size
+        if length % 4:
+            raise FormatError("glb-chunk", f"a chunk of {length} bytes, not a multiple of 4", where=where)
+        if start + length > len(data):
+            raise FormatError("glb-chunk", f"a chunk of {length} bytes reaches past the end", where=where)
+        if (count == 0) != (kind == JSON_CHUNK):
+            raise FormatError("glb-chunk", "the first chunk must be JSON, and no other", where=where)
+        if kind == BINARY_CHUNK and count != 1:
+            raise FormatError("glb-chunk", "a binary chunk that is not the second", where=where)
+        found[kind] = (start, start + length)
+        offset, count = start + length, count + 1
+        if count > limits.MAX_CHUNKS:
+            raise FormatError("glb-chunk", f"more than {limits.MAX_CHUNKS} chunks", where=where)
+    if JSON_CHUNK not in found:
+        raise FormatError("glb-chunk", "there is no JSON chunk", where=f"byte {HEADER.size}")
+    return found
+
+
+def json_bytes(value: Any) -> bytes:
+    """Compact JSON, whole numbers without a fraction, padded with spaces to a multiple of 4. Raises ValueError for NaN:
+    our own bug."""
+    text = json.dumps(_short(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
+    return text + b" " * (-len(text) % 4)
+
+
+def _short(value: Any) -> Any:
+    """The same numbers in fewer characters: 1 for 1.0."""
+    if isinstance(value, dict):
+        return {key: _short(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_short(item) for item in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < EXACT else value
+
+
+def front(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
+    """Header and JSON chunk of a file in which `rest` bytes follow. OutputError `file-too-large` over 4 GiB."""
+    size = HEADER.size + CHUNK.size + len(text) + rest
+    if size > limits.MAX_FILE:
+        raise OutputError(
+            "file-too-large",
+            f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}",
+            path=path,
+            remedy="use fewer textures, a smaller atlas, or --codec avif",
+        )
+    return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text

@@ -1,0 +1,118 @@
+"""What a file consists of, and its scores: read and rewritten without touching a picture."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from eigenfield.coding import limits
+from eigenfield.core.errors import FormatError
+from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, front, json_bytes, parse_glb, read_file
+from eigenfield.gltf.document import Document
+from eigenfield.gltf.layout import Layout, find_extension
+from eigenfield.gltf.read import naming, open_layout, read_scene
+from eigenfield.gltf.strict_json import Value
+from eigenfield.gltf.write import encode_scene
+from eigenfield.runtime.files import atomic_writer
+
+
+def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
+    """The checked layout of a file and its bytes by part (see `parts`). Raises FormatError."""
+    with naming(path):
+        document, layout = open_layout(Path(path))
+        return layout, _parts(document)
+
+
+def parts(path: str | os.PathLike[str]) -> dict[str, int]:
+    """Bytes by part: total, mean, textures, weights, mesh, residual, other; the last six sum to the first.
+
+    mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices; a
+    coded one, and the coarse one for other viewers.
+    residual: what only captured views have; 0 where there is none.
+    other: JSON, calibration, triangles, headers and padding. Raises FormatError.
+    """
+    return describe(path)[1]
+
+
+def _parts(document: Document) -> dict[str, int]:
+    root = document.root
+    extension = root["extensions"][limits.EXTENSION]
+    primitive = root["meshes"].at(0)["primitives"].at(0)
+    planes = list(extension["planes"].items(limits.MAX_PLANES))
+    bases = [basis for plane in planes for basis in plane["bases"].items(limits.MAX_BASES)]
+    pictures = [root["images"].at(0)["bufferView"]] if root.has("images") else []
+    means = [plane["mean"] for plane in planes if plane.has("mean")]
+    pictures += [mean["bufferView"] for mean in means]
+    pictures += [mean["precision"]["bufferView"] for mean in means if mean.has("precision")]
+    textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
+    textures = [reference for reference in textures if not document.cut_off(reference)]
+    weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]
+    weights += [basis["codedWeights"] for basis in bases if basis.has("codedWeights")]
+    attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
+    mesh = [_view_of(document, reference) for reference in attributes]
+    if extension.has("mesh"):
+        mesh.append(extension["mesh"]["bufferView"])
+    residual = [extension["residual"]["bufferView"]] if extension.has("residual") and not document.glb.missing else []
+    counted: set[int] = set()
+    made = {"total": document.glb.size}
+    found = {"mean": pictures, "textures": textures, "weights": weights, "mesh": mesh, "residual": residual}
+    for name, references in found.items():
+        views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
+        counted |= views.keys()
+        made[name] = sum(views.values())
+    made["other"] = made["total"] - sum(made[name] for name in found)
+    return made
+
+
+def _view_of(document: Document, accessor: Value) -> Value:
+    return document.root["accessors"].at(accessor.integer(0, 2**31))["bufferView"]
+
+
+def without_residual(data: bytes) -> bytes:
+    """A file for viewers: without its residual, of which they show nothing (the same bytes where it has none, or where
+    it is not the last thing in the binary chunk), and closed behind what is left of it where it is cut off."""
+    glb = parse_glb(data)
+    if glb.missing:
+        return encode_scene(replace(read_scene(data), residual=None))
+    document = Document(glb)
+    views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
+    extension = dict(glb.json["extensions"][limits.EXTENSION])
+    residual = extension.pop("residual", None)
+    if residual is None:
+        return data
+    end = document.view_range(len(views) - 1)[0]
+    if residual["bufferView"] != len(views) - 1 or any(document.view_range(i)[1] > end for i in range(len(views) - 1)):
+        return data
+    del views[-1]
+    if residual.get("order") == len(accessors) - 1 and accessors[-1]["bufferView"] == len(views) - 1:
+        end = document.view_range(len(views) - 1)[0]
+        del views[-1], accessors[-1]
+    made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
+    made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
+    binary = bytes(glb.binary[:end]) + bytes(-end % 4)
+    return front(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
+
+
+def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:
+    """Replace a file's `scores` by a JSON object; everything else, unknown keys too, stays as it is.
+
+    Only the JSON chunk is written anew: textures keep their bytes. Atomic. Raises FormatError, OutputError.
+    """
+    target = Path(os.path.realpath(path))  # a link stays a link
+    with naming(path):
+        data = read_file(target)
+        glb = parse_glb(data)
+        if glb.missing:
+            raise glb.cut_off()
+        find_extension(Document(glb))
+    glb.json["extensions"][limits.EXTENSION]["scores"] = dict(scores)
+    text = json_bytes(glb.json)
+    if len(text) > limits.MAX_JSON:
+        raise FormatError("json-size", f"the scores make {len(text)} bytes of JSON", where="/extensions", path=path)
+    head = front(text, len(data) - glb.rest, path)
+    with atomic_writer(target, overwrite=True) as file:
+        file.write(head)
+        file.write(memoryview(data)[glb.rest :])

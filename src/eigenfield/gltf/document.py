@@ -1,0 +1,155 @@
+"""Buffer views and accessors of a GLB, each checked before a byte of it is touched."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.core.errors import FormatError
+from eigenfield.gltf.container import Glb
+from eigenfield.gltf.strict_json import Value, quoted
+
+FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
+DTYPES: dict[int, np.dtype[Any]] = {
+    FLOAT: np.dtype("<f4"),
+    UINT32: np.dtype("<u4"),
+    UINT16: np.dtype("<u2"),
+    UINT8: np.dtype("u1"),
+}
+WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A buffer view: where it lies in the binary chunk, and its stride (0: packed)."""
+
+    index: int
+    offset: int
+    length: int
+    stride: int
+
+
+@dataclass(frozen=True, eq=False)
+class Document:
+    """A container and its JSON, to be read through checks only."""
+
+    glb: Glb
+
+    @property
+    def root(self) -> Value:
+        return Value(self.glb.json)
+
+    def check_buffer(self) -> None:
+        """The one buffer must be the binary chunk: `buffer`."""
+        buffers = list(self.root["buffers"].items(1, 1))
+        if buffers[0].has("uri"):
+            buffers[0].fail("buffer", "the buffer lies in another file")
+        length = buffers[0]["byteLength"].integer(1, limits.MAX_FILE)
+        if not 0 <= self._length - length < 4:
+            buffers[0].fail("buffer", f"{length} bytes, but the binary chunk has {self._length}")
+
+    def check_end(self, extension: Value) -> None:
+        """A file may end within its eigen textures or its residual, and nowhere else: `truncated`. (What lies behind
+        the end otherwise is missed where it is read.)"""
+        if not self.glb.missing:
+            return
+        last = [extension["residual"]["bufferView"]] if extension.has("residual") else []
+        for plane in extension["planes"].items(limits.MAX_PLANES):
+            for basis in plane["bases"].items(limits.MAX_BASES):
+                last += [texture["bufferView"] for texture in basis["textures"].items(limits.MAX_COMPONENTS)]
+        if not any(map(self.cut_off, last)):
+            raise self.glb.cut_off()
+
+    def cut_off(self, reference: Value) -> bool:
+        """Whether the file ends before the buffer view whose index `reference` holds does. FormatError as `view`."""
+        view = self._view(self._index(reference))
+        return view.offset + view.length > len(self.glb.binary)
+
+    @property
+    def _length(self) -> int:
+        return len(self.glb.binary) + self.glb.missing
+
+    def check_overlap(self) -> None:
+        """No byte belongs to two buffer views: `view-overlap`."""
+        count = len(list(self.root["bufferViews"].items(limits.MAX_VIEWS)))
+        views = sorted((self._view(index) for index in range(count)), key=lambda view: (view.offset, view.length))
+        for before, after in pairwise(views):
+            if after.offset < before.offset + before.length:
+                raise FormatError(
+                    "view-overlap", f"shares bytes with buffer view {before.index}", where=f"/bufferViews/{after.index}"
+                )
+
+    def view(self, reference: Value) -> View:
+        """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`, `truncated`."""
+        view = self._view(self._index(reference))
+        if view.offset + view.length > len(self.glb.binary):
+            raise self.glb.cut_off()
+        return view
+
+    def _index(self, reference: Value) -> int:
+        count = len(list(self.root["bufferViews"].items(limits.MAX_VIEWS)))
+        index = reference.integer(0, 2**31)
+        if index >= count:
+            reference.fail("view-missing", f"there are {count} buffer views, {index} is none of them")
+        return index
+
+    def view_range(self, index: int) -> tuple[int, int]:
+        """First byte of a buffer view in the binary chunk, and the first one behind it."""
+        view = self._view(index)
+        return view.offset, view.offset + view.length
+
+    def _view(self, index: int) -> View:
+        entry = self.root["bufferViews"].at(index)
+        if entry["buffer"].integer(0, 2**31) != 0:
+            entry.fail("view-range", "lies in a buffer that does not exist")
+        offset = entry["byteOffset"].integer(0, limits.MAX_FILE) if entry.has("byteOffset") else 0
+        length = entry["byteLength"].integer(1, limits.MAX_FILE)
+        stride = entry["byteStride"].integer(4, 252) if entry.has("byteStride") else 0
+        if offset + length > self._length:
+            entry.fail("view-range", f"ends at byte {offset + length} of {self._length}")
+        return View(index, offset, length, stride)
+
+    def data(self, reference: Value) -> memoryview:
+        """The bytes of the buffer view whose index `reference` holds. FormatError as `view`."""
+        view = self.view(reference)
+        return self.glb.binary[view.offset : view.offset + view.length]
+
+    def array(self, reference: Value, kind: str, components: tuple[int, ...], most: int) -> NDArray[Any]:
+        """The accessor whose index `reference` holds: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3; a copy.
+
+        components: the component types allowed. most: entries allowed.
+        FormatError: `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`.
+        """
+        count = len(list(self.root["accessors"].items(limits.MAX_VIEWS)))
+        index = reference.integer(0, 2**31)
+        if index >= count:
+            reference.fail("accessor-missing", f"there are {count} accessors, {index} is none of them")
+        entry = self.root["accessors"].at(index)
+        found = entry["type"].text()
+        component = entry["componentType"].integer(0, 2**31)
+        if found != kind or component not in components:
+            entry.fail("accessor-type", f"{quoted(found)} of {component}, {kind} of {components} expected")
+        if entry.has("sparse") or (entry.has("normalized") and entry["normalized"].value is not False):
+            entry.fail("accessor-type", "sparse and normalised accessors are not read here")
+        length = entry["count"].integer(1, most)
+        view = self.view(entry["bufferView"])
+        dtype, width = DTYPES[component], WIDTHS[kind]
+        start = entry["byteOffset"].integer(0, limits.MAX_FILE) if entry.has("byteOffset") else 0
+        element = dtype.itemsize * width
+        stride = view.stride or element
+        if (view.offset + start) % dtype.itemsize or stride % dtype.itemsize:
+            entry.fail("accessor-alignment", f"begins at byte {view.offset + start}")
+        if stride < element or start + stride * (length - 1) + element > view.length:
+            entry.fail("accessor-range", f"{length} entries do not fit into {view.length} bytes from byte {start}")
+        shape, strides = ((length, width), (stride, dtype.itemsize)) if width > 1 else ((length,), (stride,))
+        return np.ndarray(shape, dtype, self.glb.binary, view.offset + start, strides).copy()
+
+
+def all_finite(array: NDArray[Any]) -> bool:
+    """Whether every number is finite and at most `limits.LARGEST`."""
+    return bool((np.abs(array) <= limits.LARGEST).all())  # False for NaN

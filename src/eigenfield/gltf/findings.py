@@ -1,0 +1,60 @@
+"""What is wrong with a file: the first thing (an exception) for `load`, everything (a list) for `validate`."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Literal
+
+from eigenfield.core.errors import FormatError
+
+Severity = Literal["error", "warning", "information"]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One finding of `validate`.
+
+    severity: "error" (the file is refused), "warning" (it can be drawn, but is not as specified), "information".
+    code: stable, kebab-case; the table is in docs/format.md.
+    where: a byte offset ("byte 20") or a JSON pointer.
+    message: what is wrong, without a full stop.
+    """
+
+    severity: Severity
+    code: str
+    where: str
+    message: str
+
+
+@dataclass
+class Findings:
+    """Collects findings; the checks themselves raise FormatError and know nothing of it.
+
+    strict: the first error leaves `part` as the exception it is (`load`); otherwise it is noted, the rest of that
+    part is skipped and the work goes on behind it (`validate`).
+    """
+
+    strict: bool
+    found: list[Finding] = field(default_factory=list)
+
+    @contextlib.contextmanager
+    def part(self) -> Iterator[None]:
+        """A part of the file that can fail without the next one becoming meaningless."""
+        try:
+            yield
+        except FormatError as error:
+            if self.strict:
+                raise
+            self.found.append(Finding("error", error.code, error.where, bare_message(error)))
+
+    def note(self, severity: Literal["warning", "information"], code: str, where: str, message: str) -> None:
+        """Something that does not make the file unreadable."""
+        self.found.append(Finding(severity, code, where, message))
+
+
+def bare_message(error: FormatError) -> str:
+    """The message without the place, which `where` holds already; with the remedy if there is one."""
+    text = error.message.removesuffix(f" (at {error.where})")
+    return text if error.remedy is None else f"{text}; {error.remedy}"

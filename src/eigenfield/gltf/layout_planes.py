@@ -1,0 +1,263 @@
+"""The parts of a scene file that are drawn: planes, their means and bases, and the matrix that joins them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.pictures import pictures_8bit as pictures
+from eigenfield.coding.pictures import pictures_10bit as deep
+from eigenfield.core.errors import FormatError
+from eigenfield.core.payloads import Affine
+from eigenfield.gltf.document import FLOAT, Document, all_finite
+from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.layout_geometry import CameraList
+from eigenfield.gltf.strict_json import Value
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """Codes in the file.
+
+    width, height, channels: of the array that it decodes to.
+    affine: the way back to numbers, per channel (of every texture in it); None: code / 255.
+    bits: of the codes, 8 or 10. count: textures in it, one below the other.
+    precision: of a mean, the picture of how finely each place of it is coded; None: all of it alike.
+    """
+
+    data: memoryview
+    mime: str
+    width: int
+    height: int
+    channels: int
+    affine: Affine | None
+    where: str
+    bits: int = 8
+    count: int = 1
+    precision: Picture | None = None
+
+    def decode(self) -> NDArray[Any]:
+        """(count, height, width, channels) uint8, of 10 bits uint16. FormatError: see `pictures.decode`."""
+        size = (self.width, self.height, self.channels)
+        if self.count == 1 and self.bits == 8:
+            return pictures.decode(self.data, self.mime, *size, self.where)[None]
+        return pictures.decode_stack(self.data, self.mime, *size, self.count, self.bits, self.where)
+
+
+@dataclass(frozen=True, eq=False)
+class BasisLayout:
+    """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
+    part, None: all of it. corner: row and column in it. stream: the weights' coded form, None where they are plain.
+    lost: textures behind the end of a file that is cut off."""
+
+    size: tuple[int, int]
+    textures: tuple[Picture, ...]
+    weights: NDArray[np.float32]
+    grid: tuple[int, int] | None = None
+    corner: tuple[int, int] = (0, 0)
+    stream: bytes | None = None
+    lost: int = 0
+
+    @property
+    def count(self) -> int:
+        return sum(picture.count for picture in self.textures)
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneLayout:
+    """lost: textures of all bases, also of those of which nothing is left, behind the end of the file."""
+
+    mean: Picture
+    bases: tuple[BasisLayout, ...]
+    lost: int = 0
+
+
+def read_planes(
+    document: Document, entry: Value, cameras: CameraList | None, findings: Findings
+) -> tuple[PlaneLayout, ...]:
+    """FormatError: `plane-*`, `decoded-size`, `weights-*`, `view-*`."""
+    planes = tuple(
+        _read_plane(document, plane, index, cameras, findings)
+        for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
+    )
+    count = sum(basis.count for plane in planes for basis in plane.bases)
+    if count > limits.MAX_COMPONENTS:
+        entry.fail("plane-components", f"{count} eigen textures, {limits.MAX_COMPONENTS} are allowed")
+    total = sum(
+        4 * plane.mean.width * plane.mean.height * plane.mean.channels
+        + sum(
+            basis.size[0] * basis.size[1] * plane.mean.channels * picture.count * (1 if picture.bits == 8 else 2)
+            for basis in plane.bases
+            for picture in basis.textures
+        )
+        for plane in planes
+    )
+    if total > limits.MAX_DECODED:
+        entry.fail("decoded-size", f"would decode to {total} bytes, {limits.MAX_DECODED} are allowed")
+    return planes
+
+
+def _read_plane(
+    document: Document, entry: Value, index: int, cameras: CameraList | None, findings: Findings
+) -> PlaneLayout:
+    channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
+    if entry.has("mean"):
+        size = _size(entry["mean"]["size"], channels)
+        mean = _picture(document, entry["mean"], size, channels, 1, bare=True)
+        if entry["mean"].has("precision"):
+            mean = replace(mean, precision=_precision(document, entry["mean"]["precision"], mean))
+    elif index == 0 and channels in (1, 3):
+        mean = read_image(document, channels)
+    else:
+        raise FormatError("plane-mean", "the plane has no mean", where=f"{entry.where}/mean")
+    bases = [
+        _read_basis(document, basis, channels, cameras, findings) for basis in entry["bases"].items(limits.MAX_BASES)
+    ]
+    kept = tuple(basis for basis in bases if basis.count or not basis.lost)
+    return PlaneLayout(mean, kept, sum(basis.lost for basis in bases))
+
+
+def read_image(document: Document, channels: int) -> Picture:
+    """`images[0]` as a picture of `channels`; its size is what its header says."""
+    image = document.root["images"].at(0)
+    if not image.has("bufferView"):
+        image.fail("plane-mean", "the picture lies in another file")
+    data, mime = document.data(image["bufferView"]), image["mimeType"].text()
+    width, height = pictures.dimensions(data, mime, image.where)
+    return Picture(data, mime, width, height, channels, None, image.where)
+
+
+def _read_basis(
+    document: Document, entry: Value, channels: int, cameras: CameraList | None, findings: Findings
+) -> BasisLayout:
+    size = _size(entry["size"], channels)
+    textures: list[Picture] = []
+    total, lost = 0, 0
+    common = entry["picture"].mapping() if entry.has("picture") else {}
+    for own in entry["textures"].items(limits.MAX_COMPONENTS):
+        with findings.part():
+            texture = Value(dict(common) | own.mapping(), own.where)
+            count = texture["count"].integer(1, limits.MAX_COMPONENTS) if texture.has("count") else 1
+            total += count  # also of a picture that is damaged: its weights are there
+            if lost or document.cut_off(texture["bufferView"]):
+                lost += count
+                continue
+            textures.append(_picture(document, texture, size, channels, count, bare=False))
+    rows = 0 if cameras is None else cameras.encoded
+    weights = np.zeros((rows, 0), np.float32)
+    stream = None
+    if total:
+        with findings.part():
+            if entry.has("codedWeights"):
+                stream = bytes(document.data(entry["codedWeights"]))
+                weights = _decode_weights(stream, entry["codedWeights"], rows, total)
+            else:
+                weights = _read_weights(document, entry["weights"], rows, total)
+    if lost:
+        weights, stream = np.ascontiguousarray(weights[:, : total - lost]), None
+    return BasisLayout(size, tuple(textures), weights, *_region(entry, size), stream, lost)
+
+
+def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None, tuple[int, int]]:
+    """Grid (rows, columns) and corner (row, column) of a basis that is only a part. FormatError: `basis-region`."""
+    if not entry.has("grid"):
+        return None, (0, 0)
+    columns, rows = (item.integer(1, limits.MAX_SIDE) for item in entry["grid"].items(2, 2))
+    column, row = (
+        (item.integer(0, limits.MAX_SIDE) for item in entry["corner"].items(2, 2)) if entry.has("corner") else (0, 0)
+    )
+    if column + size[0] > columns or row + size[1] > rows:
+        entry["grid"].fail("basis-region", f"{size[0]}x{size[1]} at {column}, {row} leaves a grid of {columns}x{rows}")
+    return (rows, columns), (row, column)
+
+
+def _decode_weights(stream: bytes, entry: Value, rows: int, count: int) -> NDArray[np.float32]:
+    from eigenfield.coding.arrays.weights import decode_weights  # numba: most files need none
+
+    weights = decode_weights(stream, entry.where)
+    if rows == 0:  # only while validating a file whose cameras are damaged
+        return np.zeros((0, count), np.float32)
+    if weights.shape != (rows, count) or not all_finite(weights):
+        found = "x".join(map(str, weights.shape))
+        entry.fail("weights-count", f"{found} weights, {rows} encoded cameras x {count} textures expected")
+    return weights
+
+
+def _read_weights(document: Document, reference: Value, rows: int, count: int) -> NDArray[np.float32]:
+    flat = document.array(reference, "SCALAR", (FLOAT,), limits.MAX_WEIGHTS)
+    if not all_finite(flat):
+        reference.fail("weights-not-finite", "a weight is NaN, infinite or beyond 1e30")
+    if rows == 0:  # only while validating a file whose cameras are damaged
+        return np.zeros((0, count), np.float32)
+    if len(flat) != rows * count:
+        reference.fail("weights-count", f"{len(flat)} weights, {rows} encoded cameras x {count} textures expected")
+    return flat.reshape(rows, count)
+
+
+def _size(entry: Value, channels: int) -> tuple[int, int]:
+    width, height = (item.integer(1, limits.MAX_SIDE) for item in entry.items(2, 2))
+    w, h = pictures.picture_size(width, height, channels)
+    if h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
+        entry.fail("picture-limit", f"a picture of {w}x{h}, {limits.MAX_TEXELS} texels are allowed")
+    return width, height
+
+
+def _picture(
+    document: Document, entry: Value, size: tuple[int, int], channels: int, count: int, *, bare: bool
+) -> Picture:
+    """bare: scale and zero may be absent."""
+    data, mime = document.data(entry["bufferView"]), entry["mimeType"].text()
+    bits = entry["bits"].integer(8, deep.BITS) if entry.has("bits") else 8
+    if bits not in (8, deep.BITS) or (bits != 8 and mime != deep.MIME):
+        entry["bits"].fail("picture-type", f"{bits} bits in a picture of type {mime}")
+    affine = None
+    if not bare or bits != 8 or entry.has("scale") or entry.has("zero"):
+        affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
+    pictures.check_header(data, mime, *size, channels, entry.where, count, bits)
+    return Picture(data, mime, *size, channels, affine, entry.where, bits, count)
+
+
+def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
+    if mean.bits == 8:
+        entry.fail("picture-type", "only pictures of 10 bits have a precision")
+    width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
+    data, mime = document.data(entry["bufferView"]), pictures.MIME_TYPES["png"]
+    pictures.check_header(data, mime, width, height, 1, entry.where)
+    return Picture(data, mime, width, height, 1, None, entry.where)
+
+
+def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
+    """(channels * count,): C numbers for each texture, or C that stand for all."""
+    given = [item.number(limits.LARGEST) for item in entry.items(channels * count, channels)]
+    if len(given) not in (channels, channels * count):
+        entry.fail("json-value", f"{len(given)} numbers, {channels} or {channels * count} expected")
+    return np.tile(np.array(given), 1 if len(given) == channels * count else count)
+
+
+def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray[np.float32] | None:
+    """(3, K) float32: R, G, B from the channels of all planes. FormatError: `plane-matrix`."""
+    if not entry.has("toRGB"):
+        return None
+    channels = 0 if planes is None else sum(plane.mean.channels for plane in planes)
+    most = limits.MAX_PLANES * limits.MAX_CHANNELS
+    numbers = [item.number(limits.MAX_GAIN) for item in entry["toRGB"].items(3 * most, 3)]
+    if planes is not None and len(numbers) != 3 * channels:
+        entry["toRGB"].fail("plane-matrix", f"{len(numbers)} numbers, 3 for each of {channels} channels expected")
+    return None if planes is None else np.array(numbers, np.float32).reshape(3, channels)
+
+
+def check_colours(
+    entry: Value,
+    cameras: CameraList | None,
+    planes: tuple[PlaneLayout, ...] | None,
+    to_rgb: NDArray[np.float32] | None,
+) -> None:
+    """Colours are those of R, G and B. FormatError: `camera-colour`."""
+    if cameras is None or cameras.colours is None or not planes or to_rgb is not None:
+        return
+    if planes[0].mean.channels != 3:
+        entry["colour"].fail("camera-colour", "colours of cameras, but the first plane has not three channels")

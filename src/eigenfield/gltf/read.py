@@ -1,0 +1,258 @@
+"""GLB to scene: `load` refuses a file at its first error, `validate` lists them all; both run the same checks."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import weakref
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.coding import limits
+from eigenfield.coding.pictures.precision import spread_precision
+from eigenfield.coding.pictures.quantise import mean_values
+from eigenfield.coding.video.av1 import residual_frames
+from eigenfield.core.errors import FormatError
+from eigenfield.core.payloads import PictureFile, keep_files, keep_stream
+from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.gltf.container import parse_glb, read_file
+from eigenfield.gltf.document import Document
+from eigenfield.gltf.findings import Finding, Findings
+from eigenfield.gltf.layout import Layout, read_layout
+from eigenfield.gltf.layout_geometry import read_mesh
+from eigenfield.gltf.layout_planes import BasisLayout, Picture, PlaneLayout, read_image
+from eigenfield.runtime.parallel import parallel_map
+
+log = logging.getLogger("eigenfield.format")
+
+_bytes: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # of scenes that came from a file
+
+
+@contextlib.contextmanager
+def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Put the file's name into every FormatError, and turn a lack of memory into one."""
+    try:
+        yield
+    except FormatError as error:
+        error.path = os.fspath(path)
+        raise
+    except MemoryError as error:
+        raise FormatError(
+            "memory", "does not fit into memory", where="byte 0", path=path, remedy="open it on a larger machine"
+        ) from error
+
+
+def open_layout(path: Path) -> tuple[Document, Layout]:
+    """Container and checked layout, pictures not decoded. Raises FormatError."""
+    return _layout_of(read_file(path))
+
+
+def _layout_of(data: bytes) -> tuple[Document, Layout]:
+    document = Document(parse_glb(data))
+    layout = read_layout(document, Findings(strict=True))
+    assert layout is not None
+    return document, layout
+
+
+def load(path: str | os.PathLike[str]) -> Scene:
+    """Read a scene: float32 means, uint8 textures with their scale and zero.
+
+    Raises FormatError (a stable `code`, and `where`) for anything that is not as docs/format.md says; limits are
+    checked before memory is taken. Never another exception for what is in the file.
+    """
+    return _read(path, pictures=True)
+
+
+def outline(path: str | os.PathLike[str]) -> Scene:
+    """A scene without its planes: checked as `load` does, but no picture is decoded. Raises FormatError."""
+    return _read(path, pictures=False)
+
+
+def read_scene(data: bytes) -> Scene:
+    """The scene that a file of these bytes holds. Raises FormatError."""
+    return _scene_of(data, pictures=True)
+
+
+def file_bytes(scene: Scene) -> bytes | None:
+    """The bytes of the file that `scene` was read from, as they were then; None if it came from no file."""
+    return _bytes.get(scene)
+
+
+def _read(path: str | os.PathLike[str], pictures: bool) -> Scene:
+    with naming(path):
+        return _scene_of(read_file(Path(path)), pictures)
+
+
+def _scene_of(data: bytes, pictures: bool) -> Scene:
+    document, layout = _layout_of(data)
+    bases = [basis for plane in layout.planes or () for basis in plane.bases]
+    if layout.lost:
+        found = sum(basis.count for basis in bases)
+        log.warning(
+            "the file ends within its eigen textures: views are drawn of %d of %d (copy or download it again)",
+            found, found + layout.lost,
+        )  # fmt: skip
+    elif document.glb.missing:
+        log.warning("the file ends within its residual: captured views go without (copy or download it again)")
+    planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
+    scene = _scene(layout, planes)
+    _bytes[scene] = data
+    return scene
+
+
+def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
+    assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
+    assert layout.triangles is not None and layout.reference is not None
+    return Scene(
+        mesh=layout.mesh,
+        planes=planes,
+        names=layout.cameras.names,
+        cameras=layout.cameras.cameras,
+        held_out=layout.cameras.held_out,
+        reference=layout.reference,
+        view_plane=layout.view_plane,
+        triangles=layout.triangles,
+        settings=layout.settings,
+        scores=layout.scores,
+        generator=layout.generator,
+        colours=layout.cameras.colours,
+        to_rgb=layout.to_rgb,
+        residual=layout.residual,
+    )
+
+
+def _decode_plane(plane: PlaneLayout) -> Plane:
+    mean = mean_values(plane.mean.decode()[0], plane.mean.affine)
+    if plane.mean.precision is not None:
+        mean /= spread_precision(plane.mean.precision.decode()[0, ..., 0], *mean.shape[:2])
+    bases = tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases)
+    made = Plane(mean, bases)
+    keep_files(made, [_file(plane.mean)])
+    return made
+
+
+def _file(picture: Picture) -> PictureFile:
+    precision = None if picture.precision is None else bytes(picture.precision.data)
+    return PictureFile(bytes(picture.data), picture.mime, picture.bits, picture.count, picture.affine, precision)
+
+
+def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
+    width, height = basis.size
+    deep = any(picture.bits > 8 for picture in basis.textures)
+    starts = np.cumsum([0, *(picture.count for picture in basis.textures)])
+    count = int(starts[-1])
+    textures = np.zeros((count, height, width, channels), np.uint16 if deep else np.uint8)
+    scale, zero = np.ones((count, channels), np.float32), np.zeros((count, channels), np.float32)
+
+    def decode(index: int) -> None:
+        picture, part = basis.textures[index], slice(starts[index], starts[index + 1])
+        textures[part] = picture.decode()
+        if picture.affine is not None:
+            scale[part] = picture.affine.scale.reshape(-1, channels)
+            zero[part] = picture.affine.zero.reshape(-1, channels)
+
+    parallel_map(decode, range(len(basis.textures)))
+    made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
+    keep_files(made, [_file(picture) for picture in basis.textures])
+    if basis.stream is not None:
+        keep_stream(made, basis.stream)
+    return made
+
+
+def validate(path: str | os.PathLike[str]) -> list[Finding]:
+    """Every finding in a file, in the order of the file's parts; an empty list for a file as specified.
+
+    Reads and decodes everything that `load` would, one picture at a time, and looks at what `load` does not need: the
+    picture and the nodes for other viewers, buffer views without use. Never raises for what is in the file.
+    """
+    findings = Findings(strict=False)
+    with findings.part(), naming(path):
+        document = Document(parse_glb(read_file(Path(path))))
+        layout = read_layout(document, findings)
+        if layout is not None:
+            _check_pictures(layout, findings)
+            _check_residual(layout, findings)
+            _check_preview(document, findings)
+            _check_bounds(document, layout, findings)
+            _check_use(document, findings)
+    return findings.found
+
+
+def _check_pictures(layout: Layout, findings: Findings) -> None:
+    for plane in layout.planes or ():
+        for picture in [plane.mean, *(texture for basis in plane.bases for texture in basis.textures)]:
+            with findings.part():
+                picture.decode()
+                if picture.precision is not None:
+                    picture.precision.decode()
+
+
+def _check_residual(layout: Layout, findings: Findings) -> None:
+    if layout.residual is not None:
+        with findings.part():
+            for _ in residual_frames(layout.residual):
+                pass
+
+
+def _check_preview(document: Document, findings: Findings) -> None:
+    """What a viewer without our extension shows: images[0] through the proxy's unlit material."""
+    with findings.part():
+        image = read_image(document, 3)
+        if image.mime not in ("image/png", "image/jpeg"):
+            findings.note("warning", "preview-type", image.where, f"{image.mime} is not glTF's PNG or JPEG")
+        elif image.width * image.height * 3 <= limits.MAX_DECODED:
+            _decode_any(image)
+    with findings.part():
+        primitive = document.root["meshes"].at(0)["primitives"].at(0)
+        material = document.root["materials"].at(primitive["material"].integer(0, 2**31))
+        texture = material["pbrMetallicRoughness"]["baseColorTexture"]["index"].integer(0, 2**31)
+        source = document.root["textures"].at(texture)["source"]
+        if source.integer(0, 2**31) != 0:
+            findings.note("warning", "preview-material", source.where, "the proxy's material does not show images[0]")
+
+
+def _decode_any(image: Picture) -> None:
+    try:
+        image.decode()
+    except FormatError as error:
+        if error.code != "picture-channels":
+            raise
+        replace(image, channels=1).decode()  # grey is as good for a preview
+
+
+def _check_bounds(document: Document, layout: Layout, findings: Findings) -> None:
+    """glTF wants the bounds of POSITION to be exact: viewers place their camera by them."""
+    if layout.mesh is None:
+        return
+    with findings.part():
+        position = document.root["meshes"].at(0)["primitives"].at(0)["attributes"]["POSITION"]
+        accessor = document.root["accessors"].at(position.integer(0, 2**31))
+        shown = read_mesh(document).vertices  # of a coded mesh the coarse one
+        for key, found in (("min", shown.min(axis=0)), ("max", shown.max(axis=0))):
+            stated = np.array(accessor[key].numbers(3), np.float32)
+            if not np.array_equal(stated, found):
+                findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
+
+
+_REFERENCES = ("bufferView", "coded", "codedTriangles", "codedWeights")  # keys that name a buffer view
+
+
+def _check_use(document: Document, findings: Findings) -> None:
+    """Buffer views that nothing names: bytes without use."""
+    used: set[int] = set()
+    todo = [document.glb.json]
+    while todo:
+        item = todo.pop()
+        if isinstance(item, dict):
+            used |= {item[key] for key in _REFERENCES if isinstance(item.get(key), int)}
+            todo.extend(item.values())
+        elif isinstance(item, list):
+            todo.extend(item)
+    with findings.part():
+        for view in document.root["bufferViews"].items(limits.MAX_VIEWS):
+            if int(view.where.rpartition("/")[2]) not in used:
+                findings.note("information", "view-unused", view.where, "no one names these bytes")

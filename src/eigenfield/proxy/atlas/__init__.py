@@ -1,0 +1,1 @@
+"""A mesh's atlas: checked, or cut anew."""

@@ -1,0 +1,139 @@
+"""Is a mesh's UV layout an atlas, and how good a one?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from eigenfield.core.mesh import Mesh
+from eigenfield.proxy.atlas.kernels import count_layers
+
+MEASURE_SIDE = 2048  # raster on which overlap and fill are counted
+MARGIN = 0.05  # texels of that raster: UVs are often printed with six digits
+BORDER = 5e-4  # UVs may lie this far outside 0..1 (half a texel at 1024): they are clipped
+OVERLAP_TOLERANCE = 0.005  # of the covered texels may lie in two triangles
+FLAT_TOLERANCE = 0.01  # of the surface may have UV triangles without area
+
+
+@dataclass(frozen=True)
+class AtlasStatistics:
+    """What an atlas costs and gives.
+
+    charts: pieces that hang together by vertices.
+    fill: part of the unit square that is covered.
+    overlap: part of the covered texels that lie in more than one triangle.
+    flat: part of the surface, by area, whose UV triangles have no area.
+    stretch: L2 stretch of Sander et al. ("Texture Mapping Progressive Meshes", 2001), 1 at best: how unevenly texels
+        are spread, in size and in direction.
+    anisotropy: mean of the ratio of the singular values of the map, weighted by area; 1 where it is conformal.
+    """
+
+    charts: int
+    fill: float
+    overlap: float
+    flat: float
+    stretch: float
+    anisotropy: float
+
+    def __str__(self) -> str:
+        return (
+            f"{self.charts} charts, fill {self.fill:.1%}, overlap {self.overlap:.2%}, stretch {self.stretch:.3f}, "
+            f"anisotropy {self.anisotropy:.3f}"
+        )
+
+
+def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
+    """Measure the UV layout of a mesh; UVs must be there, finite and about in 0..1.
+
+    The singular values of the map from UV to the surface are those of Ss = dP/du, St = dP/dv of each triangle.
+    """
+    assert mesh.uv is not None
+    uv = mesh.uv.astype(np.float64)
+    layers = np.zeros((MEASURE_SIDE, MEASURE_SIDE), np.uint8)
+    count_layers(uv * MEASURE_SIDE, mesh.faces, MARGIN, layers)
+    covered, doubled = int((layers > 0).sum()), int((layers > 1).sum())
+    q = uv[mesh.faces]
+    p = mesh.vertices[mesh.faces].astype(np.float64)
+    surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
+    signed = _signed_area(q)
+    laid = np.abs(signed) > 1e-14
+    total = max(float(surface.sum()), 1e-300)
+    stretch, anisotropy = _stretch(p[laid], q[laid], surface[laid], signed[laid])
+    return AtlasStatistics(
+        charts=len(chart_sizes(mesh)),
+        fill=float(np.abs(signed).sum()) * covered / max(int(layers.sum()), 1),
+        overlap=doubled / covered if covered else 0.0,
+        flat=float(surface[~laid].sum()) / total,
+        stretch=stretch,
+        anisotropy=anisotropy,
+    )
+
+
+def _signed_area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+
+
+def _stretch(
+    p: NDArray[np.float64], q: NDArray[np.float64], surface: NDArray[np.float64], signed: NDArray[np.float64]
+) -> tuple[float, float]:
+    if len(p) == 0:
+        return float("inf"), float("inf")
+    s, t, twice = q[..., 0, None], q[..., 1, None], 2 * signed[:, None]
+    along = (p[:, 0] * (t[:, 1] - t[:, 2]) + p[:, 1] * (t[:, 2] - t[:, 0]) + p[:, 2] * (t[:, 0] - t[:, 1])) / twice
+    down = (p[:, 0] * (s[:, 2] - s[:, 1]) + p[:, 1] * (s[:, 0] - s[:, 2]) + p[:, 2] * (s[:, 1] - s[:, 0])) / twice
+    a, b, c = (along**2).sum(axis=1), (along * down).sum(axis=1), (down**2).sum(axis=1)
+    root = np.sqrt((a - c) ** 2 + 4 * b**2)
+    large, small = np.sqrt((a + c + root) / 2), np.sqrt(np.maximum(a + c - root, 0) / 2)
+    texels = float(np.abs(signed).sum())
+    l2 = np.sqrt(((a + c) / 2 * surface).sum() / surface.sum() * texels / surface.sum())
+    ratio = np.divide(large, small, out=np.full_like(large, 1e3), where=small > 1e-3 * large)
+    return float(l2), float((ratio * surface).sum() / surface.sum())
+
+
+def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
+    """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in
+    it."""
+    p, q = vertices[faces], uv[faces]
+    surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
+    signed = _signed_area(q)
+    if (signed == 0).any() or surface.sum() == 0:
+        return float("inf")
+    return _stretch(p, q, surface, signed)[0]
+
+
+def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
+    """(m,) which chart each triangle is in: triangles that share a vertex are in one."""
+    n, f = len(mesh.vertices), mesh.faces
+    links = coo_array((np.ones(2 * len(f), np.int8), (np.r_[f[:, 0], f[:, 0]], np.r_[f[:, 1], f[:, 2]])), shape=(n, n))
+    _, label = connected_components(links, directed=False)
+    _, chart = np.unique(label[f[:, 0]], return_inverse=True)
+    return chart.astype(np.int32)
+
+
+def chart_sizes(mesh: Mesh) -> NDArray[np.int64]:
+    """(charts,) number of triangles of each."""
+    return np.bincount(chart_labels(mesh))
+
+
+def atlas_fault(mesh: Mesh) -> str | None:
+    """Why the mesh's own UVs are no atlas, as the end of a sentence; None if they are one."""
+    if mesh.uv is None:
+        return "there are none"
+    if not np.isfinite(mesh.uv).all():
+        return "some are NaN or infinite"
+    low, high = mesh.uv.min(axis=0), mesh.uv.max(axis=0)
+    if low.min() < -BORDER or high.max() > 1 + BORDER:
+        return f"they tile: they reach from {low.min():.4g} to {high.max():.4g}, outside 0..1"
+    if (high - low).min() <= 1e-6:
+        return "they all lie on one point or line"
+    statistics = atlas_statistics(mesh)
+    if statistics.flat > FLAT_TOLERANCE:
+        return f"{statistics.flat:.1%} of the surface has no area in them"
+    if statistics.overlap > OVERLAP_TOLERANCE:
+        return f"{statistics.overlap:.1%} of the covered texels lie in more than one triangle"
+    return None

@@ -1,0 +1,177 @@
+"""A mesh with an atlas: its own where it has one, else a new one.
+
+xatlas cuts charts by the planarity and compactness of groups of triangles. They are laid out by least-squares conformal
+maps (`lscm`), sized by how densely the photographs see them (`lscm_charts`), and packed by xatlas again.
+"""
+
+from __future__ import annotations
+
+import io
+import logging
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.proxy.atlas.layout import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.atlas.lscm import surface_areas
+from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
+from eigenfield.proxy.child import run_child
+from eigenfield.proxy.meshes.read import is_sliver
+
+log = logging.getLogger("eigenfield.proxy")
+
+DEFAULT_TRIANGLES = 30_000
+FEWEST_TRIANGLES = 4
+LOST_TOLERANCE = 0.01  # of the surface may be in no chart
+
+
+def unwrapped(
+    mesh: Mesh,
+    *,
+    triangles: int | None = None,
+    cameras: Sequence[Camera] | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
+    """The mesh with a valid atlas (see `atlas_fault`), one UV a vertex.
+
+    cameras: give each new chart an area in proportion to how densely these see it (`chart_scales`); None: all alike.
+    triangles: simplify to this many at most; None keeps a mesh that has an atlas as it is, and simplifies others to
+    DEFAULT_TRIANGLES. A simplified mesh gets new charts. Raises OptionError `triangles`; ProxyError `proxy-unwrap`.
+    """
+    if triangles is not None and triangles < FEWEST_TRIANGLES:
+        raise OptionError(
+            "triangles", f"{triangles} triangles were asked for", remedy=f"ask for {FEWEST_TRIANGLES} or more"
+        )
+    fault = atlas_fault(mesh)
+    if fault is None and (triangles is None or len(mesh.faces) <= triangles):
+        assert mesh.uv is not None
+        return Mesh(mesh.vertices, mesh.faces, np.clip(mesh.uv, 0, 1))
+    if fault is None:
+        log.info("the mesh's own atlas is given up for fewer triangles")
+    elif mesh.uv is not None:
+        log.warning("the mesh's own texture coordinates are no atlas: %s; new charts are cut", fault)
+    plain = welded(mesh)
+    limit = DEFAULT_TRIANGLES if triangles is None else triangles
+    if len(plain.faces) > limit:
+        plain = simplified(plain, limit)
+        log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(plain.faces))
+    result = _new_atlas(plain, cameras, progress)
+    statistics = atlas_statistics(result)
+    log.info("atlas: %s", statistics)
+    if statistics.overlap > OVERLAP_TOLERANCE:
+        log.warning("the new charts overlap by %.1f%%: expect ghosts there", 100 * statistics.overlap)
+    return result
+
+
+def welded(mesh: Mesh) -> Mesh:
+    """Vertices at the same place to the bit made one, UVs dropped: undoes the doubling along the seams of an atlas."""
+    vertices, first, index = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(first)  # in the order in which they came
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    faces = rank[index.reshape(-1)][mesh.faces].astype(np.int32)
+    whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
+    return Mesh(vertices[order], faces[whole])
+
+
+def simplified(mesh: Mesh, triangles: int) -> Mesh:
+    """At most about `triangles` of them, by quadric edge collapse (fast-simplification); without UVs."""
+    from fast_simplification import simplify
+
+    centre, scale = _frame(mesh)
+    points, faces = simplify(
+        (mesh.vertices.astype(np.float64) - centre) / scale, mesh.faces.astype(np.int64), target_count=triangles
+    )
+    vertices = (np.asarray(points, np.float64) * scale + centre).astype(np.float32)
+    kept = np.asarray(faces, np.int64)
+    kept = kept[~is_sliver(vertices, kept)]
+    if len(kept) == 0:
+        raise ProxyError(
+            "proxy-degenerate",
+            f"nothing is left of the mesh at {triangles} triangles",
+            remedy="ask for more --triangles",
+        )
+    used, index = np.unique(kept, return_inverse=True)
+    return Mesh(vertices[used], index.reshape(kept.shape).astype(np.int32))
+
+
+def _frame(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
+    """Centre and mean edge length: thresholds of the libraries are absolute, meant for numbers near 1."""
+    corners = mesh.vertices[mesh.faces].astype(np.float64)
+    edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+    low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
+    return (low + high) / 2, float(edges.mean()) or 1.0
+
+
+def _new_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
+    if progress is not None:
+        progress("atlas", 0, 3)
+    centre, scale = _frame(mesh)
+    cut = _taken_up(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, progress, 0))
+    if progress is not None:
+        progress("atlas", 1, 3)
+    laid = conformal_charts(cut)
+    assert laid.uv is not None
+    label = chart_labels(laid)
+    uv = laid.uv.astype(np.float64) / scale
+    if cameras:
+        uv *= chart_scales(laid, cameras)[_chart_of_vertex(laid, label)][:, None]
+    if progress is not None:
+        progress("atlas", 2, 3)
+    packed = _taken_up(laid, _run_xatlas(uv, laid.faces, label, progress, 2))
+    if progress is not None:
+        progress("atlas", 3, 3)
+    return packed
+
+
+def _chart_of_vertex(mesh: Mesh, label: NDArray[np.int32]) -> NDArray[np.int32]:
+    result = np.zeros(len(mesh.vertices), np.int32)
+    result[mesh.faces.reshape(-1)] = np.repeat(label, 3)
+    return result
+
+
+def _taken_up(mesh: Mesh, answer: bytes) -> Mesh:
+    """The mesh as xatlas gives it back: vertices doubled along seams, UVs in 0..1 at one scale along both axes."""
+    stream = io.BytesIO(answer)
+    origin, corners, texels, laid_out, size = (np.load(stream, allow_pickle=False) for _ in range(5))
+    uv = (texels * (size / size.max())).astype(np.float32)  # xatlas divides each axis by its own size
+    faces = corners.reshape(-1, 3).astype(np.int32)
+    held = laid_out[faces].all(axis=1)
+    if not held.all():
+        area = surface_areas(mesh.vertices[origin].astype(np.float64), faces)
+        if not held.any() or area[~held].sum() > LOST_TOLERANCE * area.sum():
+            raise ProxyError(
+                "proxy-unwrap",
+                f"no chart could be found for {int((~held).sum())} of {len(faces)} triangles",
+                remedy="clean the mesh (double faces, edges with more than two triangles) or give it UVs elsewhere",
+            )
+        log.warning("%d of %d triangles could not be laid out: dropped", int((~held).sum()), len(faces))
+        faces = faces[held]
+    used, index = np.unique(faces, return_inverse=True)
+    return Mesh(
+        np.ascontiguousarray(mesh.vertices[origin[used]]),
+        index.reshape(faces.shape).astype(np.int32),
+        np.clip(uv[used], 0, 1),
+    )
+
+
+def _run_xatlas(
+    points: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    chart: NDArray[np.int32] | None,
+    progress: Progress | None,
+    done: int,
+) -> bytes:
+    """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting
+    is (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
+    labels = np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32)
+    return run_child(
+        "xatlas_process.py", [points.astype(np.float32), faces.astype(np.uint32), labels],
+        lambda: None if progress is None else progress("atlas", done, 3), "proxy-unwrap", "xatlas",
+        "clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
+    )  # fmt: skip

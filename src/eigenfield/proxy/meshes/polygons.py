@@ -1,0 +1,66 @@
+"""Polygons into triangles, and one UV a vertex: vertices are doubled where a seam gives them several."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.errors import ProxyError
+
+
+class Polygons(NamedTuple):
+    """Polygons end to end: corners (c,) vertex indices, sizes (p,) how many belong to each."""
+
+    corners: NDArray[np.int64]
+    sizes: NDArray[np.int64]
+
+    @staticmethod
+    def from_rows(rows: Sequence[Any] | NDArray[Any]) -> Polygons:
+        """Of lists of vertex indices, (p, k) if all are alike."""
+        if isinstance(rows, np.ndarray) and rows.ndim == 2:
+            return Polygons(rows.reshape(-1).astype(np.int64), np.full(len(rows), rows.shape[1], np.int64))
+        sizes = np.array([len(row) for row in rows], np.int64)
+        return Polygons(np.concatenate([np.asarray(row) for row in rows]).astype(np.int64), sizes)
+
+
+def triangulate(
+    polygons: Polygons, uv: NDArray[np.float64] | None
+) -> tuple[NDArray[np.int64], NDArray[np.float64] | None]:
+    """Fans from each polygon's first corner: (m, 3) vertices, and (m, 3, 2) UVs from (c, 2), one a corner.
+
+    Polygons with fewer than three corners give nothing.
+    """
+    first = np.cumsum(polygons.sizes) - polygons.sizes
+    count = np.maximum(polygons.sizes - 2, 0)
+    start = np.repeat(first, count)
+    step = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count)
+    corner = np.stack([start, start + step + 1, start + step + 2], axis=1)
+    return polygons.corners[corner], None if uv is None else uv[corner]
+
+
+def split_seams(
+    faces: NDArray[np.int64], uv: NDArray[np.float64] | None
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """(m, 3) vertices and (m, 3, 2) UVs a corner, to one UV a vertex.
+
+    Returns origin (n,), the vertex that each new one copies, rising; the new (m, 3) faces; and (n, 2) UVs.
+    """
+    assert uv is not None
+    _, texel = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
+    pairs = np.stack([faces.reshape(-1), texel.reshape(-1)], axis=1)
+    kept, first, index = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
+    return kept[:, 0], index.reshape(faces.shape), uv.reshape(-1, 2)[first]
+
+
+def check_range(indices: NDArray[np.int64], count: int) -> None:
+    """Raise ProxyError `proxy-index-range` unless all indices are in [0, count)."""
+    wrong = indices[(indices < 0) | (indices >= count)]
+    if len(wrong):
+        raise ProxyError(
+            "proxy-index-range",
+            f"{len(wrong)} face corners name vertices that are not there: {wrong[0]}, of {count}",
+            remedy="export it again",
+        )

@@ -1,0 +1,85 @@
+"""From a mesh file and the cameras to the proxy that `encode` works on."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import ProxyError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.progress import Progress
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy.atlas.unwrap import unwrapped
+from eigenfield.proxy.meshes.read import Raw, checked, read_mesh
+
+THUMBNAIL = 64  # side of the pictures on which a mesh is looked for whose vertices all lie outside
+
+
+def prepare_proxy(
+    path_or_mesh: str | os.PathLike[str] | Mesh,
+    cameras: Sequence[Camera],
+    *,
+    triangles: int | Callable[[Mesh], int | None] | None = None,
+    progress: Progress | None = None,
+) -> Mesh:
+    """Read (or check) a mesh, make sure that a camera sees it, and give it an atlas.
+
+    triangles: see `unwrapped`, or what says so of the mesh that was read. Raises ProxyError: what `read_mesh` and
+    `unwrapped` raise, and `proxy-not-seen`.
+    """
+    path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
+    mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
+    check_seen(mesh, cameras, path)
+    try:
+        count = triangles(mesh) if callable(triangles) else triangles
+        return unwrapped(mesh, triangles=count, cameras=cameras, progress=progress)
+    except ProxyError as error:
+        raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
+
+
+def _from_memory(mesh: Mesh) -> Mesh:
+    uv = None if mesh.uv is None else np.asarray(mesh.uv, np.float64)
+    return checked(Raw(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv), None)
+
+
+def check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None:
+    """Raise ProxyError `proxy-not-seen` unless some of the mesh is in some camera's frame."""
+    behind = 0
+    for camera in cameras:
+        pixels, depth = camera.project(mesh.vertices)
+        if _inside(pixels, depth, camera).any():
+            return
+        behind += not (depth > 0).any()
+    if any(_drawn(mesh, camera) for camera in cameras):
+        return
+    if behind == len(cameras):
+        where = f"lies behind all {len(cameras)} cameras"
+    else:
+        where = f"lies outside the frame of all {len(cameras)} cameras"
+    middle = mesh.vertices.astype(np.float64).mean(axis=0)
+    array = np.mean([camera.centre for camera in cameras], axis=0)
+    raise ProxyError(
+        "proxy-not-seen",
+        f"the mesh {where} (its middle is at {_point(middle)}, theirs at {_point(array)})",
+        path=path,
+        remedy="bring both into one frame: look for flipped axes (y and z between OpenGL and OpenCV), another scale or "
+        "another reconstruction's coordinates; eigenfield inspect --overlay shows both",
+    )
+
+
+def _inside(pixels: NDArray[np.float64], depth: NDArray[np.float64], camera: Camera) -> NDArray[np.bool_]:
+    x, y = pixels[:, 0], pixels[:, 1]
+    return (depth > 0) & (x > 0) & (x < camera.width) & (y > 0) & (y < camera.height)
+
+
+def _drawn(mesh: Mesh, camera: Camera) -> bool:
+    return bool((rasterise_view(mesh, camera.resized(THUMBNAIL, THUMBNAIL)).face >= 0).any())
+
+
+def _point(position: NDArray[np.float64]) -> str:
+    return "(" + ", ".join(f"{x:.3g}" for x in position) + ")"

@@ -1,0 +1,1 @@
+"""Shapes put into a mesh by hand."""

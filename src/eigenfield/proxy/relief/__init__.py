@@ -1,0 +1,1 @@
+"""Layered reliefs: depth maps seen from one camera, as a mesh."""

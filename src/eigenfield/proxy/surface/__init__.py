@@ -1,0 +1,1 @@
+"""Surfaces from all sides: depth maps fused, closed and trimmed."""

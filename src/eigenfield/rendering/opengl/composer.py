@@ -1,0 +1,320 @@
+"""Equation 8 on a GPU: means and eigen textures, weighted and summed into one texture of the whole atlas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from importlib import resources
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.core.errors import FormatError
+from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.viewplane import ViewPlane
+from eigenfield.rendering.weight_map import component_rows, weight_map
+
+WHOLE = (0.0, 0.0, 1.0, 1.0)  # rectangle
+LAYERS = 64  # that the shader sums in one draw
+REACH = 2  # texels beside a chart that the widest filter reads
+HEAD = "#version 330 core\n"
+
+QUAD = """#version 330 core
+uniform vec4 rectangle;  // of the target: left, top, right, bottom in 0..1
+in vec2 corner;
+out vec2 own;
+void main() {
+  own = corner;
+  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, corner) - 1.0, 0.0, 1.0);
+}
+"""
+SPREAD = """#version 330 core
+uniform vec2 texel;      // of the target, in clip space
+uniform vec2 shifts[SHIFTS];
+in vec2 coordinate;
+in vec3 onPlane;
+out vec3 point;
+void main() {
+  point = onPlane;
+  gl_Position = vec4(2.0 * coordinate - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);
+}
+"""
+PLACE = "in vec3 point;\nout vec4 place;\nvoid main() { place = placeOf(point); }\n"
+SUM = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(sumTextures(own), 1.0); }\n"
+FINER = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(finerValue(own), 1.0); }\n"
+
+
+@dataclass(frozen=True, eq=False)
+class _Part:
+    """A mean or a basis on the GPU.
+
+    array: four channels of a mean or four textures of one channel to a texel. rectangle: left, top, right and bottom
+    of its grid that it covers, 0..1. colours: (C, 3) of the value 1 of each channel. scale, bias: (groups, C, 4),
+    value = stored * scale + bias. columns: its textures among those of all bases, None for a mean. group: the first of
+    its groups in the weight maps.
+    """
+
+    array: Any
+    rectangle: tuple[float, float, float, float]
+    colours: NDArray[np.float64]
+    scale: NDArray[np.float64]
+    bias: NDArray[np.float64]
+    columns: slice | None = None
+    group: int = 0
+
+
+@dataclass(eq=False)
+class _Grid:
+    """What is summed at one size. target, frame: the sum. places: where each texel lies, once a view needs it."""
+
+    target: Any
+    frame: Any
+    parts: list[_Part] = field(default_factory=list)
+    places: Any = None
+
+
+class Composer:
+    """Composes `texture` for one viewpoint after the other, in the context and thread that it was made in.
+
+    texture: R, G, B of half-floats of the scene's whole atlas, with mip maps; row 0 is v = 0. mode: of the weights
+    that texels look up. Raises FormatError `unsupported-layout` for scenes that are no pictures.
+    """
+
+    def __init__(self, context: Any, scene: Scene, mode: str) -> None:
+        self._made: list[Any] = []
+        self._context, self._scene, self._mode = context, scene, mode
+        self._rows = component_rows(scene)
+        self._composed: Any = None
+        self._maps: Any = None
+        self._colours = _colours_of(scene)
+        self._sum, self._finer = (self._program(QUAD, body) for body in (SUM, FINER))
+        corners = self.keep(context.buffer(np.array([[0, 0], [1, 0], [0, 1], [1, 1]], np.float32).tobytes()))
+        set_uniforms(self._sum, stored=np.int32(0), places=np.int32(1), weightMaps=np.int32(2))
+        set_uniforms(self._finer, coarse=np.int32(0), rectangle=WHOLE)
+        self._quads = {
+            program: self.keep(context.vertex_array(program, [(corners, "2f", "corner")]))
+            for program in (self._sum, self._finer)
+        }
+        self._whole, self._coarser = self._make_grids()
+        self.texture = self._whole.target
+
+    def keep(self, made: Any) -> Any:
+        """What `release` is to give back."""
+        self._made.append(made)
+        return made
+
+    def release(self) -> None:
+        """Give everything on the GPU back."""
+        for made in self._made:
+            made.release()
+        self._made.clear()
+
+    def compose(self, count: int, weights: ArrayLike | None, eye: NDArray[np.float64]) -> None:
+        """Fill `texture` with the mean and the first `count` textures of each basis, unless it holds that already.
+
+        weights: view weights (Ne,) over the encoded cameras; None: each texel takes those of the place where its ray
+        to `eye` (3,) meets the view plane.
+        """
+        mix = None if weights is None else np.asarray(weights, np.float64)
+        wanted = (count, (eye if mix is None else mix).tobytes(), mix is None)
+        if wanted == self._composed:
+            return
+        omega = None if mix is None else mix @ self._rows
+        if omega is None:
+            self._make_rays()
+            set_uniforms(self._sum, eye=_on_plane(self._scene.view_plane, eye))
+        self._context.enable_only(self._context.BLEND)
+        self._context.blend_func = self._context.ONE, self._context.ONE
+        for grid in (*self._coarser, self._whole):
+            grid.frame.use()
+            grid.frame.clear()
+            for part in grid.parts:
+                self._add(grid, part, count, omega)
+        for grid in self._coarser:
+            grid.target.use(0)
+            self._quads[self._finer].render(self._context.TRIANGLE_STRIP)
+        self.texture.build_mipmaps()
+        self._composed = wanted
+
+    def _add(self, grid: _Grid, part: _Part, count: int, omega: NDArray[np.float64] | None) -> None:
+        """Draw a part into its grid, as many groups at a time as the shader takes."""
+        groups, channels = part.scale.shape[:2]
+        factor = np.ones((groups, 1, 4))
+        rays = omega is None and part.columns is not None
+        if part.columns is not None:
+            groups = min(groups, -(-count // 4))
+            flat = factor.reshape(-1)
+            flat[count:] = 0
+            if omega is not None:
+                own = omega[part.columns]
+                flat[: len(own)] *= own
+        scale, bias = part.scale * factor, part.bias * factor
+        sharing, step = 4 if part.columns is None else 1, LAYERS // channels
+        part.array.use(0)
+        if rays:
+            grid.places.use(1)
+            self._maps.use(2)
+        set_uniforms(self._sum, rectangle=part.rectangle, sharing=np.int32(sharing), channels=np.int32(channels))
+        set_uniforms(self._sum, rayWeights=np.bool_(rays), colours=_padded(part.colours))
+        for first in range(0, groups, step):
+            last = min(first + step, groups)
+            layer = first * channels // sharing
+            numbers = {"entries": (last - first) * channels, "firstLayer": layer, "firstGroup": part.group + first}
+            set_uniforms(self._sum, **{name: np.int32(number) for name, number in numbers.items()})
+            set_uniforms(self._sum, scale=_padded(scale[first:last]), bias=_padded(bias[first:last]))
+            self._quads[self._sum].render(self._context.TRIANGLE_STRIP)
+
+    def _program(self, vertex: str, body: str) -> Any:
+        source = HEAD + shader("cubic") + shader("compose") + body
+        return self.keep(self._context.program(vertex_shader=vertex, fragment_shader=source))
+
+    def _make_grids(self) -> tuple[_Grid, list[_Grid]]:
+        """The grid of the whole atlas, which takes the others, and those that are coarser, with all parts."""
+        whole = self._grid(*self._scene.atlas, mips=True)
+        grids = {self._scene.atlas: whole}
+        column = group = channel = 0
+        for plane in self._scene.planes:
+            own = self._colours[channel : channel + plane.mean.shape[2]]
+            channel += plane.mean.shape[2]
+            for size in plane.sizes:
+                if size not in grids:
+                    grids[size] = self._grid(*size)
+            grids[plane.sizes[0]].parts.append(self._mean(plane, own))
+            for basis in plane.bases:
+                if basis.count:
+                    columns = slice(column, column + basis.count)
+                    grids[basis.size].parts.append(self._basis(basis, own, columns, group))
+                column, group = column + basis.count, group - (-basis.count // 4)
+        return whole, [grid for grid in grids.values() if grid is not whole]
+
+    def _grid(self, rows: int, columns: int, mips: bool = False) -> _Grid:
+        target = self.keep(self._context.texture((columns, rows), 4, dtype="f2"))
+        target.repeat_x = target.repeat_y = False
+        if mips:
+            target.build_mipmaps()
+            target.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)  # anisotropy: Mesa's blurs
+        return _Grid(target, self.keep(self._context.framebuffer([target])))
+
+    def _mean(self, plane: Plane, colours: NDArray[np.float64]) -> _Part:
+        height, width, channels = plane.mean.shape
+        texels = np.zeros((-(-channels // 4), 4, height, width), np.float32)
+        texels.reshape(-1, height, width)[:channels] = plane.mean.transpose(2, 0, 1)
+        data = np.ascontiguousarray(texels.transpose(0, 2, 3, 1))
+        array = self._context.texture_array((width, height, len(data)), 4, data, dtype="f4", alignment=1)
+        scale = np.tile(np.eye(4), (len(data), 1))[None, :channels]
+        return _Part(_unfiltered(self.keep(array)), WHOLE, colours, scale, np.zeros_like(scale))
+
+    def _basis(self, basis: Basis, colours: NDArray[np.float64], columns: slice, group: int) -> _Part:
+        """Four eigen textures to a texel, and the numbers that make values of what it stores."""
+        count, height, width, channels = basis.textures.shape
+        codes = basis.textures.dtype == np.uint8
+        dtype, stored, full = ("f1", np.uint8, 255) if codes else ("f4", np.float32, 1)
+        groups = -(-count // 4)
+        array = self._context.texture_array((width, height, groups * channels), 4, dtype=dtype)
+        self.keep(array)
+        texels = np.zeros((height, width, 4), stored)  # of one layer: more than that is never held
+        for layer in range(groups * channels):
+            first, channel = 4 * (layer // channels), layer % channels
+            four = basis.textures[first : first + 4, ..., channel]
+            texels[..., : len(four)] = four.transpose(1, 2, 0)
+            array.write(texels, viewport=(0, 0, layer, width, height, 1))
+        scale, bias = np.zeros((2, 4 * groups, channels))
+        scale[:count], bias[:count] = full * basis.scale, -basis.zero.astype(np.float64) * basis.scale
+        scale, bias = (values.reshape(groups, 4, channels).transpose(0, 2, 1) for values in (scale, bias))
+        (rows, wide), (top, left) = basis.size, basis.corner
+        rectangle = (left / wide, top / rows, (left + width) / wide, (top + height) / rows)
+        return _Part(_unfiltered(array), rectangle, colours, scale, bias, columns, group)
+
+    def _make_rays(self) -> None:
+        """The maps that texels look weights up in and the places of the texels, at the first view that needs them."""
+        grids = [grid for grid in (*self._coarser, self._whole) if any(part.columns for part in grid.parts)]
+        if self._maps is not None or not grids:
+            return
+        found = weight_map(self._scene, self._mode)
+        nodes, bases = len(found), [basis for plane in self._scene.planes for basis in plane.bases]
+        counts = [basis.count for basis in bases]
+        slots = np.concatenate([np.arange(n) + 4 * sum(-(-m // 4) for m in counts[:i]) for i, n in enumerate(counts)])
+        layers = np.zeros((sum(-(-n // 4) for n in counts), 4, nodes, nodes), np.float32)
+        layers.reshape(-1, nodes, nodes)[slots] = found.transpose(2, 0, 1)
+        data = np.ascontiguousarray(layers.transpose(0, 2, 3, 1)).astype(np.float16)
+        self._maps = self.keep(self._context.texture_array((nodes, nodes, len(data)), 4, data, dtype="f2"))
+        self._maps.repeat_x = self._maps.repeat_y = False
+        shifts = _shifts()
+        program = self._program(SPREAD.replace("SHIFTS", str(len(shifts))), PLACE)
+        set_uniforms(program, shifts=shifts)
+        mesh = self._scene.mesh
+        assert mesh.uv is not None
+        corners = np.concatenate([mesh.uv, _on_plane(self._scene.view_plane, mesh.vertices)], axis=1)
+        vertices = self._context.buffer(corners.astype(np.float32).tobytes())
+        faces = self._context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes())
+        layout = [(vertices, "2f 3f", "coordinate", "onPlane")]
+        array = self._context.vertex_array(program, layout, index_buffer=faces)
+        self._context.enable_only(self._context.NOTHING)
+        for grid in grids:
+            size = grid.target.size
+            grid.places = self.keep(self._context.texture(size, 4, dtype="f2"))
+            grid.places.filter = (self._context.NEAREST, self._context.NEAREST)
+            frame = self._context.framebuffer([grid.places])
+            frame.use()
+            frame.clear()
+            set_uniforms(program, texel=2 / np.array(size))
+            array.render(instances=len(shifts))
+            frame.release()
+        for made in (array, vertices, faces):
+            made.release()
+
+
+def shader(name: str) -> str:
+    """A GLSL body that every renderer on a GPU includes; its head says what goes before it."""
+    return (resources.files("eigenfield.rendering") / "shaders" / f"{name}.glsl").read_text(encoding="utf-8")
+
+
+def set_uniforms(program: Any, **values: ArrayLike) -> None:
+    """Write uniforms, whole numbers as int; one that the compiler found unused is absent."""
+    for name, value in values.items():
+        if name in program:
+            array = np.asarray(value)
+            program[name].write(array.astype("i4" if array.dtype.kind in "ib" else "f4").tobytes())
+
+
+def _colours_of(scene: Scene) -> NDArray[np.float64]:
+    """(K, 3): R, G and B of the value 1 of each channel of all planes."""
+    channels = [int(plane.mean.shape[2]) for plane in scene.planes]
+    if scene.to_rgb is not None and max(channels) <= LAYERS:
+        return scene.to_rgb.T.astype(np.float64)
+    if channels in ([1], [3]):
+        return np.eye(3) if channels == [3] else np.ones((1, 3))
+    raise FormatError(
+        "unsupported-layout",
+        "OpenGL draws one plane of one or three channels, or planes that a matrix makes R, G and B of",
+        where="planes",
+        remedy="use the software renderer",
+    )
+
+
+def _on_plane(view: ViewPlane, points: ArrayLike) -> NDArray[np.float64]:
+    """(n, 3): X, Y of world points and their height above the view plane, in half widths of the array."""
+    offset = np.asarray(points, np.float64).reshape(-1, 3) - view.origin
+    height = offset @ np.cross(view.right, view.up) / (max(view.extent) or 1.0)
+    return np.concatenate([view.coordinates(points), height[:, None]], axis=1)
+
+
+def _shifts() -> NDArray[np.float64]:
+    """(n, 2) texels by which the mesh is drawn beside itself, the nearest last, which is the one that stays."""
+    steps = np.arange(-REACH, REACH + 1.0)
+    shifts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    return shifts[np.argsort(-np.square(shifts).sum(axis=1), kind="stable")]
+
+
+def _padded(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(LAYERS, n): what an array of the shader takes, zeros after the last of (..., n)."""
+    flat = values.reshape(-1, values.shape[-1])
+    padded = np.zeros((LAYERS, flat.shape[1]), np.float32)
+    padded[: len(flat)] = flat
+    return padded
+
+
+def _unfiltered(array: Any) -> Any:
+    array.repeat_x = array.repeat_y = False
+    array.filter = (array.ctx.NEAREST, array.ctx.NEAREST)
+    return array

@@ -1,0 +1,250 @@
+"""The OpenGL renderer: off screen on any GPU through EGL, with the shaders of the web viewer (equations 7 and 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
+from eigenfield.core.scene import Scene
+from eigenfield.rendering.opengl.composer import HEAD, Composer, set_uniforms, shader
+from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.software.drawing import ONE_SAMPLE, make_surface, median_footprint
+from eigenfield.rendering.software.renderer import BLACK, background_of
+
+FILTERS = ("bilinear", "bicubic")  # BICUBIC 0, 1 of the shader
+VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
+
+VERTEX = """#version 330 core
+uniform mat4 toClip;
+in vec3 position;
+in vec2 coordinate;
+out vec2 uv;
+void main() {
+  uv = coordinate;
+  gl_Position = toClip * vec4(position, 1.0);
+}
+"""
+FRAGMENT = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = vec4(surfaceColour(uv), 1.0); }\n"
+
+
+class OpenGLRenderer:
+    """Draws a scene with OpenGL; to be used from the thread that made it, and closed (it is a context manager).
+
+    Each viewpoint's texture is composed and then drawn (decision 15). filter: `bilinear` or `bicubic` (Catmull-Rom).
+    weights: the mode of the weights that texels look up. multisample: samples of a pixel's edges, 0 for none. context:
+    a moderngl context to draw in, else one of its own.
+
+    Raises OptionError (`opengl-missing`: moderngl is not installed; `opengl-context`: no driver, or one below OpenGL
+    3.3; `opengl-memory`: the textures are too many or too large for it), FormatError `unsupported-layout` for scenes
+    that are no pictures: neither one plane of one or three channels, nor planes with a matrix to R, G and B.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        filter: str = "bicubic",
+        weights: str = "delaunay",
+        multisample: int = 0,
+        context: Any = None,
+    ) -> None:
+        _check_filter(filter)
+        self._scene = scene
+        self._composer: Composer | None = None
+        self._multisample = multisample
+        self._owned = context is None
+        self._made: list[Any] = []
+        self._kept: tuple[tuple[int, int], Any, Any] | None = None
+        self.context: Any = make_context() if context is None else context
+        try:
+            self._set_up(filter, weights)
+        except Exception as error:
+            self.close()
+            if type(error).__module__.startswith("moderngl"):
+                raise OptionError(
+                    "opengl-memory",
+                    f"the textures of this scene do not fit the OpenGL driver: {error}",
+                    remedy="use the software renderer",
+                ) from error
+            raise
+
+    @property
+    def name(self) -> str:
+        """What draws: the driver's own words."""
+        return str(self.context.info["GL_RENDERER"])
+
+    def __enter__(self) -> OpenGLRenderer:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Give everything on the GPU back."""
+        for made in self._made:
+            made.release()
+        self._made.clear()
+        if self._composer is not None:
+            self._composer.release()
+        self._composer = None
+        self._release_frames()
+        if self._owned and self.context is not None:
+            self.context.release()
+        self.context = None
+
+    def draw(
+        self,
+        camera: Camera,
+        weights: ArrayLike | None = None,
+        *,
+        background: Sequence[float] = BLACK,
+        textures: int | None = None,
+        colour: NDArray[np.float32] | None = None,
+    ) -> Picture:
+        """The view of `camera`, values exact to 1 / 255.
+
+        weights: view weights (Ne,) over the encoded cameras, as for the software renderer. None: each point of the
+        surface takes those of the place where its ray to the camera meets the view plane, which is right for a camera
+        anywhere; on the plane it is the same. The rest as `Renderer.draw`.
+        """
+        data = self.draw_rgba(camera, weights, textures=textures, colour=colour).astype(np.float32) / np.float32(255)
+        image, coverage = data[..., :3], np.ascontiguousarray(data[..., 3])
+        image = image + (1 - coverage)[..., None] * background_of(background, 3)
+        return Picture(np.ascontiguousarray(image), coverage)
+
+    def draw_rgba(
+        self,
+        camera: Camera,
+        weights: ArrayLike | None = None,
+        *,
+        textures: int | None = None,
+        colour: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.uint8]:
+        """(H, W, 4) uint8, R, G, B times coverage, and coverage: what the GPU holds after `paint`."""
+        frame = self.paint(camera, weights, textures=textures, colour=colour)
+        data = np.frombuffer(frame.read(components=4), np.uint8)
+        return data.reshape(camera.height, camera.width, 4)[::-1]
+
+    def paint(
+        self,
+        camera: Camera,
+        weights: ArrayLike | None = None,
+        *,
+        textures: int | None = None,
+        colour: NDArray[np.float32] | None = None,
+    ) -> Any:
+        """Draw into a framebuffer that stays on the GPU, bottom row first, and is drawn over by the next call."""
+        if textures is not None and textures < 0:
+            raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+        assert self._composer is not None, "the renderer is closed"
+        largest = max((basis.count for plane in self._scene.planes for basis in plane.bases), default=0)
+        self._composer.compose(largest if textures is None else min(textures, largest), weights, camera.centre)
+        drawn, resolved = self._frames(camera.width, camera.height)
+        gain, offset = (np.ones(3), np.zeros(3)) if colour is None else np.asarray(colour, np.float64)
+        clip = _clip_matrix(camera, self._middle, self._radius)
+        set_uniforms(self._program, toClip=clip.T, exposureScale=1 / gain, exposureBias=-offset / gain)
+        drawn.use()
+        self.context.enable_only(self.context.DEPTH_TEST)
+        drawn.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        self._composer.texture.use(0)
+        self._array.render()
+        if resolved is not drawn:
+            self.context.copy_framebuffer(resolved, drawn)
+        return resolved
+
+    def _set_up(self, filter: str, weights: str) -> None:
+        context, scene, mesh = self.context, self._scene, self._scene.mesh
+        self._composer = Composer(context, scene, weights)
+        head = f"{HEAD}#define BICUBIC {FILTERS.index(filter)}\n"
+        source = head + shader("cubic") + shader("surface") + FRAGMENT
+        self._program = self._keep(context.program(vertex_shader=VERTEX, fragment_shader=source))
+        # about the middle of the mesh: float32 keeps few digits where the world's origin is far away
+        low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
+        self._middle, self._radius = (low + high) / 2, float(np.linalg.norm(high - low) / 2) or 1.0
+        assert mesh.uv is not None
+        corners = np.concatenate([mesh.vertices - self._middle, mesh.uv], axis=1).astype(np.float32)
+        vertices = self._keep(context.buffer(corners.tobytes()))
+        faces = self._keep(context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes()))
+        layout = [(vertices, "3f 2f", "position", "coordinate")]
+        self._array = self._keep(context.vertex_array(self._program, layout, index_buffer=faces))
+        detail = median_footprint(make_surface(mesh, *scene.atlas), scene.cameras[scene.reference])
+        set_uniforms(self._program, composed=np.int32(0), finest=ONE_SAMPLE * max(detail, 1.0))
+
+    def _frames(self, width: int, height: int) -> tuple[Any, Any]:
+        """The framebuffer to draw into and the one to read, of a size; kept until another is asked for."""
+        if self._kept is None or self._kept[0] != (width, height):
+            self._release_frames()
+            context, size = self.context, (width, height)
+            resolved = context.framebuffer([context.renderbuffer(size, 4)], context.depth_renderbuffer(size))
+            drawn = resolved
+            if self._multisample:
+                samples = min(self._multisample, context.max_samples)
+                drawn = context.framebuffer(
+                    [context.renderbuffer(size, 4, samples=samples)],
+                    context.depth_renderbuffer(size, samples=samples),
+                )
+            self._kept = (size, drawn, resolved)
+        return self._kept[1], self._kept[2]
+
+    def _release_frames(self) -> None:
+        if self._kept is not None:
+            for frame in {id(frame): frame for frame in self._kept[1:]}.values():
+                for part in (*frame.color_attachments, frame.depth_attachment):
+                    part.release()
+                frame.release()
+        self._kept = None
+
+    def _keep(self, made: Any) -> Any:
+        """What is to be given back in the end."""
+        self._made.append(made)
+        return made
+
+
+def make_context() -> Any:
+    """A moderngl context without a window. Raises OptionError (`opengl-missing`, `opengl-context`)."""
+    try:
+        import moderngl
+    except ImportError as error:
+        raise OptionError(
+            "opengl-missing", "the OpenGL renderer needs moderngl", remedy="pip install 'eigenfield[gpu]'"
+        ) from error
+    problems = []
+    options: tuple[dict[str, Any], ...] = ({"backend": "egl"}, {})  # without a display, else what the system has
+    for option in options:
+        try:
+            return moderngl.create_standalone_context(require=VERSION, **option)
+        except Exception as error:  # what backends raise is not documented, and no context is no bug of ours
+            problems.append(str(error))
+    raise OptionError(
+        "opengl-context",
+        f"no OpenGL 3.3 without a display here ({problems[0]})",
+        remedy="install a GPU driver with EGL (Debian: libegl1 libgl1-mesa-dri), or use the software renderer",
+    )
+
+
+def _check_filter(filter: str) -> None:
+    if filter not in FILTERS:
+        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
+
+
+def _clip_matrix(camera: Camera, middle: NDArray[np.float64], radius: float) -> NDArray[np.float64]:
+    """(4, 4) from the world less `middle` to clip space; pixel rows run downwards, clip space's y upwards."""
+    width, height = camera.width, camera.height
+    view = np.hstack([camera.R, (camera.t + camera.R @ middle)[:, None]])
+    distance = float(np.linalg.norm(view[:, 3]))
+    far = distance + 1.01 * radius
+    near = max(distance - 1.01 * radius, 1e-3 * far)
+    picture = camera.K @ view
+    depth = view[2]
+    x = 2 / width * picture[0] - depth
+    y = depth - 2 / height * picture[1]
+    z = (far + near) / (far - near) * depth - np.array([0, 0, 0, 2 * far * near / (far - near)])
+    return np.stack([x, y, z, depth])

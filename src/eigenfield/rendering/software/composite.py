@@ -1,0 +1,226 @@
+"""Equation 8 over a whole scene: what each plane keeps at densities of its own becomes one texture that is drawn.
+
+The sums are made where they are cheap, at the density at which eigen textures are stored, and only then made finer.
+The means do not change from view to view: they are made finer once, when a scene is opened.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.core.scene import Basis, Scene
+from eigenfield.rendering.software.kernels import AREA
+from eigenfield.rendering.software.resample import Taps, make_taps, tiles_read
+from eigenfield.rendering.software.resample_kernels import add_tiles, clear_outside, enlarge_tiles, join_tiles
+from eigenfield.rendering.software.tiles import (
+    AT_ONCE,
+    Tiled,
+    compose,
+    cut_tiles,
+    empty_layers,
+    fill_layers,
+    tile,
+    tile_shape,
+)
+from eigenfield.runtime.parallel import parallel_map, pieces
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Bases of one plane with one grid and corner.
+
+    first, channels: which of the K channels. weights: for each basis (Ne, n) float64. number: (tile rows, tile columns)
+    of the grid, each tile's index in `tiled`, -1 for tiles that are not kept. taps: how it is made finer, along rows
+    and columns; None where it has the atlas's size. rectangle: [top, bottom) x [left, right) outside which it is zero;
+    None: nowhere.
+    """
+
+    first: int
+    channels: int
+    size: tuple[int, int]
+    tiled: Tiled
+    weights: tuple[NDArray[np.float64], ...]
+    number: NDArray[np.int64]
+    taps: tuple[Taps, Taps] | None
+    rectangle: tuple[int, int, int, int] | None
+
+    def omega(self, mix: NDArray[np.float64], count: int | None) -> NDArray[np.float64]:
+        """(N,) weights of the components; zero from `count` on in each basis."""
+        each = [mix @ weights for weights in self.weights]
+        return np.concatenate([np.where(np.arange(len(w)) < (len(w) if count is None else count), w, 0) for w in each])
+
+
+@dataclass(frozen=True, eq=False)
+class Composite:
+    """A scene's textures, ready to be summed.
+
+    size: (H, W) of the atlas. channels: of the texture that is drawn, D. number: (tile rows, tile columns), index of
+    each kept tile, else -1. base: (tiles, D, AREA) float32, what is drawn without eigen textures. matrix: (D, K)
+    float32. plain: the scene is one plane of one size: its part holds the mean, and nothing needs to be joined.
+    """
+
+    size: tuple[int, int]
+    channels: int
+    number: NDArray[np.int64]
+    base: NDArray[np.float32]
+    matrix: NDArray[np.float32]
+    parts: tuple[Part, ...]
+    plain: bool
+
+
+def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
+    """Lay out a scene's textures for the tiles `used` (tile rows, tile columns) of its atlas."""
+    size = scene.atlas
+    total = sum(int(plane.mean.shape[2]) for plane in scene.planes)
+    matrix = np.eye(total, dtype=np.float32) if scene.to_rgb is None else scene.to_rgb.astype(np.float32)
+    groups = _groups(scene)
+    plain = scene.to_rgb is None and len(scene.planes) == 1 and scene.planes[0].mean.shape[:2] == size
+    plain &= len(groups) <= 1 and all(_whole(bases, size) for _, _, bases in groups)
+    places = np.flatnonzero(used)
+    if plain:
+        plane = scene.planes[0]
+        tiled = tile(plane.mean, plane.bases, used, total)
+        weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
+        part = Part(0, total, size, tiled, weights, _numbers(used), None, None)
+        return Composite(size, total, part.number, tiled.mean, matrix, (part,), True)
+    base = np.zeros((len(places), len(matrix), AREA), np.float32)
+    first = 0
+    for plane in scene.planes:
+        depth = int(plane.mean.shape[2])
+        share = np.ascontiguousarray(matrix[:, first : first + depth])
+        _add_mean(plane.mean, size, places, share, base)
+        first += depth
+    parts = tuple(_part(first, depth, bases, size, used) for first, depth, bases in groups)
+    return Composite(size, len(matrix), _numbers(used), base, matrix, parts, False)
+
+
+def compose_scene(
+    composite: Composite,
+    mix: ArrayLike,
+    count: int | None,
+    needed: NDArray[np.bool_],
+    buffers: Sequence[NDArray[np.float32]],
+    layers: NDArray[np.float32],
+) -> None:
+    """The texture for view weights mix (Ne,) and `count` eigen textures of each basis (None: all), for the `needed`
+    tiles (those not kept are left out), into layers (L, tiles, AREA, 4). buffers: of `make_buffers`."""
+    kept = needed & (composite.number >= 0)
+    view = np.asarray(mix, np.float64)
+    if composite.plain:
+        (part,) = composite.parts
+        omega = part.omega(view, count) if part.weights else np.zeros(0)
+        compose(part.tiled, omega, part.number[kept], layers)
+        return
+    for part, buffer in zip(composite.parts, buffers, strict=True):
+        wanted = kept if part.taps is None else tiles_read(kept, *part.taps, tile_shape(part.size))
+        numbers = part.number[wanted & (part.number >= 0)]
+        compose(part.tiled, part.omega(view, count), numbers, buffer)
+        if part.rectangle is not None:
+            clear_outside(part.tiled.places[numbers], tile_shape(part.size)[1], *part.rectangle, buffer)
+    tiles, numbers = np.flatnonzero(kept), composite.number[kept]
+
+    def join(piece: tuple[int, int]) -> None:
+        some = tiles[piece[0] : piece[1]]
+        total = np.zeros((len(some), composite.matrix.shape[1], AREA), np.float32)
+        for part, buffer in zip(composite.parts, buffers, strict=True):
+            _add(part.taps, some, composite.size, part.size, buffer, total[:, part.first : part.first + part.channels])
+        join_tiles(some, total, composite.matrix, composite.base, numbers[piece[0] : piece[1]], layers)
+
+    parallel_map(join, pieces(len(tiles), AT_ONCE))
+
+
+def make_buffers(composite: Composite) -> list[NDArray[np.float32]]:
+    """Room for the sums of the parts."""
+    return [] if composite.plain else [empty_layers(*part.size, part.channels) for part in composite.parts]
+
+
+def _groups(scene: Scene) -> list[tuple[int, int, list[Basis]]]:
+    """First channel, channels and bases of what can be summed together: one plane, one grid, one corner."""
+    found: list[tuple[int, int, list[Basis]]] = []
+    first = 0
+    for plane in scene.planes:
+        depth = int(plane.mean.shape[2])
+        kinds: dict[tuple[tuple[int, int], tuple[int, int], tuple[int, ...]], list[Basis]] = {}
+        for basis in plane.bases:
+            if basis.count:
+                kinds.setdefault((basis.size, basis.corner, basis.textures.shape[1:3]), []).append(basis)
+        found.extend((first, depth, bases) for bases in kinds.values())
+        first += depth
+    return found
+
+
+def _whole(bases: Sequence[Basis], size: tuple[int, int]) -> bool:
+    return all(basis.textures.shape[1:3] == size for basis in bases)
+
+
+def _part(first: int, depth: int, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
+    size, (row, column) = bases[0].size, bases[0].corner
+    taps = None if size == atlas else (make_taps(atlas[0], size[0]), make_taps(atlas[1], size[1]))
+    kept = used if taps is None else tiles_read(used, *taps, tile_shape(size))
+    rectangle = None
+    if not _whole(bases, size):
+        height, width = bases[0].textures.shape[1:3]
+        rectangle = (row, row + height, column, column + width)
+        inside = np.zeros_like(kept)
+        (top, _), (left, _) = tile_shape((row + 1, 1)), tile_shape((column + 1, 1))
+        bottom, right = tile_shape((row + height, column + width))
+        inside[top - 1 : bottom, left - 1 : right] = True
+        kept = kept & inside
+    weights = tuple(basis.weights.astype(np.float64) for basis in bases)
+    return Part(first, depth, size, tile(None, bases, kept, depth), weights, _numbers(kept), taps, rectangle)
+
+
+def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
+    number = np.full(kept.shape, -1, np.int64)
+    number[kept] = np.arange(np.count_nonzero(kept))
+    return number
+
+
+def _add_mean(
+    mean: NDArray[np.float32],
+    atlas: tuple[int, int],
+    places: NDArray[np.int64],
+    share: NDArray[np.float32],
+    base: NDArray[np.float32],
+) -> None:
+    """base (tiles, D, AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
+    height, width, depth = mean.shape
+    taps = None if (height, width) == atlas else (make_taps(atlas[0], height), make_taps(atlas[1], width))
+    if taps is None:
+        base += np.einsum("dc,tca->tda", share, cut_tiles(mean, depth)[places])
+        return
+    layers = empty_layers(height, width, depth)
+    fill_layers(mean, layers)
+
+    def add(piece: tuple[int, int]) -> None:
+        some = places[piece[0] : piece[1]]
+        total = np.zeros((len(some), depth, AREA), np.float32)
+        _add(taps, some, atlas, (height, width), layers, total)
+        base[piece[0] : piece[1]] += np.einsum("dc,tca->tda", share, total)
+
+    parallel_map(add, pieces(len(places), AT_ONCE))
+
+
+def _add(
+    taps: tuple[Taps, Taps] | None,
+    tiles: NDArray[np.int64],
+    atlas: tuple[int, int],
+    size: tuple[int, int],
+    layers: NDArray[np.float32],
+    total: NDArray[np.float32],
+) -> None:
+    """total (n, C, AREA) += the texture in `layers`, made finer where it is coarser than the atlas."""
+    if taps is None:
+        add_tiles(tiles, layers, total)
+        return
+    rows, columns = taps
+    enlarge_tiles(
+        tiles, tile_shape(atlas)[1], layers, tile_shape(size)[1], rows.at, rows.weight, columns.at, columns.weight,
+        total,
+    )  # fmt: skip

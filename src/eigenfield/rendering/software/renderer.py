@@ -1,0 +1,268 @@
+"""The software renderer: a viewpoint in, a picture out (equations 7 and 8)."""
+
+from __future__ import annotations
+
+import difflib
+import threading
+import weakref
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.scene import Scene
+from eigenfield.rendering.exposure import camera_colour, undo_colour
+from eigenfield.rendering.novel import novel_camera
+from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
+from eigenfield.rendering.software.drawing import (
+    Frame,
+    Sampling,
+    Surface,
+    check_filter,
+    choose_sampling,
+    cover,
+    grid_side,
+    make_surface,
+    median_footprint,
+    shade,
+)
+from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
+from eigenfield.rendering.weights import camera_weights, view_weights
+
+BLACK = (0.0, 0.0, 0.0)
+SPARE_FRAMES = 4  # sets of buffers kept for the next picture
+
+
+@dataclass(frozen=True, eq=False)
+class Buffers:
+    """What one picture in the making needs: see `Frame`, `make_buffers` and `empty_layers`."""
+
+    frame: Frame
+    sums: list[NDArray[np.float32]]
+    layers: NDArray[np.float32]
+
+
+class Renderer:
+    """Draws a scene; prepared once, then callable from any number of threads at a time."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.channels = scene.channels
+        self._surface = make_surface(scene.mesh, *scene.atlas)
+        self._detail = median_footprint(self._surface, scene.cameras[scene.reference])
+        self._composite = make_composite(scene, self._surface.used)
+        self._spare: deque[Buffers] = deque(maxlen=SPARE_FRAMES)
+
+    def draw(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        *,
+        filter: str = "bicubic",
+        background: Sequence[float] = BLACK,
+        textures: int | None = None,
+        samples: int | None = None,
+        colour: NDArray[np.float32] | None = None,
+    ) -> Picture:
+        """The view of `camera` with view weights (Ne,) over the encoded cameras.
+
+        filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
+        textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel; None: one, but four at
+        edges (decision 24), or more in a picture smaller than the photographs. colour: (2, 3) gain and offset of R, G,
+        B that harmonised a captured camera (`camera_colour`): its own exposure is given back to the surface; None
+        leaves it as the scene keeps it.
+        Raises OptionError (`filter`, `samples`, `textures`, `background`).
+        """
+        image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
+        if colour is not None:
+            image = undo_colour(image, coverage, background_of(background, self.channels), colour)
+        return Picture(image, coverage)
+
+    def draw_uint8(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        *,
+        filter: str = "bicubic",
+        background: Sequence[float] = BLACK,
+        textures: int | None = None,
+        samples: int | None = None,
+        colour: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.uint8]:
+        """(H, W, C) uint8: `draw(...).to_uint8()`, without a `colour` also without the way through floats."""
+        if colour is not None:
+            options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
+            return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
+        image: NDArray[np.uint8] = self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
+        return image
+
+    def grid_side(self, camera: Camera) -> int:
+        """k of the k x k samples a pixel that a picture takes by itself, 1 for smooth edges."""
+        return grid_side(self._surface, camera, self._detail)
+
+    def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
+        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
+        layers = empty_layers(*self._surface.size, self.channels)
+        compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
+        return read_layers(layers, *self._surface.size, self.channels)
+
+    def _draw(
+        self,
+        camera: Camera,
+        weights: ArrayLike,
+        filter: str,
+        background: Sequence[float] | float,
+        textures: int | None,
+        samples: int | None,
+        dtype: type[np.uint8] | type[np.float32],
+    ) -> tuple[NDArray[Any], NDArray[np.float32]]:
+        check_filter(filter)
+        if textures is not None and textures < 0:
+            raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+        behind = background_of(background, self.channels)
+        sampling = choose_sampling(self._surface, camera, samples, self._detail)
+        height, width = camera.height, camera.width
+        buffers = self._take(height, width, sampling)
+        frame = buffers.frame
+        cover(self._surface, camera, sampling, frame)
+        compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
+        image = np.empty((height, width, self.channels), dtype)
+        coverage = np.empty((height, width), np.float32)
+        shade(self._surface, frame, buffers.layers, filter, behind, image, coverage)
+        self._spare.append(buffers)
+        return image, coverage
+
+    def _take(self, height: int, width: int, sampling: Sampling) -> Buffers:
+        """Buffers for a picture of that size: spare ones, or new ones."""
+        for _ in range(len(self._spare)):
+            try:
+                spare = self._spare.pop()
+            except IndexError:  # another thread was faster
+                break
+            if spare.frame.fits(height, width, sampling):
+                return spare
+        layers = empty_layers(*self._surface.size, self.channels)
+        return Buffers(Frame(self._surface, height, width, sampling), make_buffers(self._composite), layers)
+
+
+def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
+    """(C,) float32; one number stands for all channels. Raises OptionError `background`."""
+    values = np.atleast_1d(np.asarray(background, np.float32))
+    if values.shape == (3,) and channels != 3 and not values.any():
+        values = values[:1]  # the default, for attributes that are no colours
+    if values.shape not in ((1,), (channels,)) or not np.isfinite(values).all():
+        raise OptionError(
+            "background", f"the background has {values.size} values", remedy=f"give 1 or {channels} finite ones"
+        )
+    return np.ascontiguousarray(np.broadcast_to(values, (channels,)))
+
+
+def draw_texture(
+    mesh: Mesh,
+    texture: NDArray[np.float32],
+    camera: Camera,
+    *,
+    filter: str = "bicubic",
+    background: Sequence[float] = BLACK,
+    samples: int | None = None,
+    detail: float = 1.0,
+) -> Picture:
+    """One plain texture (H, W, C) float32 on a mesh with UVs: a camera's own texture map, or the mean. detail: of
+    `choose_sampling`."""
+    check_filter(filter)
+    height, width, channels = texture.shape
+    surface: Surface = make_surface(mesh, height, width)
+    sampling = choose_sampling(surface, camera, samples, detail)
+    frame = Frame(surface, camera.height, camera.width, sampling)
+    cover(surface, camera, sampling, frame)
+    image = np.empty((camera.height, camera.width, channels), np.float32)
+    coverage = np.empty((camera.height, camera.width), np.float32)
+    layers = empty_layers(height, width, channels)
+    fill_layers(texture, layers)
+    shade(surface, frame, layers, filter, background_of(background, channels), image, coverage)
+    return Picture(image, coverage)
+
+
+_renderers: weakref.WeakKeyDictionary[Scene, Renderer] = weakref.WeakKeyDictionary()
+_lock = threading.Lock()
+
+
+def renderer_of(scene: Scene) -> Renderer:
+    """The scene's renderer, made on the first call and kept as long as the scene."""
+    with _lock:
+        found = _renderers.get(scene)
+        if found is None:
+            found = _renderers[scene] = Renderer(scene)
+        return found
+
+
+def render(
+    scene: Scene,
+    *,
+    at: tuple[float, float] | None = None,
+    camera: str | None = None,
+    resolution: tuple[int, int] | None = None,
+    weights: str = "delaunay",
+    filter: str = "bicubic",
+    background: Sequence[float] = BLACK,
+    textures: int | None = None,
+    samples: int | None = None,
+) -> Picture:
+    """Draw the view at view-plane coordinates `at` (X right, Y up, ±1 at the array's edges), or that of the capture
+    camera named `camera`; the reference camera's if neither is given. In a harmonised scene a captured camera's picture
+    has that camera's own exposure, a viewpoint's the common one.
+
+    resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. The rest as
+    `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is not there
+    `unknown-camera`.
+    """
+    view, mix = viewpoint(scene, at=at, camera=camera, weights=weights)
+    if resolution is not None:
+        view = at_resolution(view, resolution)
+    colour = viewpoint_colour(scene, at=at, camera=camera)
+    return renderer_of(scene).draw(
+        view, mix, filter=filter, background=background, textures=textures, samples=samples, colour=colour
+    )
+
+
+def viewpoint(
+    scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None, weights: str = "delaunay"
+) -> tuple[Camera, NDArray[np.float64]]:
+    """The camera and the view weights (Ne,) of `at`, of a capture camera by name, or of the reference camera."""
+    if at is not None and camera is not None:
+        raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
+    if at is not None:
+        return novel_camera(scene, at), view_weights(scene, at, weights)
+    index = scene.reference if camera is None else camera_index(scene, camera)
+    return scene.cameras[index], camera_weights(scene, index, weights)
+
+
+def viewpoint_colour(
+    scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None
+) -> NDArray[np.float32] | None:
+    """The `colour` of `Renderer.draw` for what `viewpoint` names: a captured camera's own, None for a place."""
+    if at is not None:
+        return None
+    return camera_colour(scene, scene.reference if camera is None else camera_index(scene, camera))
+
+
+def camera_index(scene: Scene, name: str) -> int:
+    """Where `name` stands in `scene.names`. Raises OptionError `unknown-camera`, with the names most like it."""
+    if name in scene.names:
+        return scene.names.index(name)
+    near = difflib.get_close_matches(name, scene.names, n=3, cutoff=0.0)
+    raise OptionError("unknown-camera", f"no camera is called {name!r}", remedy=f"nearest are {', '.join(near)}")
+
+
+def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
+    """`camera.resized`, refusing what cannot be: OptionError `resolution`."""
+    width, height = resolution
+    if not (1 <= width <= 16384 and 1 <= height <= 16384):
+        raise OptionError("resolution", f"a picture of {width}x{height}", remedy="give 1x1 to 16384x16384")
+    return camera.resized(width, height)

@@ -1,0 +1,1 @@
+"""What runs things: threads, compiled kernels, files, finished stages."""

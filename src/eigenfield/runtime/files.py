@@ -1,0 +1,180 @@
+"""Files that are whole or absent, and room on disk that is there before it is used."""
+
+from __future__ import annotations
+
+import contextlib
+import errno
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from eigenfield.core.errors import OutputError
+
+_NUMBER = re.compile(r"%0?\d{0,2}d")
+_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+
+
+@contextlib.contextmanager
+def mended(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn what the operating system says of writing `path` into an OutputError with a remedy."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno in _FULL:
+            raise OutputError(
+                "disk-full", "no room left on the disk", path=path, remedy="free some or write elsewhere"
+            ) from error
+        if (
+            isinstance(error, (PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError))
+            or error.errno == errno.EROFS
+        ):
+            raise OutputError(
+                "not-writable",
+                error.strerror or "cannot be written",
+                path=path,
+                remedy="name a place that can be written",
+            ) from error
+        raise
+
+
+def refuse_existing(path: Path, overwrite: bool) -> None:
+    """Before any work: raise OutputError if `path` exists and may not be replaced, or its folder is missing."""
+    if path.is_dir():
+        raise OutputError("output-is-folder", "is a folder", path=path, remedy="name a file")
+    if path.exists() and not overwrite:
+        raise OutputError("output-exists", "exists already", path=path, remedy="use --overwrite or another name")
+    folder = path.absolute().parent
+    if not folder.is_dir():
+        raise OutputError("no-folder", "its folder does not exist", path=path, remedy=f"create {folder}")
+    if not os.access(folder, os.W_OK):
+        raise OutputError("not-writable", "its folder cannot be written to", path=path, remedy="name another place")
+
+
+def is_numbered(path: Path) -> bool:
+    """Whether a .png's name stands for many: it has a place for a number, `%04d` or `%d`."""
+    return path.suffix.lower() == ".png" and _NUMBER.search(path.name) is not None
+
+
+def numbered_files(path: Path, count: int) -> list[Path]:
+    """The files 0 to `count` - 1 of a numbered name."""
+
+    def numbered(index: int) -> str:
+        return _NUMBER.sub(lambda place: place[0] % index, path.name)
+
+    return [path.with_name(numbered(index)) for index in range(count)]
+
+
+@contextlib.contextmanager
+def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]:
+    """A binary file that appears as `path` by rename, after fsync, when the block ends well; else nothing stays."""
+    refuse_existing(path, overwrite)
+    with mended(path):
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.absolute().parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                yield file
+                file.flush()
+                os.fsync(file.fileno())
+            Path(name).chmod(0o666 & ~_umask())  # mkstemp's 0600 would hide the result from other users
+            Path(name).replace(path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                Path(name).unlink()
+            raise
+
+
+def write_bytes(path: Path, data: bytes, *, overwrite: bool = False) -> None:
+    """`data` as the file `path`, atomically."""
+    with atomic_writer(path, overwrite=overwrite) as file:
+        file.write(data)
+
+
+@contextlib.contextmanager
+def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[list[Path]]:
+    """Files of one folder that appear together by rename, in order, when the block ends well; else nothing stays.
+
+    Yields the places at which the block is to write them.
+    """
+    for target in targets:
+        refuse_existing(target, overwrite)
+    with mended(targets[0]):
+        part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=targets[0].absolute().parent))
+        old = part / "old"
+        places = [part / "new" / target.name for target in targets]
+        done: list[Path] = []
+        try:
+            (part / "new").mkdir()
+            old.mkdir()
+            yield places
+            flush_folder(part)
+            for place, target in zip(places, targets, strict=True):
+                if target.exists():
+                    _keep(target, old / target.name)
+                done.append(target)
+                place.replace(target)
+        except BaseException:
+            for target in done:
+                before = old / target.name
+                with contextlib.suppress(OSError):
+                    if before.exists():
+                        before.replace(target)
+                    else:
+                        target.unlink()
+            raise
+        finally:
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _keep(path: Path, copy: Path) -> None:
+    """A second name for a file; a copy where the file system knows no links."""
+    try:
+        os.link(path, copy)
+    except OSError:
+        shutil.copy2(path, copy)
+
+
+def flush_folder(folder: Path) -> None:
+    """Every file below `folder` onto the disk."""
+    for inside, _, files in os.walk(folder):
+        for name in files:
+            handle = os.open(Path(inside) / name, os.O_RDONLY)
+            try:
+                os.fsync(handle)
+            finally:
+                os.close(handle)
+
+
+def _umask() -> int:
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+@contextlib.contextmanager
+def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None) -> Iterator[NDArray[Any]]:
+    """A zeroed array in a memory-mapped temporary file, gone with the block (or with the process, however it ends).
+
+    folder: where the room is taken, the system's temporary folder if None. Room is claimed at once where the system
+    can: a sparse file on a disk that fills up later would end the process by SIGBUS instead of by an OutputError.
+    """
+    place = Path(folder) if folder is not None else Path(tempfile.gettempdir())
+    size = int(np.prod(shape, dtype=np.int64)) * np.dtype(dtype).itemsize
+    if size == 0:
+        yield np.zeros(shape, dtype)
+        return
+    with contextlib.ExitStack() as opened:
+        with mended(place):  # what goes wrong in the caller's block is not about this folder
+            file = opened.enter_context(tempfile.TemporaryFile(prefix=".eigenfield-", dir=place))
+            if hasattr(os, "posix_fallocate"):
+                os.posix_fallocate(file.fileno(), 0, size)
+            else:
+                file.truncate(size)
+            array = np.memmap(file, dtype=dtype, mode="r+", shape=shape)
+        yield array

@@ -1,0 +1,53 @@
+"""The one way to compile a kernel: serial, without the GIL, cached in the user's cache folder.
+
+numba caches beside the source by default, which fails where the package is installed read-only and leaves every new
+process to compile again. It also notices changes only in a kernel's own file, not in those it calls: the folder's
+name therefore carries a digest of all sources of the package.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numba
+import platformdirs
+
+Kernel = Callable[..., Any]
+
+
+@cache
+def _cache_folder() -> str:
+    root = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for source in sorted(root.rglob("*.py")):
+        status = source.stat()
+        digest.update(f"{source.relative_to(root)} {status.st_size} {status.st_mtime_ns}\n".encode())
+    return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
+
+
+def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
+    """Decorator: compile with numba (nopython, nogil), keep the machine code between processes.
+
+    fastmath: allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
+    inline: for small functions that other kernels call in their inner loops.
+    """
+
+    def decorate(function: Kernel) -> Kernel:
+        options: dict[str, Any] = {"nogil": True, "fastmath": fastmath, "error_model": "numpy"}
+        if inline:
+            options["inline"] = "always"
+        theirs = numba.config.CACHE_DIR
+        numba.config.CACHE_DIR = theirs or _cache_folder()
+        try:
+            compiled: Kernel = numba.njit(cache=True, **options)(function)
+        except (RuntimeError, OSError):  # nowhere to write a cache
+            compiled = numba.njit(**options)(function)
+        finally:
+            numba.config.CACHE_DIR = theirs
+        return compiled
+
+    return decorate

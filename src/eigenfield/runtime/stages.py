@@ -1,0 +1,128 @@
+"""Finished stages of long work in a folder, so that the same command goes on after a crash.
+
+A stage's folder carries a digest of all that its result depends on: a changed option, photograph or program finds
+nothing and builds anew. It is built beside its place and appears there by rename: what exists is whole.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import logging
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from eigenfield.core.errors import OutputError
+from eigenfield.runtime.files import flush_folder, mended
+
+log = logging.getLogger("eigenfield.stages")
+
+BLOCK = 1 << 20
+STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibrate", "proxy", "reconstruction"
+
+
+@cache
+def code_version() -> str:
+    """A digest of the sources of STAGE_ROOMS: a stage built by another version of them is not taken up."""
+    root = Path(__file__).parents[1]
+    digest = hashlib.sha256()
+    for source in sorted(path for room in STAGE_ROOMS for path in (root / room).rglob("*.py")):
+        digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())
+    return digest.hexdigest()
+
+
+def file_digest(path: Path) -> str:
+    """The SHA-256 of a file's bytes."""
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while block := file.read(BLOCK):
+            digest.update(block)
+    return digest.hexdigest()
+
+
+def stage_key(inputs: Iterable[Any]) -> str:
+    """A digest of JSON-able `inputs` (file digests, options, the keys of earlier stages) and of the program."""
+    text = json.dumps([code_version(), *inputs], sort_keys=True, default=str)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+class Stages:
+    """Finished stages below `folder`; None keeps nothing: every stage is built in a temporary folder."""
+
+    def __init__(self, folder: Path | None) -> None:
+        self._temporary = tempfile.TemporaryDirectory(prefix="eigenfield-") if folder is None else None
+        self.folder = Path(self._temporary.name) if self._temporary else Path(folder or ".")
+        if self.folder.exists() and not self.folder.is_dir():
+            raise OutputError("work-is-file", "is a file", path=self.folder, remedy="name a folder as --work")
+        with mended(self.folder):
+            self.folder.mkdir(parents=True, exist_ok=True)
+
+    def path(self, name: str, key: str) -> Path:
+        """Where the finished stage lies, or will."""
+        return self.folder / f"{name}-{key}"
+
+    def run(self, name: str, key: str, build: Callable[[Path], None]) -> Path:
+        """The folder of stage `name`: the finished one, else made by `build(folder)`, which writes files there.
+
+        Raises what `build` raises, and OutputError; then nothing of the stage stays.
+        """
+        place = self.path(name, key)
+        if place.is_dir():
+            log.info("%s: taken up from %s", name, place)
+            return place
+        with mended(self.folder):
+            _clear(self.folder, name)
+            part = Path(tempfile.mkdtemp(prefix=f".{name}-{os.getpid()}-", suffix=".part", dir=self.folder))
+            try:
+                build(part)
+                part.chmod(0o755)
+                flush_folder(part)
+                try:
+                    part.replace(place)
+                except OSError:
+                    if not place.is_dir():  # another run may have finished the same stage meanwhile
+                        raise
+                    shutil.rmtree(part, ignore_errors=True)
+            except BaseException:
+                shutil.rmtree(part, ignore_errors=True)
+                raise
+        return place
+
+    def close(self) -> None:
+        """Remove what was only temporary."""
+        if self._temporary is not None:
+            with contextlib.suppress(OSError):
+                self._temporary.cleanup()
+
+    def __enter__(self) -> Stages:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+
+def _clear(folder: Path, name: str) -> None:
+    """Remove what killed runs left unfinished; a run that still lives keeps its own."""
+    for part in folder.glob(f".{name}-*.part"):
+        process = part.name.removeprefix(f".{name}-").split("-")[0]
+        if process.isdecimal() and not _lives(int(process)):
+            log.info("removed what a killed run left: %s", part)
+            shutil.rmtree(part, ignore_errors=True)
+
+
+def _lives(process: int) -> bool:
+    if os.name != "posix":  # elsewhere signal 0 is no question
+        return True
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True

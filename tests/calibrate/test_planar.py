@@ -1,0 +1,181 @@
+"""Planar arrays: spacing, direction, disparities and jitter found again in drawn photographs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
+from eigenfield.calibrate.planar.array import PARAMETERS, ArrayModel
+from eigenfield.calibrate.planar.start import nominal_positions
+from eigenfield.capture import Layout
+from eigenfield.core.errors import CaptureError
+from support.planes import everywhere, paint, photograph
+
+SIDE = 144
+SIZE = 5
+
+
+def inner(x, y):
+    return (abs(x - SIDE / 2 - 14) < 34) & (abs(y - SIDE / 2 + 8) < 26)
+
+
+LAYERS = [(2.6, 0.004, 0.0, paint(2, detail=2.0), inner), (-1.4, 0.0, 0.006, paint(3, detail=2.0), everywhere)]
+
+
+def layout(**more):
+    row, column = (index.ravel() for index in np.mgrid[:SIZE, :SIZE])
+    return Layout(row, column, np.stack([column, row], axis=1).astype(float), **more)
+
+
+def array(right=1.0, down=0.85, jitter=0.0, seed=0):
+    """Photographs of two slanted planes, and the true positions in steps (x right, y down)."""
+    row, column = (index.ravel() - SIZE // 2 for index in np.mgrid[:SIZE, :SIZE])
+    rng = np.random.default_rng(seed)
+    places = np.stack([right * column, down * row], axis=1) + jitter * rng.standard_normal((SIZE**2, 2))
+    places -= places[SIZE**2 // 2]
+    matrices = np.zeros((SIZE**2, 3, 4))
+    matrices[:, 0, 0] = matrices[:, 1, 1] = matrices[:, 2, 3] = 1
+    matrices[:, :2, 2] = -places
+    return photograph(LAYERS, matrices, SIDE), places
+
+
+@pytest.fixture(scope="module")
+def names():
+    return [f"{i:02d}.png" for i in range(SIZE**2)]
+
+
+@pytest.fixture(scope="module")
+def jittering(names):
+    pictures, places = array(jitter=0.08)
+    return pictures, places, refine_planar(pictures, start_planar(pictures, layout(), names))
+
+
+def same_array(found, true):
+    """Root mean square distance after the scale that is free (disparities take it up)."""
+    scale = (found * true).sum() / (found * found).sum()
+    return np.sqrt(((scale * found - true) ** 2).sum(axis=1).mean()), scale
+
+
+def test_spacing_and_range_are_estimated(names):
+    pictures, _ = array()
+    start = start_planar(pictures, layout(signs=False), names)
+    step = start.parameters[SIZE + 1, :2] - start.parameters[0, :2]
+    assert abs(step[1] / step[0]) == pytest.approx(0.85, rel=0.03)
+    assert start.low < -1.0
+    assert start.high > 2.6
+
+
+@pytest.mark.parametrize(("right", "down"), [(1.0, 0.85), (-1.0, -0.9), (-1.0, 1.1)])
+def test_near_and_far_are_told_by_occlusion(right, down, names):
+    pictures, places = array(right, down)
+    planar = refine_planar(pictures, start_planar(pictures, layout(), names))
+    found = planar.parameters[:, :2]
+    distance, scale = same_array(found, places)
+    assert scale > 0
+    assert distance < 0.03
+    margin = planar.canvas.margin
+    d = planar.d[margin:-margin, margin:-margin] / scale
+    assert np.median(d[SIDE // 2 - 20 : SIDE // 2, SIDE // 2 : SIDE // 2 + 30]) == pytest.approx(2.93, abs=0.15)
+    assert np.median(d[-30:-5, 5:30]) == pytest.approx(-0.65, abs=0.15)
+
+
+def test_jitter_is_found(jittering):
+    _, places, planar = jittering
+    assert planar.refined
+    distance, _ = same_array(planar.parameters[:, :2], places)
+    assert distance < 0.05  # of 0.11 that the cameras are off the grid
+
+
+def test_a_regular_grid_is_left_as_it_is(names):
+    pictures, _ = array(down=1.0)
+    planar = refine_planar(pictures, start_planar(pictures, layout(signs=False, exact=True), names), exact=True)
+    assert not planar.refined
+    moved = planar.parameters[:, 2:]
+    assert np.abs(moved).max() == 0
+
+
+def test_a_view_that_took_no_part_is_registered(jittering, names):
+    pictures, places, _ = jittering
+    new = np.array([3, 12, 21])
+    known = np.setdiff1d(np.arange(SIZE**2), new)
+    part = layout().subset(known)
+    planar = refine_planar(pictures[known], start_planar(pictures[known], part, [names[i] for i in known]))
+    whole = register_views(planar, known, pictures[new], new, layout().positions)
+    assert np.array_equal(whole.parameters[known], planar.parameters)
+    truth = places - places[known[np.argmin(np.linalg.norm(planar.parameters[:, :2], axis=1))]]
+    _, scale = same_array(whole.parameters[known, :2], truth[known])
+    assert np.linalg.norm(scale * whole.parameters[new, :2] - truth[new], axis=1).max() < 0.06
+
+
+def test_given_cameras_start_where_they_are(jittering):
+    _, _, planar = jittering
+    views = np.arange(SIZE**2)
+    cameras = planar.model.cameras(views, planar.parameters)
+    start = start_given(cameras, 0.5, 1.5)
+    again = start.model.cameras(views, start.parameters)
+    for before, after in zip(cameras, again, strict=True):
+        np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-9)
+
+
+def test_derivatives_are_those_of_the_projection():
+    model = ArrayModel.planar(1, 200, 100, 180.0, 1.0, 0.1)
+    canvas = model.canvas(8)
+    rng = np.random.default_rng(1)
+    parameters = rng.uniform(-1, 1, (1, PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
+    derivatives = model.derivatives(canvas, np.array([0]), parameters)[0]
+    for index in range(PARAMETERS):
+        moved = parameters.copy()
+        moved[0, index] += 1e-6
+        change = model.matrices(canvas, np.array([0]), moved) - model.matrices(canvas, np.array([0]), parameters)
+        np.testing.assert_allclose(change[0] / 1e-6, derivatives[index], rtol=1e-3, atol=1e-3)
+
+
+def test_the_anchor_moves_with_the_shift_alone():
+    model = ArrayModel.planar(1, 200, 100, 180.0, 1.0, 0.1)
+    parameters = np.array([1.5, -2, 3, -4, 0.02, 0.01, 0.01, -0.02, 0.1, 0.01])
+    pixel, _ = model.camera(0, parameters).project(model.anchor[None])
+    np.testing.assert_allclose(pixel[0], [100 + 3, 50 - 4], atol=1e-9)
+
+
+def test_measured_positions_keep_their_jitter():
+    measured = Layout(
+        np.array([0, 0, 1, 1]), np.array([0, 1, 0, 1]),
+        np.array([[0, 0], [10.0, 0.5], [0.2, 8.0], [10.1, 8.2]]), measured=True,
+    )  # fmt: skip
+    places = nominal_positions(measured)
+    assert places[1, 0] - places[0, 0] == pytest.approx(10.0 / 9.95, rel=0.01)
+    assert places[2, 1] < 0  # up in the layout, down here
+
+
+def test_bare_photographs_are_refused(names):
+    grey = np.full((SIZE**2, SIDE, SIDE, 3), 128, np.uint8)
+    with pytest.raises(CaptureError, match="points of") as error:
+        start_planar(grey, layout(), names)
+    assert error.value.code == "grid-texture"
+
+
+def test_photographs_of_other_things_are_refused(names):
+    pictures = np.stack([paint(seed)[:SIDE, :SIDE].astype(np.uint8) for seed in range(SIZE**2)])
+    with pytest.raises(CaptureError) as error:
+        start_planar(pictures, layout(), names)
+    assert error.value.code in ("grid-texture", "grid-motion")
+
+
+def test_exchanged_rows_and_columns_are_noticed(names, caplog):
+    pictures, places = array()
+    start = start_planar(pictures, layout().exchanged(), names)
+    assert start.exchanged and "column first" in caplog.text
+    found = start.parameters[:, :2]
+    assert min(same_array(found, places)[0], same_array(-found, places)[0]) < 0.02
+    with pytest.raises(CaptureError) as error:  # measured positions are not reinterpreted
+        start_planar(pictures, layout(measured=True).exchanged(), names)
+    assert error.value.code in ("grid-swapped", "grid-motion")
+
+
+def test_a_shuffled_order_does_not_move_as_a_grid(names):
+    pictures, _ = array()
+    order = np.random.default_rng(4).permutation(SIZE**2)
+    with pytest.raises(CaptureError) as error:
+        start_planar(pictures[order], layout(), names)
+    assert error.value.code == "grid-motion"

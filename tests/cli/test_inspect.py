@@ -1,0 +1,203 @@
+"""`eigenfield inspect`: figures, problems, JSON, and the overlay that shows a flipped axis."""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from eigenfield.capture import open_capture
+from eigenfield.capture.overlay import draw_overlay, proxy_lines
+from eigenfield.capture.survey import corners_and_centre, find_focus, measure_array
+from eigenfield.cli.inspect import command
+from eigenfield.core.camera import Camera
+from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, OutputError
+from eigenfield.core.mesh import Mesh
+from eigenfield.proxy import write_ply
+from support.captures import write_capture
+from support.scenes import bumpy_square, row_grid
+
+KEYS = {
+    "schema", "root", "format", "views", "bytes", "sizes", "files", "distorted", "masks", "array", "problems",
+    "damaged", "cameras", "proxy", "layout", "photographs", "next",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def capture(tmp_path_factory) -> Path:
+    return write_capture(tmp_path_factory.mktemp("inspect") / "my capture")
+
+
+def inspect(*arguments, fails: type[EigenfieldError] | None = None):
+    result = CliRunner().invoke(command, [str(a) for a in arguments])
+    if fails is not None:
+        assert isinstance(result.exception, fails), result.output
+        return result.exception
+    assert result.exception is None, result.output
+    return result
+
+
+def test_words(capture):
+    text = inspect(capture).stdout
+    assert "9 views from transforms" in text and "64x56 (9)" in text and "PNG 8 bit (9)" in text
+    assert "grid of 3 rows x 3 columns" in text and "problems   none" in text
+
+
+def test_json(capture):
+    report = json.loads(inspect(capture, "--json").stdout)
+    assert set(report) == KEYS and report["schema"] == "eigenfield.inspect/1"
+    assert report["views"] == 9 and report["proxy"] is None and report["damaged"] == []
+    assert report["bytes"] == sum(p.stat().st_size for p in (capture / "images").iterdir())
+    array = report["array"]
+    assert array["grid"] == {"rows": 3, "columns": 3} and not array["line"]
+    assert np.isclose([array["width"], array["height"], array["spacing"]], [1, 1, 0.5]).all()
+    assert np.allclose(report["cameras"][4]["centre"], [0, 0, -3]) and report["cameras"][0]["name"] == "view_00.png"
+
+
+def test_all_damaged_files_are_listed_together(tmp_path):
+    folder = write_capture(tmp_path / "c")
+    images = folder / "images"
+    whole = (images / "view_03.png").read_bytes()
+    (images / "view_03.png").write_bytes(whole[: len(whole) // 2])  # a header, half the pixels
+    (images / "view_05.png").write_bytes(b"no picture")
+    (images / "view_07.png").unlink()
+    Image.new("RGB", (64, 41)).save(images / "view_08.png")
+    Image.new("RGB", (64, 56)).save(images / "stranger.jpg")
+    report = json.loads(inspect(folder, "--json", "--proxy", folder / "proxy.ply").stdout)
+    problems = "\n".join(report["problems"])
+    assert report["views"] == 6
+    expected = (
+        "view_03.png: is cut short", "view_05.png: is no PNG", "1 calibration entry has no photograph", "view_07",
+        "view_08.png: is 64x41", "1 photograph has no calibration entry: stranger.jpg",
+    )  # fmt: skip
+    for words in expected:
+        assert words in problems, words
+    assert report["damaged"] == [
+        {"file": str(images / "view_03.png"), "code": "image-truncated", "message": "is cut short"}
+    ]
+    with pytest.raises(CaptureError):
+        open_capture(folder)
+
+
+def test_too_few_views_are_a_problem_here_and_not_an_error(tmp_path):
+    folder = write_capture(tmp_path / "c", row_grid(2))
+    text = inspect(folder).stdout
+    assert "2 photographs with a camera are too few" in text and "array" not in text
+
+
+def test_overlay(capture, tmp_path):
+    target, proxy = tmp_path / "over lay.png", tmp_path / "small.ply"
+    mesh = bumpy_square()
+    write_ply(Mesh(mesh.vertices * np.float32(0.5), mesh.faces, mesh.uv), proxy)  # inside every picture
+    result = inspect(capture, "--proxy", proxy, "--overlay", target)
+    assert "triangles, with UVs" in result.stdout and "view_04.png" in result.stdout
+    with Image.open(target) as sheet:
+        pixels = np.asarray(sheet).astype(int)
+    magenta = (pixels == [255, 0, 191]).all(axis=-1)
+    assert 500 < magenta.sum() < 0.1 * magenta.size
+    error = inspect(capture, "--proxy", proxy, "--overlay", target, fails=OutputError)
+    assert error.code == "output-exists"
+    inspect(capture, "--proxy", proxy, "--overlay", target, "--overwrite")
+
+
+def test_overlay_without_a_proxy_says_so(capture, tmp_path):
+    error = inspect(capture, "--overlay", tmp_path / "o.png", fails=OptionError)
+    assert "--proxy" in str(error) and not (tmp_path / "o.png").exists()
+
+
+def test_exit_code_and_one_line(tmp_path):
+    code = "import sys; sys.argv = ['eigenfield', 'inspect', sys.argv[1]]; from eigenfield.cli import main; main()"
+    run = subprocess.run(
+        [sys.executable, "-c", code, str(tmp_path / "no where")], capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 2 and run.stdout == ""
+    assert run.stderr.count("\n") == 1 and "no where: does not exist" in run.stderr
+
+
+def test_the_outline_is_where_the_mesh_ends():
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
+    mesh = Mesh(square, np.array([[0, 1, 2], [0, 2, 3]], np.int32))
+    camera = Camera(np.array([[20.0, 0, 30], [0, 20, 25], [0, 0, 1]]), np.eye(3), np.array([0, 0, 2.0]), 60, 50)
+    lines = proxy_lines(mesh, camera)
+    rows, columns = np.nonzero(lines.outline)
+    assert {rows.min(), rows.max(), columns.min(), columns.max()} == {14, 34, 19, 39}  # 10 pixels around (30, 25)
+    assert not lines.outline[17:33, 22:38].any() and not lines.crease.any()
+    assert lines.covered.sum() == 400
+
+
+def test_creases_and_depth_edges_are_told_apart():
+    camera = Camera(np.array([[160.0, 0, 128], [0, 160, 128], [0, 0, 1]]), np.eye(3), np.array([0, 0, 3.0]), 256, 256)
+    roof = np.array([[-1, -1, 1], [0, -1, 0], [1, -1, 1], [-1, 1, 1], [0, 1, 0], [1, 1, 1]], np.float32)
+    lines = proxy_lines(Mesh(roof, np.array([[0, 1, 3], [1, 4, 3], [1, 2, 4], [2, 5, 4]], np.int32)), camera)
+    assert set(np.nonzero(lines.crease[128])[0]) == {127}  # the ridge, x = 128
+    assert not lines.outline[128, 100:156].any()
+    plane = bumpy_square(2).vertices * np.array([1, 1, 0], np.float32)
+    faces = bumpy_square(2).faces
+    card = plane * np.float32(0.4) - np.array(
+        [0, 0, 1], np.float32
+    )  # before the plane: 160 * 0.4 / 2 = 32 pixels about 128
+    edges = proxy_lines(Mesh(np.concatenate([plane, card]), np.concatenate([faces, faces + 4])), camera)
+    inner = edges.outline[90:166, 90:166]
+    assert edges.covered[90:166, 90:166].all() and not edges.crease.any()
+    rows, columns = np.nonzero(inner)
+    assert {rows.min() + 90, columns.min() + 90} == {95} and {rows.max() + 90, columns.max() + 90} == {160}
+    assert not edges.outline[98:158, 98:158].any()
+
+
+def test_a_flipped_proxy_covers_another_part(capture):
+    light_field = open_capture(capture)
+    mesh = bumpy_square(12)
+    _, straight = draw_overlay(light_field, mesh, [4])
+    moved = Mesh(mesh.vertices * np.array([1, 1, -1], np.float32) - np.array([0, 0, 6], np.float32), mesh.faces)
+    data, behind = draw_overlay(light_field, moved, [4])
+    assert straight[0] > 0.3 and behind[0] == 0
+    Image.open(io.BytesIO(data)).load()
+
+
+def test_focus_and_corners():
+    cameras = []
+    target = np.array([1.0, -2.0, 7.0])
+    for x, y in ((-1, -1), (1, -1), (0, 0), (-1, 1), (1, 1)):
+        centre = np.array([x, y, 0.0])
+        forward = (target - centre) / np.linalg.norm(target - centre)
+        right = np.cross([0, 1.0, 0], forward)
+        right /= np.linalg.norm(right)
+        R = np.stack([right, np.cross(forward, right), forward])
+        cameras.append(Camera(np.array([[50.0, 0, 16], [0, 50, 12], [0, 0, 1]]), R, -R @ centre, 32, 24))
+    assert np.allclose(find_focus(cameras), target)
+    array = measure_array(cameras)
+    assert array.grid is None and array.cone is not None
+    widest = max(
+        np.degrees(np.arccos(a @ b / np.linalg.norm(a) / np.linalg.norm(b)))
+        for a in (c.centre - target for c in cameras)
+        for b in (c.centre - target for c in cameras)
+    )
+    assert np.isclose(array.cone, widest)
+    parallel = row_grid(9)
+    assert find_focus(parallel) is None and measure_array(parallel).cone is None
+    assert corners_and_centre(parallel) == [0, 2, 4, 6, 8]  # y down: the first row is the top one
+
+
+# real captures
+
+
+@pytest.mark.parametrize(("name", "proxy", "grid", "coverage"), [
+    ("tarot_17x17_512", "calibration/proxy.ply", {"rows": 17, "columns": 17}, 0.999),
+    ("cube_colmap_mesh", "proxy.obj", None, 0.85),
+])  # fmt: skip
+def test_real_captures(data, tmp_path, name, proxy, grid, coverage):
+    options = ["--calibration", data / name / "calibration" / "refined.json"] if "tarot" in name else []
+    target = tmp_path / "o.png"
+    result = inspect(data / name, *options, "--json", "--proxy", data / name / proxy, "--overlay", target, "--quiet")
+    report = json.loads(result.stdout)
+    assert report["array"]["grid"] == grid and report["damaged"] == [] and target.stat().st_size > 100_000
+    assert min(report["proxy"]["coverage"].values()) > coverage
+    if grid:
+        assert np.allclose(report["array"]["focus"], [0, 0, -1], atol=1e-3) and 26 < report["array"]["cone"] < 27

@@ -1,0 +1,110 @@
+"""fitting/rate.py: textures are coded at another step where error and bytes are less, by two prices."""
+
+from __future__ import annotations
+
+import cv2
+import numpy as np
+import pytest
+
+from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.core.payloads import files_of
+from eigenfield.encoding.fitted import rate
+from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
+from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.planes import KINDS
+from eigenfield.encoding.fitted.rate import Price, Rate, code_worthwhile, price_of, price_of_mean
+from eigenfield.encoding.fitted.solve import Scales
+
+SIZE, CAMERAS, STEP = (48, 64), 8, 0.03
+
+
+@pytest.fixture(scope="module")
+def made() -> tuple[Block, Model, Scales]:
+    """Four components, each half as strong as the one before, of blobs a few texels wide; each texel of the mean is
+    seen in ten pixels."""
+    rng = np.random.default_rng(5)
+    noise = rng.normal(0, 1, (5, 1, *SIZE)).astype(np.float32)
+    soft = np.stack([cv2.GaussianBlur(one[0], (0, 0), 2.0)[None] for one in noise])
+    soft /= soft.std()
+    strength = 0.2 * 0.5 ** np.arange(4, dtype=np.float32)
+    block = Block((0, SIZE[0], 0, SIZE[1]), soft[:4] * strength[:, None, None, None], np.ones((CAMERAS, 4), np.float32))
+    model = Model(np.eye(1, 3, dtype=np.float32), 0.5 + 0.1 * soft[4], SIZE, [block])
+    share = np.full(SIZE, 10.0, np.float32)
+    return block, model, Scales(share, share, (0.0, 0.0))
+
+
+def left(block: Block, scales: Scales, step: float, price: float) -> float:
+    """Squared error and the price of bytes with the best number of components, written out."""
+    coded = code_basis(rate._basis_of(block, SIZE), step, rate.QUICK)
+    values = coded.values().transpose(0, 3, 1, 2)
+    sizes = [len(file.data) / file.count for file in files_of(coded) or () for _ in range(file.count)]
+    totals = []
+    for count in range(block.count + 1):
+        drawn = np.zeros_like(block.textures)
+        drawn[:count] = values[:count]
+        error = float((np.square(block.textures - drawn) * scales.coarse).sum())
+        totals.append(error + price * (sum(sizes[:count]) + count * rate.WEIGHT_BYTES * CAMERAS))
+    return min(totals)
+
+
+def test_the_step_is_one_that_both_prices_find_cheaper(made):
+    block, _, scales = made
+    basis, chosen = rate._basis_of(block, SIZE), set()
+    for reckoned in np.geomspace(1e-4, 0.3, 7):
+        for measured in (reckoned / 3, reckoned, reckoned * 3):
+            prices = reckoned, measured
+            cheaper = [
+                factor
+                for factor in rate.OTHER_STEPS
+                if all(left(block, scales, STEP * factor, each) < left(block, scales, STEP, each) for each in prices)
+            ]
+            found = rate._best_factor(basis, block, scales, STEP, Price(*prices))
+            assert found == (cheaper or [1.0])[0]
+            chosen.add(found)
+    assert chosen == {1.0, *rate.OTHER_STEPS}  # dear bytes: coarser; cheap ones: finer
+
+
+def test_textures_are_coded_at_the_step_that_was_found(made):
+    block, _, scales = made
+    found = {}
+    for search in (False, True):
+        coded = code_worthwhile(block, SIZE, scales, Rate(STEP, STEP, svt(8), search=search), Price(1e-4, 1e-4))
+        assert coded.count == block.count
+        found[search] = coded
+    finer = code_basis(rate._basis_of(block, SIZE), STEP / 1.2, svt(8))
+    assert [f.data for f in files_of(found[True])] == [f.data for f in files_of(finer)]
+    usual = code_basis(rate._basis_of(block, SIZE), STEP, svt(8))
+    assert [f.data for f in files_of(found[False])] == [f.data for f in files_of(usual)]
+
+
+def test_what_a_byte_of_the_mean_takes_off_is_measured(made):
+    _, model, scales = made
+    found = price_of_mean(model, scales, Rate(STEP, STEP, svt(8), search=True))
+    assert found.reckoned == pytest.approx(price_of(STEP) * 10)
+    values = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
+    errors, sizes = [], []
+    for step in (STEP / 1.25, STEP * 1.25):
+        kept, file = code_mean(values, step, svt(8))
+        errors.append(10 * float(np.square(kept.astype(np.float64) - values).sum()))
+        sizes.append(len(file.data))
+    slope = (errors[1] - errors[0]) / (sizes[0] - sizes[1])
+    assert found.measured == pytest.approx(np.clip(slope, found.reckoned / 4, found.reckoned * 4), rel=1e-4)
+    assert found.measured != pytest.approx(found.reckoned, rel=0.01)
+
+
+def test_nothing_is_measured_where_nothing_is_looked_for(made):
+    block, model, scales = made
+    for plain in (
+        price_of_mean(model, scales, Rate(STEP, STEP, svt(8))),
+        price_of_mean(Model(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
+    ):
+        assert plain.measured == plain.reckoned
+    flat = Model(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
+    even = price_of_mean(flat, scales, Rate(STEP, STEP, svt(8), search=True))
+    assert even.measured == even.reckoned
+
+
+def test_luma_is_searched_where_cameras_are_many():
+    luma, chroma = KINDS["luma-chroma"]
+    assert luma.rate(0.01).search
+    assert not luma.rate(0.01, few=True).search and not chroma.rate(0.01).search

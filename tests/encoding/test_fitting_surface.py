@@ -1,0 +1,198 @@
+"""The surface moved to where the photographs agree on it: known depths found again, and what must stay as it is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import eigenfield as ef
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.encoding.fitted import fit_surface
+from eigenfield.encoding.fitted.surface_kernels import gather_steps
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR
+from eigenfield.gltf import encode_scene
+from eigenfield.proxy.relief.find_lattice import relief_lattice
+from eigenfield.rendering import draw_texture
+from support.captures import write_capture
+from support.scenes import row_grid, smooth_pictures
+from support.surfaces import relief
+
+SIDE = 96
+
+
+def sheet(depth: float, nodes: int = 9) -> Mesh:
+    """A square at z = depth - 3 that fills every frame of `row_grid`, in front of its cameras."""
+    steps = np.linspace(0, 1, nodes)
+    v, u = np.meshgrid(steps, steps, indexing="ij")
+    points = np.stack([6 * u - 3, 6 * v - 3, np.full_like(u, depth - 3)], axis=-1).reshape(-1, 3)
+    corner = (np.arange(nodes - 1)[:, None] * nodes + np.arange(nodes - 1)).ravel()
+    upper = np.stack([corner, corner + 1, corner + nodes], axis=1)
+    faces = np.concatenate([upper, np.stack([corner + 1, corner + nodes + 1, corner + nodes], axis=1)])
+    uv = np.stack([u, v], axis=-1).reshape(-1, 2)
+    return Mesh(points.astype(np.float32), faces.astype(np.int32), uv.astype(np.float32))
+
+
+def detailed(side: int = 256) -> np.ndarray:
+    """(side, side, 3) with something to see everywhere."""
+    y, x = np.mgrid[0:side, 0:side] / side
+    waves = np.sin(2 * np.pi * 13 * x + 3 * y) * np.sin(2 * np.pi * 11 * y)
+    return np.clip(0.5 + 0.2 * smooth_pictures(1, side, side, 3, seed=2)[0] + 0.2 * waves[..., None], 0, 1).astype(
+        np.float32
+    )
+
+
+def photographs_of(mesh: Mesh, cameras: tuple[Camera, ...]):
+    """What `fit_surface` asks for: the photographs of a mesh, no masks."""
+    pictures = [draw_texture(mesh, detailed(), camera, samples=2).image for camera in cameras]
+    return lambda index: (pictures[index], None)
+
+
+@pytest.mark.parametrize("off", [0.97, 1.04])
+def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
+    cameras = row_grid(9, 64, 56)
+    decode = photographs_of(sheet(3.0), cameras)
+    wrong = sheet(3.0 * off)
+    found = fit_surface(wrong, None, cameras, decode, SIDE)
+    inside = (np.abs(wrong.vertices[:, :2]) < 1.6).all(axis=1)  # what most cameras see
+    before, after = (np.abs(mesh.vertices[inside, 2]) for mesh in (wrong, found))
+    assert np.median(after) < 0.15 * np.median(before)
+    np.testing.assert_allclose(found.vertices[:, :2], wrong.vertices[:, :2], atol=1e-4)  # along the normal alone
+    assert found.uv is wrong.uv and found.faces is wrong.faces
+
+
+def test_a_relief_stays_on_the_rays_it_was_made_on():
+    cameras = row_grid(9, 64, 56)
+    true = relief(cameras[4], 0.5, False)
+    decode = photographs_of(true, cameras)
+    lattice, fine = relief_lattice(true, cameras, DEPTH_ERROR) or (None, 0)
+    assert lattice is not None
+    exact = lattice.coordinates(true.vertices)
+    exact[:, 2] *= 1.03
+    wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
+    found = fit_surface(wrong, lattice, cameras, decode, SIDE)
+    now = lattice.coordinates(found.vertices)
+    np.testing.assert_allclose(now[:, :2], exact[:, :2], atol=0.02)
+    right = lattice.coordinates(true.vertices)[:, 2]
+    assert np.median(np.abs(now[:, 2] - right)) < 0.3 * np.median(np.abs(exact[:, 2] - right))
+    again = relief_lattice(found, cameras, DEPTH_ERROR)
+    assert again is not None and again[1] == fine
+
+
+def test_what_is_right_stays_and_what_nothing_tells_stays():
+    cameras = row_grid(9, 64, 56)
+    true = sheet(3.0)
+    found = fit_surface(true, None, cameras, photographs_of(true, cameras), SIDE)
+    assert np.abs(found.vertices - true.vertices).max() < 0.02
+    for picture in (np.full((56, 64, 3), 0.5, np.float32), None):
+        noise = np.random.default_rng(3)
+
+        def decode(_: int, picture=picture, noise=noise):
+            return (noise.random((56, 64, 3), np.float32) if picture is None else picture), None
+
+        found = fit_surface(true, None, cameras, decode, SIDE)
+        assert np.abs(found.vertices - true.vertices).max() < 0.12  # half a pixel of parallax
+
+
+def test_doubled_vertices_move_as_one():
+    cameras = row_grid(9, 64, 56)
+    whole = sheet(3.1)
+    torn = Mesh(whole.vertices[whole.faces.ravel()], np.arange(whole.faces.size, dtype=np.int32).reshape(-1, 3),
+                whole.uv[whole.faces.ravel()])  # fmt: skip
+    decode = photographs_of(sheet(3.0), cameras)
+    found, torn_found = (fit_surface(mesh, None, cameras, decode, SIDE) for mesh in (whole, torn))
+    assert np.abs(found.vertices - whole.vertices).max() > 0.05
+    first = np.unique(whole.faces, return_index=True)[1]
+    np.testing.assert_array_equal(torn_found.vertices, torn_found.vertices[first][whole.faces.ravel()])
+    assert np.median(np.abs(torn_found.vertices[first] - found.vertices)) < 1e-3
+
+
+def test_surfaces_that_touch_without_common_vertices_stay_together():
+    """A wall on a floor, divided otherwise: where only one of them moved, a camera would look through between."""
+    cameras = row_grid(9, 64, 56)
+    fine, coarse = sheet(3.1, 9), sheet(3.1, 6)
+    halves = [
+        replace(
+            half, vertices=(half.vertices * [0.5, 1, 1] + [add, 0, 0]).astype(np.float32), uv=half.uv * [0.5, 1] + u
+        )
+        for half, add, u in ((fine, -1.5, 0), (coarse, 1.5, [0.5, 0]))
+    ]
+    wrong = Mesh(
+        np.concatenate([half.vertices for half in halves]),
+        np.concatenate([halves[0].faces, halves[1].faces + len(fine.vertices)]),
+        np.concatenate([half.uv for half in halves]).astype(np.float32),
+    )
+    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    moved = np.abs(found.vertices - wrong.vertices).max(axis=1) > 0
+    touching = np.abs(wrong.vertices[:, 0]) < 1e-6
+    assert moved.any() and touching.sum() == 9 + 6 and not moved[touching].any()
+    for camera in cameras:
+        assert draw_texture(found, detailed(), camera, samples=1).coverage.all()
+
+
+def test_a_mesh_of_open_edges_alone_stays():
+    cameras = row_grid(9, 64, 56)
+    wrong = sheet(3.1, 2)
+    found = fit_surface(wrong, None, cameras, photographs_of(sheet(3.0), cameras), SIDE)
+    np.testing.assert_array_equal(found.vertices, wrong.vertices)
+
+
+def test_masked_pixels_do_not_count():
+    cameras = row_grid(9, 64, 56)
+    right, spoiled = photographs_of(sheet(3.0), cameras), np.random.default_rng(1)
+
+    def decode(index: int):
+        picture, mask = right(index)[0].copy(), np.ones((56, 64), np.float32)
+        picture[:, :20], mask[:, :20] = spoiled.random((56, 20, 3)), 0
+        return picture, mask
+
+    wrong = sheet(3.1)
+    found = fit_surface(wrong, None, cameras, decode, SIDE)
+    seen = (np.abs(wrong.vertices[:, :2]) < 0.8).all(axis=1)
+    assert np.median(np.abs(found.vertices[seen, 2])) < 0.03
+
+
+def test_a_mesh_that_no_camera_sees_is_left_alone():
+    cameras = row_grid(4, 64, 56)
+    behind = sheet(-3.0)
+    assert fit_surface(behind, None, cameras, photographs_of(sheet(3.0), cameras), SIDE) is behind
+
+
+def test_what_a_step_changes_is_what_a_camera_then_draws():
+    """g of the kernel against the difference of two pictures, in a camera to the side."""
+    cameras = row_grid(9, 64, 56)
+    camera, t = cameras[0], np.array([[0.4, -0.3, 0.2], [-0.5, 0.6, -0.1]])
+    slopes, step = np.array([[0.3, -0.2], [0.1, 0.4]]), np.tile([0.1, 0.05, 1.0], (2, 1))
+    tangents = np.array([[[0.06, 0, 0.01], [0, 0.05, -0.02]]])
+    out = np.zeros((5, 2))
+    one = np.ones(2, np.float32)
+    gather_steps(camera.matrix, t, step, tangents, np.zeros(2, np.int32), slopes, one, one, out)
+    small = 1e-5
+    for k in range(2):
+        moved = camera.project(t[k : k + 1] + small * step[k])[0][0]
+        at, right, down = (
+            camera.project((t[k] + add)[None])[0][0] for add in (0, 1e-5 * tangents[0, 0], 1e-5 * tangents[0, 1])
+        )
+        across = np.stack([(right - at) / 1e-5, (down - at) / 1e-5], axis=1)
+        texels = -np.linalg.solve(across, (moved - at) / small)  # of the texture under a pixel that stays
+        np.testing.assert_allclose(out[0, k], slopes[k] @ texels, rtol=1e-3)
+    np.testing.assert_allclose(out[1], np.square(out[0]), rtol=1e-9)
+
+
+def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
+    """The same photographs on the right depths and on wrong ones: what is fitted makes good what was wrong."""
+    cameras = row_grid(9, 64, 56)
+    true = relief(cameras[4], 0.5, False)
+    folder = write_capture(tmp_path / "relief", cameras, true)
+    lattice, _ = relief_lattice(true, cameras, DEPTH_ERROR) or (None, 0)
+    exact = lattice.coordinates(true.vertices)
+    exact[:, 2] *= 1.03
+    wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
+    capture, made = ef.open_capture(folder), {}
+    for rounds in (4, 0):
+        monkeypatch.setattr("eigenfield.encoding.fitted.surface.ROUNDS", rounds)
+        scene = ef.encode(capture, wrong, textures=2, fit="photographs")
+        made[rounds] = len(encode_scene(scene)), scene.settings["fitted"]["psnr"]["luma"]["coded"]
+    assert made[4][1] > made[0][1] + 0.3 and made[4][0] < 1.03 * made[0][0]

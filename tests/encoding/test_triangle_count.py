@@ -1,0 +1,118 @@
+"""How many triangles a mesh is worth to the pictures that it draws."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from eigenfield import open_capture
+from eigenfield.core.camera import Camera
+from eigenfield.core.mesh import Mesh
+from eigenfield.encoding.geometry import triangles_worth
+from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
+from eigenfield.encoding.plan import Options, make_draft
+from eigenfield.proxy import simplified, unwrapped
+from support.captures import write_capture
+from support.scenes import row_grid
+from support.surfaces import ball, nine_cameras, square
+
+CAMERAS = tuple(camera.resized(120, 100) for camera in row_grid(9))
+
+
+def wavy(height: float, nodes: int = 60) -> Mesh:
+    """A square of over 6,000 triangles with waves of `height`, before the cameras."""
+    flat = square(2.0, 0.0, nodes)
+    x, y, _ = flat.vertices.T
+    return Mesh(np.stack([x, y, height * np.sin(4 * x) * np.cos(3 * y)], axis=1).astype(np.float32), flat.faces)
+
+
+def stripes(camera: Camera) -> np.ndarray:
+    column, row = np.arange(camera.width), np.arange(camera.height)
+    return (0.5 + 0.2 * np.cos(0.7 * column) + 0.2 * np.cos(0.5 * row)[:, None]).astype(np.float32)
+
+
+def worth(mesh: Mesh, price: float) -> int | None:
+    return triangles_worth(mesh, CAMERAS, lambda index: stripes(CAMERAS[index]), price)
+
+
+def test_a_plane_is_worth_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
+    found = [worth(wavy(height), 1e-5) for height in (0.0, 0.02, 0.05)]
+    assert all(found) and found == sorted(set(found))
+    assert found[0] < 400
+    assert worth(wavy(0.2), 1e-5) is None  # too few would go for new charts
+    dear = worth(wavy(0.2), 1e-3)
+    assert dear is not None and dear < found[-1]
+    assert worth(wavy(0.2), 1e-9) is None  # bytes cost nothing: all are kept
+    assert worth(wavy(0.0), 0) is None
+
+
+def test_few_triangles_and_meshes_that_no_camera_sees_stay():
+    small = simplified(wavy(0.1), 200)
+    assert worth(small, 1.0) is None
+    assert worth(replace(wavy(0.1), vertices=wavy(0.1).vertices - np.float32([0, 0, 50])), 1.0) is None
+
+
+def test_one_camera_tells_no_depth():
+    assert triangles_worth(wavy(0.1), CAMERAS[:1], lambda index: stripes(CAMERAS[0]), 1e-5) is None
+
+
+def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
+    """A wall whose copy stands too near by so much that it is half a pixel off beside each camera: the mean of the
+    others, drawn on the copy, misses a photograph by gradient times displacement."""
+    wall = square(3.0, 0.0, 8)
+    cameras = CAMERAS[3:6]  # in a row, half a unit apart
+    angle = 0.3
+    pictures = []
+    for camera in cameras:  # a wave on the wall along x, as each camera sees it
+        x = (np.arange(camera.width) + 0.5 - camera.K[0, 2]) / camera.K[0, 0] * 3.0 - camera.t[0]
+        pictures.append(np.tile(np.cos(angle * x * camera.K[0, 0] / 3.0), (camera.height, 1)).astype(np.float32))
+    views = [_view(wall, camera, picture) for camera, picture in zip(cameras, pictures, strict=True)]
+    looked = [_points(views, number) for number in range(3)]
+    assert _loss(wall, views, looked) == pytest.approx(0, abs=1e-9)
+    off = 0.5 / (0.5 * cameras[0].K[0, 0])  # of inverse depth, for half a pixel between neighbours
+    near = replace(wall, vertices=wall.vertices + np.float32([0, 0, 1 / (1 / 3 + off) - 3]))
+    # An outer camera's points lie half a pixel off beside its neighbour, one beside the other; the middle one's half a
+    # pixel, either way. At the sides some see what others do not.
+    away = 0.5 / 3.0 * cameras[0].K[0, 0] / cameras[0].width
+    both, one = 1 - 2 * away, away
+    squares = 2 * (both * ((0.5 + 1) / 2) ** 2 + one * 0.5**2) + 2 * one * 0.5**2
+    slope = 0.5 * angle**2
+    assert _loss(near, views, looked) == pytest.approx(views[0].grey.size * slope * squares, rel=0.08)
+
+
+def test_where_nothing_is_left_the_picture_is_black():
+    wall = square(3.0, 0.0, 8)
+    half = replace(wall, faces=wall.faces[wall.vertices[wall.faces].mean(axis=1)[:, 0] < 0])
+    views = [_view(wall, camera, stripes(camera)) for camera in CAMERAS]
+    looked = [_points(views, number) for number in range(len(views))]
+    gone = [view.grey[_view(half, view.camera, view.grey).inverse_depth <= 0] for view in views]
+    assert _loss(half, views, looked) == pytest.approx(sum(float(np.square(one).sum()) for one in gone) / 0.4, rel=1e-5)
+
+
+def test_large_photographs_are_looked_at_smaller():
+    wall = wavy(0.1)
+    camera = CAMERAS[4].resized(2400, 2000)
+    grey = np.kron(stripes(CAMERAS[4]), np.ones((20, 20), np.float32))
+    view = _view(wall, camera, grey)
+    assert view.grey.size <= 1 << 20 and view.pixels == pytest.approx(2400 * 2000 / (1 << 20))
+    assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
+
+
+def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_asked_for(tmp_path):
+    smooth = ball(radius=1.5)
+    bumps = 1 + 0.03 * np.sin(9 * smooth.vertices).prod(axis=1, keepdims=True)
+    given = replace(smooth, vertices=(smooth.vertices * bumps).astype(np.float32))
+    field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrapped(given)))
+    coarse = make_draft(field, given, Options(quality=55))
+    fine = coarse.at_quality(92)
+    counts = [len(draft.mesh.faces) for draft in (coarse, fine)]
+    assert counts[0] < 0.6 * counts[1] and counts[1] <= len(given.faces)
+    assert fine.options.quality == 92 and fine.mesh_bytes > coarse.mesh_bytes
+    again = fine.at_quality(55)
+    np.testing.assert_array_equal(again.mesh.vertices, coarse.mesh.vertices)
+    assert len(make_draft(field, given, Options(fit="none")).mesh.faces) == len(given.faces)
+    asked = make_draft(field, given, Options(quality=55), triangles=3000)
+    assert 2900 <= len(asked.mesh.faces) <= 3000
+    assert len(asked.at_quality(92).mesh.faces) == len(asked.mesh.faces)

@@ -1,0 +1,208 @@
+"""From bare photographs to a scene: the whole way, taken up again, and what bad input gets."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from eigenfield.capture import open_any, open_capture
+from eigenfield.core.errors import CaptureError, OptionError, ProxyError
+from eigenfield.encoding.encode import encode
+from eigenfield.imaging.raster import rasterise_view
+from eigenfield.proxy import atlas_fault, read_mesh
+from eigenfield.reconstruction import looks_one_way, reconstruct
+from support.captures import write_array
+
+
+@pytest.fixture(scope="module")
+def photos(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("array") / "photos"
+    write_array(folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def made(photos, tmp_path_factory):
+    work = tmp_path_factory.mktemp("work")
+    return work, reconstruct(open_any(photos), work=work)
+
+
+def eigenfield(*words, **more):
+    return subprocess.run(
+        [sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True, check=False, **more
+    )
+
+
+def test_cameras_and_mesh_of_bare_photographs(made):
+    _, result = made
+    assert len(result.light_field) == 16
+    assert atlas_fault(result.mesh) is None
+    for camera in result.light_field.cameras:
+        assert (rasterise_view(result.mesh, camera).face >= 0).all()
+    assert list(result.seconds) == ["array", "relief"]
+    assert looks_one_way(result.light_field.cameras)
+
+
+def test_the_scene_shows_held_out_views(made):
+    _, result = made
+    scene = encode(result.light_field, result.mesh, textures=5, hold_out="every:4")
+    from eigenfield.evaluation import evaluate
+
+    figures = evaluate(scene, result.light_field)
+    assert figures["image"]["held_out"]["psnr"] > 27
+    assert figures["image"]["encoded"]["psnr"] > 29
+
+
+def test_finished_stages_are_taken_up(photos, made):
+    work, first = made
+    again = reconstruct(open_any(photos), work=work)
+    assert set(again.seconds.values()) == {0.0}
+    assert np.array_equal(again.mesh.vertices, first.mesh.vertices)
+    for before, after in zip(first.light_field.cameras, again.light_field.cameras, strict=True):
+        assert np.array_equal(before.matrix, after.matrix)
+
+
+def test_refined_cameras_are_kept_for_other_tools(photos, made):
+    _, result = made
+    for name in ("transforms.json", "sparse/0"):
+        read = open_capture(photos, calibration=result.calibration / name)
+        for before, after in zip(result.light_field.cameras, read.cameras, strict=True):
+            np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-6)
+
+
+def test_blind_views_only_register_their_own_camera(photos, made, tmp_path):
+    _, seeing = made
+    blind = reconstruct(open_any(photos), work=tmp_path, blind="every:5")
+    assert blind.light_field.names == seeing.light_field.names
+    changed = tmp_path / "changed"
+    shutil.copytree(photos, changed)
+    held = blind.light_field.names[2]
+    with Image.open(changed / held) as picture:
+        other = picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM)
+    other.save(changed / held)
+    without = reconstruct(open_any(changed), blind="every:5")
+    assert np.array_equal(without.mesh.vertices, blind.mesh.vertices)
+
+
+def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
+    mixed = tmp_path / "mixed"
+    shutil.copytree(photos, mixed)
+    foreign = mixed / "view_03_00.png"
+    noise = np.random.default_rng(0).integers(0, 255, (12, 12, 3), np.uint8)
+    Image.fromarray(noise).resize((96, 96), Image.Resampling.BICUBIC).save(foreign)
+    result = reconstruct(open_any(mixed))
+    assert foreign.name not in result.light_field.names
+    assert len(result.light_field) == 15
+    assert any(foreign.name in problem for problem in result.light_field.problems)
+
+
+def test_options_that_cannot_be(photos):
+    with pytest.raises(OptionError, match="surface"):
+        reconstruct(open_any(photos), surface="wavy")
+    with pytest.raises(OptionError):
+        reconstruct(open_any(photos), primitives=["cube:1,2,3"])
+    with pytest.raises(OptionError):
+        reconstruct(open_any(photos), fit_spheres=["view:1,2"])
+    with pytest.raises(OptionError, match="metric"):
+        reconstruct(open_any(photos), surface="poisson")
+
+
+def test_a_wrong_grid_ends_in_one_line(photos, tmp_path):
+    numbered = tmp_path / "numbered"
+    numbered.mkdir()
+    for number, path in enumerate(sorted(photos.iterdir())):
+        shutil.copy(path, numbered / f"{number:03d}.png")
+    wrong = eigenfield("encode", numbered, "--grid", "2x8", "-o", tmp_path / "scene.glb")
+    assert wrong.returncode == 2
+    assert len(wrong.stderr.strip().splitlines()) == 1
+    assert "grid" in wrong.stderr
+    assert not (tmp_path / "scene.glb").exists()
+
+
+def test_grey_photographs_end_in_one_line(tmp_path):
+    grey = tmp_path / "grey"
+    grey.mkdir()
+    for row in range(3):
+        for column in range(3):
+            Image.new("RGB", (64, 64), (90 + row, 90, 90 + column)).save(grey / f"view_{row:02d}_{column:02d}.png")
+    with pytest.raises(CaptureError) as error:
+        reconstruct(open_any(grey))
+    assert error.value.code == "grid-texture"
+
+
+def test_a_given_proxy_and_its_options_do_not_mix(photos, tmp_path):
+    refused = eigenfield("encode", photos, "--proxy", "mesh.ply", "--no-refine", "-o", tmp_path / "scene.glb")
+    assert refused.returncode == 2
+    assert "--proxy" in refused.stderr
+
+
+def test_the_proxy_verb_writes_mesh_and_cameras(photos, made, tmp_path):
+    work, result = made
+    done = eigenfield("proxy", photos, "-o", tmp_path / "mesh.glb", "--work", work)
+    assert done.returncode == 0, done.stderr
+    assert "taken up" in done.stderr
+    mesh = read_mesh(tmp_path / "mesh.glb")
+    assert np.array_equal(np.sort(mesh.vertices, axis=0), np.sort(result.mesh.vertices, axis=0))
+    poses = json.loads((tmp_path / "mesh.cameras" / "transforms.json").read_text())["frames"]
+    assert len(poses) == 16
+    assert eigenfield("proxy", photos, "-o", tmp_path / "mesh.obj").returncode == 2
+
+
+def test_bare_photographs_are_measured_by_the_scenes_own_cameras(photos, made, tmp_path):
+    work, _ = made
+    scene = tmp_path / "scene.glb"
+    done = eigenfield("encode", photos, "-o", scene, "--work", work, "-n", "4")
+    assert done.returncode == 0, done.stderr
+    measured = eigenfield("evaluate", scene, photos, "--json")
+    assert json.loads(measured.stdout)["image"]["encoded"]["psnr"] > 28
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_a_killed_run_goes_on(photos, tmp_path):
+    command = [sys.executable, "-m", "eigenfield", "encode", str(photos), "-o", str(tmp_path / "scene.glb")]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
+    work = tmp_path / "scene.work"
+    deadline = time.monotonic() + 300
+    while not list(work.glob("array-*")) and time.monotonic() < deadline:
+        time.sleep(0.02)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    assert not (tmp_path / "scene.glb").exists()
+    again = eigenfield("encode", photos, "-o", tmp_path / "scene.glb")
+    assert again.returncode == 0, again.stderr
+    assert "array    taken up" in again.stderr
+    assert not list(work.glob(".*.part"))
+
+
+def test_masks_restrict_the_relief(photos, tmp_path):
+    masks = tmp_path / "masks"
+    masks.mkdir()
+    for path in photos.iterdir():
+        shown = np.zeros((96, 96), np.uint8)
+        shown[:, :48] = 255
+        Image.fromarray(shown).save(masks / path.name)
+    work = tmp_path / "work"
+    result = reconstruct(open_any(photos, masks=masks), work=work)
+    covered = [(rasterise_view(result.mesh, camera).face >= 0) for camera in result.light_field.cameras]
+    assert np.mean([part[:, :36].mean() for part in covered]) > 0.97
+    assert np.mean([part[:, 66:].mean() for part in covered]) < 0.05
+    closed = reconstruct(open_any(photos, masks=masks), background=True, work=work)
+    assert closed.seconds["array"] == 0 < closed.seconds["relief"]
+    for camera in closed.light_field.cameras:
+        assert (rasterise_view(closed.mesh, camera).face >= 0).all()
+    black = tmp_path / "black"
+    black.mkdir()
+    for path in photos.iterdir():
+        Image.fromarray(np.pad(np.full((1, 1), 255, np.uint8), ((0, 95), (0, 95)))).save(black / path.name)
+    with pytest.raises(ProxyError) as error:
+        reconstruct(open_any(photos, masks=black))
+    assert error.value.code in ("surface-masked", "relief-empty")

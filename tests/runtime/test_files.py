@@ -1,0 +1,134 @@
+"""Files are whole or absent; a full disk, a lost folder and an interruption leave nothing behind."""
+
+from __future__ import annotations
+
+import errno
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from eigenfield.core.errors import EigenfieldError, OptionError, OutputError
+from eigenfield.runtime.files import atomic_writer, refuse_existing, scratch_array, write_bytes
+from eigenfield.runtime.parallel import parallel_map, parallel_stream, set_threads
+
+
+def test_a_file_appears_whole(tmp_path):
+    path = tmp_path / "with space.glb"
+    write_bytes(path, b"abc")
+    assert path.read_bytes() == b"abc"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_an_existing_file_is_kept_unless_asked(tmp_path):
+    path = tmp_path / "a"
+    write_bytes(path, b"old")
+    with pytest.raises(OutputError, match="--overwrite") as caught:
+        write_bytes(path, b"new")
+    assert caught.value.code == "output-exists"
+    assert path.read_bytes() == b"old"
+    write_bytes(path, b"new", overwrite=True)
+    assert path.read_bytes() == b"new"
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt(), RuntimeError("bug")])
+def test_an_interrupted_write_leaves_the_old_file_and_no_debris(tmp_path, error):
+    path = tmp_path / "a"
+    write_bytes(path, b"old")
+    with pytest.raises(type(error)), atomic_writer(path, overwrite=True) as file:
+        file.write(b"half")
+        raise error
+    assert path.read_bytes() == b"old"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_full_disk_is_said(tmp_path, monkeypatch):
+    def full(descriptor):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(OutputError, match="no room left") as caught:
+        write_bytes(tmp_path / "a", b"abc")
+    assert caught.value.code == "disk-full"
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits on file sizes are POSIX")
+def test_a_file_that_outgrows_the_limit_is_said(tmp_path):
+    """A real refusal of the operating system, not a simulated one."""
+    code = (
+        "import resource, signal, sys; from pathlib import Path;"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000));"
+        "from eigenfield.files import write_bytes, scratch_array; from eigenfield.errors import OutputError\n"
+        "for work in (lambda: write_bytes(Path(sys.argv[1]) / 'a', bytes(5000)),"
+        "             lambda: scratch_array((5000,), 'f4', Path(sys.argv[1])).__enter__()):\n"
+        "    try: work()\n"
+        "    except OutputError as error: assert error.code == 'disk-full', error\n"
+        "    else: raise SystemExit('no error')"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], check=True)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_missing_folder_and_a_folder_as_output_are_said(tmp_path):
+    with pytest.raises(OutputError, match="does not exist"):
+        refuse_existing(tmp_path / "no" / "a", False)
+    with pytest.raises(OutputError, match="is a folder"):
+        refuse_existing(tmp_path, True)
+    with pytest.raises(OutputError), scratch_array((3,), np.float32, tmp_path / "no"):
+        pass
+
+
+def test_an_error_inside_a_scratch_arrays_block_stays_what_it_is(tmp_path):
+    with pytest.raises(FileNotFoundError), scratch_array((3,), np.float32, tmp_path):
+        (tmp_path / "nothing").read_bytes()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_scratch_arrays_leave_nothing(tmp_path):
+    with scratch_array((4, 5), np.float32, tmp_path) as array:
+        array[2] = 7
+        assert array.sum() == 35
+    assert list(tmp_path.iterdir()) == []
+    with scratch_array((0, 5), np.float32, tmp_path) as array:
+        assert array.shape == (0, 5)
+
+
+def test_errors_are_one_line_with_file_and_remedy():
+    error = EigenfieldError("code", "is broken", path="a.png", remedy="mend it")
+    assert str(error) == "a.png: is broken; mend it"
+    assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_work_is_shared_in_order_and_nests(count):
+    set_threads(count)
+    try:
+        assert parallel_map(lambda i: sum(parallel_map(lambda j: i * j, range(10))), range(20)) == [
+            45 * i for i in range(20)
+        ]
+        with pytest.raises(ZeroDivisionError):
+            list(parallel_stream(lambda i: 1 // (i - 5), range(100)))
+    finally:
+        set_threads(None)
+
+
+def test_streams_stay_close_to_their_consumer():
+    """Memory does not grow with the number of cameras: only a few results wait."""
+    set_threads(2)
+    started = []
+    try:
+        stream = parallel_stream(started.append, range(1000))
+        for _ in range(3):
+            next(stream)
+        assert len(started) <= 3 + 2 + 2 + 1
+    finally:
+        stream.close()
+        set_threads(None)
+
+
+def test_zero_threads_are_refused():
+    with pytest.raises(OptionError):
+        set_threads(0)

@@ -1,0 +1,66 @@
+"""Threads stay as they were found."""
+
+from __future__ import annotations
+
+import os
+import threading
+
+import numpy as np
+import pytest
+
+from eigenfield.coding.pictures.pictures_10bit import SMALLEST, encode_deep
+from eigenfield.coding.video.av1 import encode_film
+from eigenfield.runtime.parallel import TASKS, ordinary_scheduling, parallel_map
+
+pytestmark = pytest.mark.skipif(
+    not hasattr(os, "sched_setscheduler") or os.geteuid() != 0, reason="only root's threads become real-time"
+)
+
+
+def policies() -> set[int]:
+    return {os.sched_getscheduler(int(task.name)) for task in TASKS.iterdir()}
+
+
+def make_real_time() -> None:
+    os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(1))
+
+
+def test_real_time_threads_become_ordinary_again():
+    stop = threading.Event()
+    found = []
+
+    def work():
+        with ordinary_scheduling():
+            make_real_time()
+            threading.Thread(target=stop.wait, daemon=True).start()
+            found.append(os.SCHED_FIFO in policies())
+        found.append(os.SCHED_FIFO in policies())
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    stop.set()
+    assert found == [True, False]
+
+
+def test_a_process_that_was_started_real_time_stays_so():
+    found = []
+
+    def work():
+        make_real_time()
+        with ordinary_scheduling():
+            pass
+        found.append(os.sched_getscheduler(0))
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
+    assert found == [os.SCHED_FIFO]
+
+
+def test_no_encoder_leaves_a_real_time_thread():
+    codes = np.zeros((SMALLEST, SMALLEST), np.uint16)
+    half = np.zeros((SMALLEST // 2, SMALLEST // 2), np.uint16)
+    parallel_map(lambda crf: encode_deep(codes, crf, 8), [20, 30, 40])
+    encode_film([(codes, half, half)], codes.shape, 30, 8)
+    assert os.SCHED_FIFO not in policies()

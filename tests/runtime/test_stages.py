@@ -1,0 +1,83 @@
+"""Stages of long work: whole or absent, taken up again, keyed by all they depend on."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from eigenfield.core.errors import OutputError
+from eigenfield.runtime.stages import Stages, file_digest, stage_key
+
+
+def test_a_finished_stage_is_taken_up(tmp_path):
+    calls = []
+
+    def build(folder):
+        calls.append(folder)
+        (folder / "result.txt").write_text("whole")
+
+    for _ in range(2):
+        place = Stages(tmp_path / "work").run("depth", stage_key(["a", 1]), build)
+        assert (place / "result.txt").read_text() == "whole"
+    assert len(calls) == 1
+    Stages(tmp_path / "work").run("depth", stage_key(["a", 2]), build)
+    assert len(calls) == 2
+
+
+def test_a_failed_stage_leaves_nothing(tmp_path):
+    def build(folder):
+        (folder / "half.txt").write_text("half")
+        raise ValueError("no")
+
+    stages = Stages(tmp_path)
+    with pytest.raises(ValueError, match="no"):
+        stages.run("depth", "k", build)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_without_a_folder_nothing_stays():
+    with Stages(None) as stages:
+        place = stages.run("depth", "k", lambda folder: (folder / "x").write_text("y") and None)
+        assert place.is_dir()
+    assert not place.exists()
+
+
+def test_keys_know_the_files_bytes_and_the_options(tmp_path):
+    file = tmp_path / "a.png"
+    file.write_bytes(b"one")
+    first = stage_key([file_digest(file), {"refine": True}])
+    assert first == stage_key([file_digest(file), {"refine": True}])
+    assert first != stage_key([file_digest(file), {"refine": False}])
+    file.write_bytes(b"two")
+    assert first != stage_key([file_digest(file), {"refine": True}])
+
+
+def test_a_place_that_is_a_file_is_refused(tmp_path):
+    (tmp_path / "work").write_text("a file")
+    with pytest.raises(OutputError, match="work"):
+        Stages(tmp_path / "work")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
+    code = (
+        "import sys, time; from pathlib import Path; from eigenfield.stages import Stages\n"
+        "def build(folder):\n"
+        "    (folder / 'half').write_text('x'); print('ready', flush=True); time.sleep(60)\n"
+        f"Stages(Path({str(tmp_path)!r})).run('depth', 'k', build)"
+    )
+    process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"ready\n"
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    process.stdout.close()
+    time.sleep(0.05)
+    assert [p.name.endswith(".part") for p in tmp_path.iterdir()] == [True]
+    place = Stages(tmp_path).run("depth", "k", lambda folder: (folder / "whole").write_text("x") and None)
+    assert [p.name for p in tmp_path.iterdir()] == ["depth-k"]
+    assert (place / "whole").exists()

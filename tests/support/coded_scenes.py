@@ -1,0 +1,90 @@
+"""Scenes whose mesh, cameras and weights are coded, whose pictures have 10 bits or whose means have a precision, with
+reference pictures for the tests of the web viewer."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import eigenfield as ef
+from eigenfield.coding.arrays.weights import code_weights
+from eigenfield.coding.pictures.pictures_8bit import encode
+from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.core.payloads import Affine, PictureFile, keep_files
+from eigenfield.core.scene import Plane, Scene
+from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
+from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
+from eigenfield.gltf import save
+from support.captures import write_capture
+from support.composed import keep_png, layered_scene
+from support.scenes import bumpy_square
+from support.viewer_scenes import PLACES, cameras, references, scene
+
+GRID = np.arange(25).reshape(5, 5)
+STEP = 2e-3  # of pictures, in the photographs' range
+
+
+def coded_scene() -> Scene:
+    """The scene of `viewer_scenes`, as its streams and pictures keep it: one plane of R, G and B."""
+    return coded(scene(), GRID)
+
+
+def coded(plain: Scene, grid: np.ndarray) -> Scene:
+    """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
+    views = coded_cameras(plain.cameras, plain.mesh, grid)
+    (plane,) = plain.planes
+    (basis,) = plane.bases
+    stream, weights = code_weights(basis.weights, 0.01, grid)
+    textures = with_weights(code_basis(basis, STEP, svt(8)), weights, stream)
+    mesh = coded_mesh(plain.mesh, views, plain.reference)
+    return replace(plain, mesh=mesh, cameras=views, planes=(coded_plane(plane.mean, (textures,), STEP, svt(8)),))
+
+
+def fitted_scene() -> Scene:
+    """Luma and chroma fitted to nine photographs."""
+    with tempfile.TemporaryDirectory() as work:
+        folder = write_capture(Path(work) / "nine", cameras(3, 3), bumpy_square(24))
+        capture = ef.open_capture(folder)
+        return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
+
+
+def precise_scene() -> Scene:
+    """The layered scene with means of 10 bits, of which one precision says how finely both are coded."""
+    layered = layered_scene()
+    keep_png(layered)  # its textures
+    precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
+    precision[0, 0] = 1
+    planes = (coded_plane(plane.mean, plane.bases, STEP, svt(8), precision) for plane in layered.planes)
+    return replace(layered, planes=tuple(planes))
+
+
+def shallow(made: Scene) -> Scene:
+    """The scene with a mean of 8 bits that is said to have 10."""
+    (plane,) = made.planes
+    height, width, channels = plane.mean.shape
+    data = encode(np.zeros((channels * height, width, 1), np.uint8), "avif", 70)
+    changed = Plane(plane.mean, plane.bases)
+    keep_files(changed, [PictureFile(data, "image/avif", 10, 1, Affine(np.ones(channels), np.zeros(channels)))])
+    return replace(made, planes=(changed,))
+
+
+def write(folder: Path) -> None:
+    """Write coded.glb, precise.glb, fitted.glb and shallow.glb; add pictures of the first three to references.json,
+    which is there."""
+    listing = folder / "references.json"
+    pictures = json.loads(listing.read_text(encoding="utf-8"))
+    made = coded_scene()
+    save(shallow(made), folder / "shallow.glb", overwrite=True)
+    save(made, folder / "coded.glb", overwrite=True)
+    pictures += references(folder, "coded.glb", PLACES[:2])
+    save(precise_scene(), folder / "precise.glb", overwrite=True)
+    pictures += references(folder, "precise.glb", PLACES[:2])
+    # Fitted textures hold what their nine photographs ask for, up to the finest ripple that the atlas has: a vertex off
+    # by a 32nd of a pixel is up to three grey levels there. So the vertices are where the browser has them.
+    save(fitted_scene(), folder / "fitted.glb", overwrite=True)
+    pictures += references(folder, "fitted.glb", PLACES[:2], snapped=True)
+    listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")

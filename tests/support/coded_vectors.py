@@ -1,0 +1,104 @@
+"""Coded parts and what they decode to, for decoders in other languages.
+
+`PYTHONPATH=tests python -m support.coded_vectors FOLDER` writes
+NAME.bin and NAME.json, whose lists a decoder must find, or null where it must refuse."""
+
+from __future__ import annotations
+
+import base64
+import json
+import sys
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.coding.arrays.cameras import code_cameras, decode_cameras
+from eigenfield.coding.arrays.names import code_names, decode_names
+from eigenfield.coding.arrays.triangles import code_triangles, decode_triangles, sorted_triangles
+from eigenfield.coding.arrays.weights import code_weights, decode_weights
+from eigenfield.coding.mesh.coder import decode_mesh, encode_mesh
+from eigenfield.core.errors import FormatError
+from support import coded_meshes
+from support.arrays import GRID, array_cameras, array_triangles, smooth_weights
+
+DAMAGED = 25  # of each
+
+
+def streams():
+    """Name and bytes of every undamaged vector."""
+    yield "mesh-relief", encode_mesh(*coded_meshes.relief(charts=3))[0]
+    yield "mesh-coarse", encode_mesh(*coded_meshes.relief(30, 31, step=2.5), uv_bits=6)[0]
+    yield "mesh-fine", encode_mesh(*coded_meshes.relief(step=0.25, charts=2, astray=0.2), fine=2)[0]
+    yield "mesh-ball", encode_mesh(*coded_meshes.ball())[0]
+    yield "mesh-soup", encode_mesh(*coded_meshes.soup(7, 60, 150))[0]
+    yield "weights-line", code_weights(smooth_weights(4, noise=0.3), 0.05)[0]
+    yield "weights-grid", code_weights(smooth_weights(6, noise=0.02), [0.01, 0.02, 0.05, 0.1, 0.2, 0.3], GRID)[0]
+    steps = {"intrinsic_step": 0.02, "rotation_step": 1e-4, "centre_step": 1e-3}
+    yield "cameras-line", code_cameras(array_cameras(), **steps)[0]
+    yield "cameras-grid", code_cameras(array_cameras(), **steps, grid=GRID)[0]
+    yield "triangles-grid", code_triangles(sorted_triangles(array_triangles()))
+
+
+def decoded(kind, stream):
+    """Lists of numbers, or None where the bytes are refused."""
+    try:
+        if kind == "mesh":
+            mesh = decode_mesh(stream)
+            parts = {"positions": mesh.vertices, "uv": mesh.uv, "indices": mesh.faces}
+        elif kind == "weights":
+            parts = {"values": decode_weights(stream)}
+        elif kind == "triangles":
+            parts = {"corners": decode_triangles(stream)}
+        else:
+            parts = dict(zip(("intrinsics", "poses"), decode_cameras(stream), strict=True))
+    except FormatError:
+        return None
+    return {name: part.astype(np.float64).reshape(-1).tolist() for name, part in parts.items()}
+
+
+def names_of(stream, count):
+    """The names, or None where the bytes are refused."""
+    try:
+        return decode_names(stream, count)
+    except FormatError:
+        return None
+
+
+def coded_names():
+    """Base64, count and names of streams, whole and damaged."""
+    random = np.random.default_rng(5)
+    measured = [f"out_{k // 9:02d}_{k % 9:02d}_{random.normal():.6f}_{random.normal():.6f}.jpg" for k in range(81)]
+    for names in (measured, ["ä", "猫.png", "c"], ["\ufeffone"]):
+        stream, count = code_names(names), len(names)
+        variants = [(stream, count), (stream, count + 1), (stream, 2 * count), (stream[:-3], count)]
+        for _ in range(DAMAGED):
+            damaged = bytearray(stream)
+            damaged[random.integers(len(stream))] = random.integers(256)
+            variants.append((bytes(damaged), count))
+        variants += [
+            (zlib.compress(bytes(range(128, 248))), 60),
+            (zlib.compress(b""), 1),
+            (zlib.compress(bytes(2**25 + 1)), 9000),
+        ]
+        for data, number in variants:
+            yield base64.b64encode(data).decode(), number, names_of(data, number)
+
+
+def write(folder):
+    (folder / "names.json").write_text(json.dumps(list(coded_names())), encoding="utf-8")
+    random = np.random.default_rng(11)
+    for name, stream in streams():
+        variants = [(name, stream)]
+        for k in range(DAMAGED):
+            damaged = bytearray(stream)
+            for _ in range(random.integers(1, 3)):
+                damaged[random.integers(len(stream) // 2 if k % 2 else 0, len(stream))] = random.integers(256)
+            variants.append((f"{name}-damaged-{k}", bytes(damaged[: len(stream) - (k % 5)])))
+        for label, variant in variants:
+            (folder / f"{label}.bin").write_bytes(variant)
+            (folder / f"{label}.json").write_text(json.dumps(decoded(name.split("-")[0], variant)), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1]))

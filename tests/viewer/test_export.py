@@ -1,0 +1,283 @@
+"""`eigenfield export` as a person meets it: what is made, what is refused, and what stays when things go wrong."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import signal
+import sys
+from dataclasses import replace
+from pathlib import PurePosixPath
+
+import numpy as np
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+from PIL import Image
+
+import eigenfield as ef
+from eigenfield.cli import main
+from eigenfield.core.errors import OutputError
+from eigenfield.gltf import save
+from eigenfield.rendering import Shots
+from eigenfield.runtime.files import atomic_files
+from eigenfield.viewer import exports
+from support.scenes import tiny_scene
+
+KINDS = {  # output, options, and a file that must be there
+    "html": ("page.html", [], "page.html"),
+    "mp4": ("flight.mp4", ["--frames", 4], "flight.mp4"),
+    "png": ("f%02d.png", ["--frames", 3], "f02.png"),
+    "obj": ("mesh.obj", [], "mesh.png"),
+    "obj folder": ("mesh", ["--as", "obj"], "mesh/eigen_02.png"),
+    "maps": ("maps", ["--as", "maps"], "maps/view_03.png"),
+    "quilt": ("q.png", ["--as", "quilt", "--quilt", "3x2"], "q_qs3x2a1.2.png"),
+    "colmap": ("capture", ["--as", "colmap"], "capture/sparse/0/points3D.bin"),
+}
+
+
+@pytest.fixture(scope="module")
+def scene_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("a scene") / "scene.glb"
+    save(tiny_scene(held_out=(1,)), path, codec="png")
+    return path
+
+
+@pytest.fixture
+def export(capsys, monkeypatch, scene_file, tmp_path):
+    """`eigenfield export` into a folder of its own; returns exit code and standard error."""
+    place = tmp_path / "out"
+    place.mkdir()
+
+    def call(output, *arguments):
+        monkeypatch.setattr(sys, "argv", ["eigenfield", "export", str(scene_file), "-o", str(place / output),
+                                          *map(str, arguments)])  # fmt: skip
+        before = signal.getsignal(signal.SIGTERM)
+        code = 0
+        try:
+            main()
+        except SystemExit as stop:
+            code = stop.code or 0
+        finally:
+            signal.signal(signal.SIGTERM, before)
+        return code, capsys.readouterr().err
+
+    call.place = place
+    return call
+
+
+def contents(folder):
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_kind_is_made_once_and_again_with_overwrite(export, kind):
+    output, options, there = KINDS[kind]
+    code, err = export(output, *options)
+    assert code == 0 and err.startswith("wrote "), err
+    first = contents(export.place)
+    assert there in first and not [name for name in first if ".part" in name]
+    code, err = export(output, *options)
+    assert code == 2 and "--overwrite" in err and err.count("\n") == 1
+    assert contents(export.place) == first
+    code, err = export(output, *options, "--overwrite", "-q")
+    assert code == 0 and err == ""
+    assert contents(export.place) == first  # the same bytes, and nothing more
+
+
+@pytest.mark.parametrize("kind", [kind for kind in KINDS if kind != "quilt"])  # its name needs the scene
+def test_an_existing_output_is_kept_before_any_work(export, kind, monkeypatch):
+    output, options, there = KINDS[kind]
+    (export.place / there).parent.mkdir(parents=True, exist_ok=True)
+    (export.place / there).write_bytes(b"precious")
+
+    def load(path):
+        raise AssertionError("the scene was read")
+
+    monkeypatch.setattr("eigenfield.gltf.load", load)
+    code, err = export(output, *options)
+    assert code == 2 and "--overwrite" in err and contents(export.place) == {there: b"precious"}
+
+
+def test_a_folder_with_files_of_others_is_never_replaced(export):
+    assert export("maps", "--as", "maps")[0] == 0
+    (export.place / "maps" / "notes.txt").write_text("mine")
+    before = contents(export.place)
+    code, err = export("maps", "--as", "maps", "--overwrite")
+    assert code == 2 and "notes.txt" in err and contents(export.place) == before
+    (export.place / "home" / "sub").mkdir(parents=True)
+    (export.place / "home" / "sub" / "letter").write_text("dear")
+    for listing in (b"", b"[]", b"\xff", b'{"files": 3}', b'{"files": [{}]}', b"[" * 100_000):
+        (export.place / "home" / "eigenfield.json").write_bytes(listing)
+        code, err = export("home", "--as", "colmap", "--overwrite")
+        assert code == 2 and "no export wrote" in err
+
+
+def test_an_empty_folder_is_filled(export):
+    (export.place / "maps").mkdir()
+    assert export("maps", "--as", "maps")[0] == 0
+    assert export("maps/.", "--as", "colmap", "--overwrite")[0] == 0
+    assert {path.name for path in (export.place / "maps").iterdir()} == {"images", "sparse", "eigenfield.json"}
+
+
+@pytest.mark.parametrize("kind", [*KINDS, "maps into an old one"])
+def test_a_full_disk_is_one_line_and_leaves_what_was(export, kind, monkeypatch):
+    output, options, _ = KINDS.get(kind, KINDS["maps"])
+    if kind not in KINDS:
+        assert export(output, *options)[0] == 0
+        options = [*options, "--overwrite"]
+    before = contents(export.place)
+
+    def full(descriptor):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    code, err = export(output, *options)
+    assert code == 2 and "no room" in err and err.count("\n") == 1
+    assert contents(export.place) == before and not list(export.place.rglob("*.part"))
+
+
+@pytest.mark.parametrize("at", [0, 1, 3])
+def test_interrupted_work_leaves_nothing(tmp_path, at):
+    shots = Shots(tiny_scene(cameras=9))
+
+    def stop(stage, done, total):
+        if done == min(at, total):
+            raise KeyboardInterrupt
+
+    from fractions import Fraction
+
+    from eigenfield.rendering.flight import write_flight
+
+    points = np.zeros((4, 2))
+    work = [
+        lambda: exports.write_maps(shots.scene, tmp_path / "maps", progress=stop),
+        lambda: exports.write_obj_folder(shots.scene, tmp_path / "obj", progress=stop),
+        lambda: exports.write_colmap(shots, tmp_path / "colmap", progress=stop),
+        lambda: exports.write_quilt(shots, exports.quilt_of(shots.scene), tmp_path / "q.png", progress=stop),
+        lambda: write_flight(shots, points, tmp_path / "a.mp4", Fraction(30), progress=stop),
+        lambda: write_flight(shots, points, tmp_path / "a%d.png", Fraction(30), progress=stop),
+    ]
+    for write in work:
+        with pytest.raises(KeyboardInterrupt):
+            write()
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_pictures_that_cannot_all_be_placed_are_taken_back(tmp_path, monkeypatch):
+    targets = [tmp_path / name for name in ("a", "b", "c")]
+    targets[0].write_bytes(b"old")
+    with pytest.raises(OutputError), atomic_files(targets, overwrite=True) as places:
+        for place in places:
+            place.write_bytes(b"new")
+        targets[2].mkdir()  # what came meanwhile
+    targets[2].rmdir()
+    assert contents(tmp_path) == {"a": b"old"} and len(list(tmp_path.iterdir())) == 1
+
+
+@pytest.mark.parametrize(
+    ("output", "options", "says"),
+    [
+        ("a.png", [], "--as quilt"),
+        ("a", [], "say --as"),
+        ("a.glb", [], "say --as"),
+        ("a.png", ["--as", "maps"], "folder"),
+        ("a.obj", ["--as", "colmap"], "folder"),
+        ("a", ["--as", "html"], ".html"),
+        ("a.png", ["--as", "mp4"], ".mp4"),
+        ("a.png", ["--as", "png"], "%04d"),
+        ("a%d.png", ["--as", "quilt"], "one picture"),
+        ("a.html", ["--fps", 30], "--fps is not for html"),
+        ("a", ["--as", "maps", "--background", "#ffffff"], "--background is not for maps"),
+        ("a.mp4", ["--title", "x"], "--title is not for mp4"),
+        ("a.mp4", ["--background", "transparent"], "transparent"),
+        ("a.mp4", ["--path", "zigzag"], "circle, spiral, grid"),
+        ("a.mp4", ["--frames", 0], "1 or more"),
+        ("a.obj", ["--textures", 2], "mean alone"),
+        ("a", ["--as", "obj", "--textures", -1], "0 or more"),
+        ("a", ["--as", "maps", "--textures", -1], "0 or more"),
+        ("a", ["--as", "colmap", "--frames", 3], "--path"),
+        ("a.html", ["--metres-per-unit", "nan"], "above 0"),
+        ("a.html", ["--metres-per-unit", "-1"], "above 0"),
+        ("a.png", ["--as", "quilt", "--quilt", "0x3"], "1x1"),
+        ("a.png", ["--as", "quilt", "--spread", "1.5"], "0 (one place)"),
+        ("a.png", ["--as", "quilt", "--spread", "nan"], "0 (one place)"),
+        ("a.png", ["--as", "quilt", "--resolution", "9000x9000"], "16384"),
+        ("a_qs4x4a1.png", [], "suffix"),
+        ("no/a.obj", [], "create"),
+        ("no/a", ["--as", "maps"], "create"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(export, output, options, says):
+    code, err = export(output, *options)
+    assert code == 2 and says in err and err.count("\n") == 1, err
+    assert list(export.place.iterdir()) == []
+
+
+def test_numbers_and_percent_signs_in_names(export):
+    assert export("50%_%03d.png", "--frames", 2)[0] == 0
+    assert {path.name for path in export.place.iterdir()} == {"50%_000.png", "50%_001.png"}
+
+
+def test_transparent_pictures(export):
+    assert export("f%d.png", "--frames", 1, "--background", "transparent")[0] == 0
+    with Image.open(export.place / "f0.png") as picture:
+        assert picture.mode == "RGBA"
+
+
+# fmt: off
+HOSTILE = ["../../x", "a/b", "a\\b", "/etc/passwd", "C:\\windows\\x", "CON", "con.png", "NUL.txt", "..", ".", "...",
+           "x" * 1000, "é" * 300, "a.png", "A.PNG", "a.jpg", "a", "a.png/b", "a/B", " a ", "a.", "a?", "a*", "x/" * 400,
+           "trailing ", "<script>", "naïve", "nai\u0308ve", "..\\..\\y", "a//b", "~", "-rf", "%s", "\u202egnp"]
+# fmt: on
+
+
+def check_names(names):
+    files = exports.file_names(names)
+    assert len(files) == len(names)
+    keys = [name.casefold() for name in files]
+    assert len(set(keys)) == len(keys)
+    for name in files:
+        path = PurePosixPath(name)
+        assert not path.is_absolute() and str(path) == name and path.suffix == ".png" and len(name.encode()) < 1000
+        for part in path.parts:
+            assert part not in ("..", ".") and 0 < len(part.encode()) <= 160
+            assert not set(part) & set('<>:"\\|?*') and part.isprintable()
+            assert part == part.strip() and not part.endswith(".")
+            assert part.split(".")[0].upper() not in ("CON", "NUL", "PRN", "AUX", "COM1", "LPT9")
+        for parent in path.parents:
+            assert str(parent).casefold() not in keys, "a file where a folder must be"
+    return files
+
+
+@given(
+    st.lists(st.text(st.characters(codec="utf-8", exclude_categories=["Cc"]), max_size=30), max_size=12, unique=True)
+)
+@example(HOSTILE)
+@example(["a/b", "a", "a.png/c", "a.png", "A/B.png"])
+@example(["a.png/b", "a.png"])
+@example(["a.png", "a.png/b", "a.png_b"])
+def test_names_stay_in_the_folder_and_apart(names):
+    check_names(names)
+
+
+def test_harmless_names_stay_as_they_are():
+    assert exports.file_names(["left/0001.jpg", "DSC 01.TIFF", "out_00_-3.5", "ü.png"]) == [
+        "left/0001.png", "DSC 01.png", "out_00_-3.5.png", "ü.png",
+    ]  # fmt: skip
+
+
+def test_hostile_cameras_are_written_inside(tmp_path):
+    names = tuple(HOSTILE[:25])
+    scene = tiny_scene(cameras=25)
+    scene = replace(scene, names=names)
+    (tmp_path / "in").mkdir()
+    exports.write_maps(scene, tmp_path / "in" / "maps")
+    exports.write_colmap(Shots(scene), tmp_path / "in" / "colmap")
+    assert {path.name for path in tmp_path.iterdir()} == {"in"}
+    assert {path.name for path in (tmp_path / "in").iterdir()} == {"maps", "colmap"}
+    listing = json.loads((tmp_path / "in" / "maps" / "eigenfield.json").read_text(encoding="utf-8"))
+    assert list(listing["maps"]) == list(names)
+    assert all((tmp_path / "in" / "maps" / file).is_file() for file in listing["maps"].values())
+    assert len(ef.open_capture(tmp_path / "in" / "colmap")) == 25
