@@ -384,7 +384,7 @@ def test_pictures_carry_no_colour_profile(tmp_path):
 
 def test_importing_the_room_stays_light():
     heavy = "numba cv2 matplotlib av trimesh xatlas skimage rich"
-    code = f"import sys, eigenfield.format; print([m for m in {heavy.split()!r} if m in sys.modules])"
+    code = f"import sys, eigenfield.gltf; print([m for m in {heavy.split()!r} if m in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
 

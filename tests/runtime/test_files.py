@@ -61,7 +61,8 @@ def test_a_file_that_outgrows_the_limit_is_said(tmp_path):
     code = (
         "import resource, signal, sys; from pathlib import Path;"
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000));"
-        "from eigenfield.files import write_bytes, scratch_array; from eigenfield.errors import OutputError\n"
+        "from eigenfield.core.errors import OutputError\n"
+        "from eigenfield.runtime.files import write_bytes, scratch_array\n"
         "for work in (lambda: write_bytes(Path(sys.argv[1]) / 'a', bytes(5000)),"
         "             lambda: scratch_array((5000,), 'f4', Path(sys.argv[1])).__enter__()):\n"
         "    try: work()\n"

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 MODULE = """
-from eigenfield.jit import kernel
+from eigenfield.runtime.jit import kernel
 
 @kernel()
 def double(x):

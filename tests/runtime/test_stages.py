@@ -66,7 +66,7 @@ def test_a_place_that_is_a_file_is_refused(tmp_path):
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_what_a_killed_run_left_is_removed_by_the_next(tmp_path):
     code = (
-        "import sys, time; from pathlib import Path; from eigenfield.stages import Stages\n"
+        "import sys, time; from pathlib import Path; from eigenfield.runtime.stages import Stages\n"
         "def build(folder):\n"
         "    (folder / 'half').write_text('x'); print('ready', flush=True); time.sleep(60)\n"
         f"Stages(Path({str(tmp_path)!r})).run('depth', 'k', build)"

@@ -19,14 +19,14 @@ TICK = 0.2  # seconds between two calls of `waiting`
 
 
 def run_child(
-    script: str, arrays: Sequence[NDArray[Any]], waiting: Callable[[], None], code: str, name: str, remedy: str
+    script: Path, arrays: Sequence[NDArray[Any]], waiting: Callable[[], None], code: str, name: str, remedy: str
 ) -> bytes:
-    """What `script`, a file of this folder, writes to standard output when `arrays` come in (as `numpy.save` writes).
+    """What `script` writes to standard output when `arrays` come in (as `numpy.save` writes).
 
     waiting: called while the child works; the child is ended when the waiting is (Ctrl-C, or an exception from
     `waiting`). Raises ProxyError `code`, saying how `name` ended, with the remedy.
     """
-    command = [sys.executable, "-P", str(Path(__file__).with_name(script))]
+    command = [sys.executable, "-P", str(script)]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
     with tempfile.TemporaryFile() as message:  # a pipe would stay half sent when `communicate` runs into its timeout
         for array in arrays:

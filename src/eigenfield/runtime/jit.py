@@ -8,6 +8,7 @@ name therefore carries a digest of all sources of the package.
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -17,15 +18,25 @@ import numba
 import platformdirs
 
 Kernel = Callable[..., Any]
+_IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
 
 
 @cache
 def _cache_folder() -> str:
+    """A folder for this state of all kernels and of what they import: numba sees a change of a kernel's own file, but
+    none of a kernel or a constant from another. A change elsewhere compiles nothing anew."""
     root = Path(__file__).parents[1]
+    texts = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
+    waiting = [path for path, text in texts.items() if "from eigenfield.runtime.jit import" in text]
+    counted: set[Path] = set()
+    while waiting:
+        path = waiting.pop()
+        if path not in counted and path in texts:
+            counted.add(path)
+            waiting += [(root / name.replace(".", "/")).with_suffix(".py") for name in _IMPORTS.findall(texts[path])]
     digest = hashlib.sha256()
-    for source in sorted(root.rglob("*.py")):
-        status = source.stat()
-        digest.update(f"{source.relative_to(root)} {status.st_size} {status.st_mtime_ns}\n".encode())
+    for path in sorted(counted):
+        digest.update(f"{path.relative_to(root)} {path.stat().st_size} {path.stat().st_mtime_ns}\n".encode())
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 

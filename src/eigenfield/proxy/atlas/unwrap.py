@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import logging
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -171,7 +172,7 @@ def _run_xatlas(
     is (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
     labels = np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32)
     return run_child(
-        "xatlas_process.py", [points.astype(np.float32), faces.astype(np.uint32), labels],
+        Path(__file__).with_name("xatlas_process.py"), [points.astype(np.float32), faces.astype(np.uint32), labels],
         lambda: None if progress is None else progress("atlas", done, 3), "proxy-unwrap", "xatlas",
         "clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
     )  # fmt: skip

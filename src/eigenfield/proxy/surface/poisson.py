@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import logging
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,8 +42,8 @@ def poisson_surface(points: Points, *, depth: int | None = None, progress: Progr
     report = progress or (lambda stage, done, total: None)
     report("surface", 0, 1)
     answer = run_child(
-        "poisson_process.py", [table, np.array([chosen])], lambda: report("surface", 0, 1), "surface-poisson",
-        "the Poisson reconstruction",
+        Path(__file__).with_name("poisson_process.py"), [table, np.array([chosen])], lambda: report("surface", 0, 1),
+        "surface-poisson", "the Poisson reconstruction",
         "ask for smaller photographs if memory ran out; else report it with these photographs",
     )  # fmt: skip
     report("surface", 1, 1)

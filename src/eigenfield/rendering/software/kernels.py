@@ -25,7 +25,7 @@ DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
 def draw_texels(
     faces, texels, edges, bounds, listing, first, last, slack, inverse_depth, column_of, row_of, seen
 ):  # fmt: skip
-    """As `eigenfield.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
+    """As `imaging.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
 
     texels (n, 2): texel coordinates of the vertices. inverse_depth, column_of, row_of (H, W + RUN) float32 out: 1 /
     depth, and texel coordinates over depth, which are linear functions of the pixel; RUN columns are room for vectors.

@@ -173,7 +173,7 @@ def draw_four(typing_context, samples, at, more, a, b, c, slack, u, v):
 
     samples: flat float32, from `at` on four of 1 / depth, then of two texture coordinates over depth. a, b, c: the edge
     functions in the pixel's middle; more: flat float64, by how much each is more in the four samples, a's first.
-    u, v: tuples of three float64, what stands at the corners. As `eigenfield.raster.draw_band` decides: the first
+    u, v: tuples of three float64, what stands at the corners. As `imaging.raster.draw_band` decides: the first
     triangle of equals stays, sums in one order on every machine.
     """
 
