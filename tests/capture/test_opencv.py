@@ -166,6 +166,8 @@ def test_opencv_intrinsics_only_is_no_calibration(tmp_path):
         "a: " + "[" * 1000 + "]" * 1000,
         "\n".join(" " * i + "a:" for i in range(1000)),
         'a: "no end\n',
+        "a: &name [ 1 ]\nb: *name\n",
+        "? [ 1 ]\n: 2\n",
         "",
         "\0\0\0",
     ],
@@ -214,3 +216,24 @@ def test_storage_reads_what_opencv_writes(tmp_path):
         assert tree["list"][0] == 1.5
         assert np.array_equal(tree["list"][1], np.eye(2))
         assert np.array_equal(tree["map"]["inner"], matrix)
+
+
+def test_yaml_is_read_as_opencv_means_it(tmp_path):
+    """Dates and `no` stay words, exponents need no point, maps in braces no blank; documents are joined."""
+    path = tmp_path / "a.yml"
+    path.write_text(
+        "%YAML:1.0\n---\ny: no\ndate: 2024-11-21\nsmall: 1e-5\nwords: 'it''s'\n012: .Nan\n"
+        "map: { x:167, y:-1.5, list:[ 1, 2 ], inner:{ z:3 } }\n...\n---\nmore:\t~\n"
+    )
+    tree = load_storage(path)
+    assert np.isnan(tree.pop("012"))
+    assert tree == {
+        "y": "no", "date": "2024-11-21", "small": 1e-5, "words": "it's", "more": None,
+        "map": {"x": 167.0, "y": -1.5, "list": [1.0, 2.0], "inner": {"z": 3.0}},
+    }  # fmt: skip
+
+
+def test_words_that_look_like_a_map_are_left_alone(tmp_path):
+    path = tmp_path / "a.yml"
+    path.write_text("%YAML:1.0\nwords: a, b:c\n")
+    assert load_storage(path) == {"words": "a, b:c"}

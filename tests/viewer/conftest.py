@@ -7,7 +7,7 @@ import pytest
 from eigenfield.capture import open_capture
 from eigenfield.evaluation import match_photographs
 from eigenfield.gltf import file_bytes, outline, save
-from eigenfield.viewer import Photographs, Server, make_manifest, page, server
+from eigenfield.viewer import Photographs, Server, make_manifest, page, request
 from support.captures import write_capture
 from support.http_client import Client, write_build
 
@@ -53,5 +53,5 @@ def client(running):
 
 @pytest.fixture
 def impatient(monkeypatch):
-    monkeypatch.setattr(server, "REQUEST_SECONDS", 0.4)
-    monkeypatch.setattr(server, "LINGER_SECONDS", 0.2)
+    monkeypatch.setattr(request, "REQUEST_SECONDS", 0.4)
+    monkeypatch.setattr(request, "LINGER_SECONDS", 0.2)

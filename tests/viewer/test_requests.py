@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import socket
 
 import pytest
@@ -11,7 +10,7 @@ from hypothesis import strategies as st
 
 from eigenfield.core.errors import OptionError
 from eigenfield.viewer import Server
-from eigenfield.viewer.request import RefusedError, Request, parse_head
+from eigenfield.viewer.request import StrictHandler
 from support.http_client import Client
 
 
@@ -130,18 +129,45 @@ def test_malformed_requests_are_refused_and_the_connection_ends(running, impatie
         assert client.request("/").status == 200
 
 
+@pytest.fixture(scope="module")
+def shared(manifest):
+    """A server for the examples of one property."""
+    with Server(manifest) as started:
+        yield started
+
+
 @given(st.binary(max_size=200))
-def test_any_bytes_are_a_request_or_refused(data):
-    with contextlib.suppress(RefusedError):
-        assert isinstance(parse_head(data + b"\r\n\r\n"), Request)
+def test_any_bytes_are_answered_in_one_line_or_not_at_all(shared, data):
+    with Client(shared.port) as client:
+        client.send(data + b"\r\n\r\n")
+        client.socket.shutdown(socket.SHUT_WR)
+        received = b"".join(iter(lambda: client.socket.recv(1 << 16), b""))
+    assert not received or (received.startswith(b"HTTP/1.1 4") and received.count(b"Content-Length") >= 1)
+    assert not received or received.endswith(b"\n")
+
+
+class Understood(StrictHandler):
+    """Keeps what the last request was understood as."""
+
+    def answer(self):
+        Understood.last = (self.command, self.target, self.host, dict(self.headers.items()), self.has_body)
+        self.reply(200, {}, b"\n")
 
 
 @given(
     st.from_regex(r"[A-Z]{1,8}", fullmatch=True),
-    st.from_regex(r"/[!->@-~]{0,40}", fullmatch=True),
+    st.from_regex(r"/(?!/)[!->@-~]{0,40}", fullmatch=True),
     st.dictionaries(st.from_regex(r"x-[a-z]{1,8}", fullmatch=True), st.from_regex(r"[!-~]{0,20}", fullmatch=True)),
 )
 def test_well_formed_requests_are_understood(method, path, headers):
     lines = [f"{method} {path}?a=b HTTP/1.1", "hOST: A:1", *(f"{k.upper()}: \t{v} " for k, v in headers.items())]
-    request = parse_head("\r\n".join([*lines, "", ""]).encode())
-    assert request == Request(method, path, "a:1", {"host": "A:1", **headers}, True, False)
+    near, far = socket.socketpair()
+    with near, far:
+        near.sendall("\r\n".join([*lines, "", ""]).encode())
+        near.shutdown(socket.SHUT_WR)
+        Understood(far, ("", 0), None)
+        assert near.recv(1 << 16).startswith(b"HTTP/1.1 200")
+    fields = {"hOST": "A:1", **{name.upper(): value for name, value in headers.items()}}
+    command, target, host, found, has_body = Understood.last
+    assert (command, target, host, has_body) == (method, path, "a:1", False)
+    assert {name: value.strip() for name, value in found.items()} == fields

@@ -16,7 +16,7 @@ from PIL import Image
 
 from eigenfield.capture import open_capture
 from eigenfield.gltf import outline
-from eigenfield.viewer import Content, Server, server
+from eigenfield.viewer import Content, Server, request, server
 from eigenfield.viewer.ranges import RangeError, wanted_range
 from support.http_client import Client, until
 
@@ -236,8 +236,8 @@ def test_clients_that_go_away_are_forgotten_in_silence(manifest, caplog, capfd):
 
 
 def test_a_client_that_does_not_read_is_dropped(manifest, monkeypatch):
-    monkeypatch.setattr(server, "SEND_SECONDS", 0.3)
-    monkeypatch.setattr(server, "LINGER_SECONDS", 0.2)
+    monkeypatch.setattr(request, "SEND_SECONDS", 0.3)
+    monkeypatch.setattr(request, "LINGER_SECONDS", 0.2)
     large = Content.of("model/gltf-binary", bytes(50_000_000))
     with Server({"/large": lambda: large}) as started, Client(started.port) as client:
         client.send(f"GET /large HTTP/1.1\r\nHost: localhost:{started.port}\r\n\r\n".encode())

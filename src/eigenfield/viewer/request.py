@@ -1,173 +1,200 @@
-"""One HTTP/1.x request: its head read from a socket within limits of time and size, and taken apart (RFC 9112)."""
+"""HTTP/1.1 on one connection: `http.server` of the standard library, made strict, with limits of time and size.
+
+`BaseHTTPRequestHandler` takes request lines and headers apart, keeps connections and writes answers. Written by hand is
+what it does not promise:
+
+- The head of a request must arrive within a time. A socket's timeout begins anew with every byte that trickles in.
+- A head is at most 32 kB long. `http.server` reads up to 6.5 MB.
+- Bare line feeds, folded lines, control characters and repeated Host headers are refused (RFC 9112).
+- An error is one line of text with the headers of every answer, not a page of HTML.
+- A refused client sees the answer. Closing a socket that has unread bytes would take the answer back.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import io
 import re
 import socket
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from http import HTTPStatus
+from http.server import BaseHTTPRequestHandler
+from typing import ClassVar
 
 MAX_LINE = 8192  # bytes of the request line
 MAX_HEAD = 32768  # bytes of request line and headers together
-MAX_HEADERS = 100
-TOKEN = re.compile(r"[!#$%&'*+.^_`|~0-9A-Za-z-]+")
-VERSION = re.compile(r"HTTP/([0-9])\.([0-9])")
-PIECE = 16384
+REQUEST_SECONDS = 10.0  # for a request's head, from the first moment it may come
+SEND_SECONDS = 30.0  # for each piece of an answer
+LINGER_SECONDS = 2.0  # for reading what a refused client still sends, so that it sees the answer
+PIECE = 256 * 1024  # bytes of an answer that are sent at a time
+TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
+REQUEST_LINE = re.compile(TOKEN + rb" [^ \r\n]+ HTTP/[0-9]\.[0-9]\r\n")
+HEADER_LINE = re.compile(TOKEN + rb":[^\x00-\x08\x0a-\x1f]*\r\n")
 
 
 class RefusedError(Exception):
-    """A request that is answered with an error: its status, one line for a person, and headers of the answer.
+    """A request that is answered with an error: its status, one line for a person, and headers of the answer."""
 
-    fatal: where the next request begins can no longer be told, so the connection ends with the answer.
-    """
-
-    def __init__(self, status: int, reason: str, headers: Mapping[str, str] | None = None, fatal: bool = False) -> None:
+    def __init__(self, status: int, reason: str, headers: Mapping[str, str] | None = None) -> None:
         self.status = status
         self.reason = reason
         self.headers = dict(headers or {})
-        self.fatal = fatal
         super().__init__(status, reason)
 
 
-class SilentError(Exception):
-    """The client is gone, or never said anything: nobody is there to be answered."""
+class StrictHandler(BaseHTTPRequestHandler):
+    """Reads the requests of one connection and calls `answer` for each that is well formed.
 
+    A connection ends with the answer to a malformed request, as the beginning of the next request cannot be known.
 
-@dataclass(frozen=True)
-class Request:
-    """A well-formed request head.
-
-    path: of the target, as sent, without its query; never decoded.
-    host: the authority that the client believes to talk to, in small letters; None only in HTTP/1.0.
-    headers: by name in small letters; those that came twice are joined by commas.
-    keep: whether the client will send another request on this connection.
-    body: whether bytes follow the head.
+    Attributes:
+        always: headers of every answer.
+        target: path of the request as the client sent it, without its query; never decoded.
+        host: authority that the client believes to talk to, in small letters; None only in HTTP/1.0.
+        has_body: whether bytes follow the head. The connection then ends with the answer.
     """
 
-    method: str
-    path: str
+    protocol_version = request_version = default_request_version = "HTTP/1.1"
+    always: ClassVar[Mapping[str, str]] = {}
+    target: str
     host: str | None
-    headers: Mapping[str, str]
-    keep: bool
-    body: bool
+    has_body: bool
+
+    def answer(self) -> None:
+        """Answer the request by `reply`, once, or raise RefusedError. Subclasses define it."""
+        raise NotImplementedError
+
+    def setup(self) -> None:
+        super().setup()
+        self._incoming = _Incoming(self.connection)
+        self._lines = io.BufferedReader(self._incoming)
+        self.command, self.raw_requestline = "", b""
+        self.close_connection = True
+
+    def handle(self) -> None:
+        with contextlib.suppress(OSError):  # the client is gone, or never said anything
+            super().handle()
+            self._linger()
+
+    def handle_one_request(self) -> None:
+        try:
+            self._read_request()
+        except RefusedError as error:
+            self.close_connection = True
+            self.refuse(error)
+            return
+        try:
+            self.answer()
+        except RefusedError as error:
+            self.refuse(error)
+
+    def handle_expect_100(self) -> bool:
+        return True  # whether anything is expected is for `answer` to see
+
+    def send_error(self, code: int, message: str | None = None, explain: str | None = None) -> None:
+        raise RefusedError(code, HTTPStatus(code).phrase)  # found by parse_request
+
+    def refuse(self, error: RefusedError) -> None:
+        """Answer with an error: one line of text."""
+        headers = {"Content-Type": "text/plain; charset=utf-8", **error.headers}
+        self.reply(error.status, headers, f"{error.reason}\n".encode())
+
+    def reply(self, status: int, headers: Mapping[str, str], content: bytes | memoryview | None) -> None:
+        """Send an answer, to HEAD without the content. content: None for an answer that has none (304)."""
+        self.connection.settimeout(SEND_SECONDS)
+        self.send_response_only(status)
+        length = {} if content is None else {"Content-Length": str(len(content))}
+        connection = {"Connection": "close" if self.close_connection else "keep-alive"}
+        date = {"Date": self.date_time_string()}
+        for name, value in {**date, **self.always, **headers, **length, **connection}.items():
+            self.send_header(name, value)
+        self.end_headers()
+        if content is not None and self.command != "HEAD":
+            view = memoryview(content)
+            for start in range(0, len(view), PIECE):
+                self.connection.settimeout(SEND_SECONDS)
+                self.connection.sendall(view[start : start + PIECE])
+
+    def _read_request(self) -> None:
+        """The next request. Raises RefusedError; OSError if the client closes, or lets the time pass without a byte."""
+        self.command, self.raw_requestline = "", b""
+        self.raw_requestline, headers = self._read_head()
+        self.rfile = io.BytesIO(headers)
+        self.parse_request()
+        for name in ("Host", "Content-Length", "Transfer-Encoding"):
+            if len(self.headers.get_all(name, [])) > 1:
+                raise RefusedError(400, f"{name} is there twice")
+        target, host = self.path, self.headers["Host"]
+        if target[:7].lower() == "http://":  # the absolute form (RFC 9112, 3.2.2)
+            host, slash, rest = target[7:].partition("/")
+            target = slash + rest or "/"
+        if not host and (host is not None or self.request_version != "HTTP/1.0"):
+            raise RefusedError(400, "a request names its Host")
+        length = self.headers.get("Content-Length", "0").strip()
+        if not re.fullmatch(r"[0-9]{1,100}", length):
+            raise RefusedError(400, "Content-Length is no number")
+        self.target, self.host = target.partition("?")[0], host and host.strip().lower()
+        self.has_body = "Transfer-Encoding" in self.headers or int(length) > 0
+        self.close_connection = self.close_connection or self.has_body
+
+    def _read_head(self) -> tuple[bytes, bytes]:
+        """Request line and header lines, with the empty line, as they were sent."""
+        self._incoming.deadline = time.monotonic() + REQUEST_SECONDS
+        line = b"\r\n"
+        while line == b"\r\n":  # some clients send an empty line behind a body
+            start = self._lines.peek(1)[:1]
+            if start != b"\r" and not b"!" <= start <= b"~":
+                if not start:
+                    raise ConnectionAbortedError
+                raise RefusedError(400, "this is not HTTP")  # TLS, as a rule
+            line = self._read_line(MAX_LINE, RefusedError(414, f"the request line is longer than {MAX_LINE} bytes"))
+        if not REQUEST_LINE.fullmatch(line):
+            raise RefusedError(400, "the request line is not METHOD TARGET HTTP/1.1")
+        headers = bytearray()
+        long = RefusedError(431, f"the headers are longer than {MAX_HEAD} bytes")
+        while True:
+            header = self._read_line(MAX_HEAD - len(line) - len(headers), long)
+            headers += header
+            if header == b"\r\n":
+                return line, bytes(headers)
+            if not HEADER_LINE.fullmatch(header):
+                raise RefusedError(400, "a header is not NAME: VALUE")
+
+    def _read_line(self, limit: int, long: RefusedError) -> bytes:
+        try:
+            line = self._lines.readline(limit + 1)
+        except TimeoutError:
+            raise RefusedError(408, "the request did not arrive in time") from None
+        if len(line) > limit:
+            raise long
+        if not line.endswith(b"\n"):
+            raise ConnectionAbortedError
+        if not line.endswith(b"\r\n"):
+            raise RefusedError(400, "lines end in CR LF")
+        return line
+
+    def _linger(self) -> None:
+        """Say that no more comes, and read what is on its way: closing with bytes unread would take back the answer."""
+        self.connection.shutdown(socket.SHUT_WR)
+        self._incoming.deadline = time.monotonic() + LINGER_SECONDS
+        while self._incoming.read(PIECE):
+            pass
 
 
-def read_head(connection: socket.socket, waiting: bytearray, seconds: float) -> bytes:
-    """The next request head, up to and with its empty line; what was received beyond it stays in `waiting`.
+class _Incoming(io.RawIOBase):
+    """The bytes that a connection receives until `deadline`, a moment of time.monotonic(); then TimeoutError."""
 
-    The head must be there whole within `seconds`, however its bytes trickle in. Raises RefusedError 400, 408, 414, 431;
-    SilentError if the client closes, or lets the time pass without a byte.
-    """
-    deadline = time.monotonic() + seconds
-    seen = 0
-    while True:
-        while waiting.startswith(b"\r\n"):
-            del waiting[:2]  # some clients send an empty line behind a body
-            seen = 0
-        end = waiting.find(b"\r\n\r\n", max(0, seen - 3))
-        _check_size(waiting if end < 0 else waiting[: end + 4], waiting.find(b"\n"))
-        if end >= 0:
-            head = bytes(waiting[: end + 4])
-            del waiting[: end + 4]
-            return head
-        _check_lines(waiting, seen)
-        seen = len(waiting)
-        waiting += _receive(connection, deadline, seen > 0)
+    def __init__(self, connection: socket.socket) -> None:
+        self.deadline = 0.0
+        self._connection = connection
 
+    def readable(self) -> bool:
+        return True
 
-def _check_size(head: bytearray, line: int) -> None:
-    if line > MAX_LINE or (line < 0 and len(head) > MAX_LINE):
-        raise RefusedError(414, f"the request line is longer than {MAX_LINE} bytes", fatal=True)
-    if len(head) > MAX_HEAD:
-        raise RefusedError(431, f"the headers are longer than {MAX_HEAD} bytes", fatal=True)
-
-
-def _check_lines(head: bytearray, start: int) -> None:
-    """Answer at once what can no longer become a head: waiting for CR LF CR LF would only end by the clock."""
-    newline = head.find(b"\n", start)
-    while newline >= 0:
-        if newline == 0 or head[newline - 1] != 0x0D:
-            raise RefusedError(400, "lines end in CR LF", fatal=True)
-        newline = head.find(b"\n", newline + 1)
-    if head and head[0] != 0x0D and not 0x21 <= head[0] <= 0x7E:
-        raise RefusedError(400, "this is not HTTP", fatal=True)  # TLS, as a rule
-
-
-def _receive(connection: socket.socket, deadline: float, begun: bool) -> bytes:
-    left = deadline - time.monotonic()
-    try:
+    def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]  # Buffer is of Python 3.12
+        left = self.deadline - time.monotonic()
         if left <= 0:
             raise TimeoutError
-        connection.settimeout(left)
-        data = connection.recv(PIECE)
-    except TimeoutError:
-        if begun:
-            raise RefusedError(408, "the request did not arrive in time", fatal=True) from None
-        raise SilentError from None
-    except OSError:
-        raise SilentError from None
-    if not data:
-        raise SilentError
-    return data
-
-
-def parse_head(head: bytes) -> Request:
-    """Take a head apart. Raises RefusedError 400, 431, 505."""
-    line, *fields = head.decode("latin-1").removesuffix("\r\n\r\n").split("\r\n")
-    words = line.split(" ")
-    version = VERSION.fullmatch(words[-1])
-    if len(words) != 3 or version is None or not TOKEN.fullmatch(words[0]):
-        raise RefusedError(400, "the request line is not METHOD TARGET HTTP/1.1", fatal=True)
-    if version[1] != "1":
-        raise RefusedError(505, "this server speaks HTTP/1.1", fatal=True)
-    headers = _headers(fields)
-    path, authority = _target(words[1])
-    host = authority or headers.get("host")
-    if host is None and version[2] != "0":
-        raise RefusedError(400, "a request names its Host", fatal=True)
-    tokens = {token.strip().lower() for token in headers.get("connection", "").split(",")}
-    return Request(
-        method=words[0],
-        path=path,
-        host=None if host is None else host.lower(),
-        headers=headers,
-        keep=version[2] != "0" and "close" not in tokens,
-        body=_has_body(headers),
-    )
-
-
-def _headers(fields: list[str]) -> dict[str, str]:
-    if len(fields) > MAX_HEADERS:
-        raise RefusedError(431, f"more than {MAX_HEADERS} headers", fatal=True)
-    headers: dict[str, str] = {}
-    for field in fields:
-        name, colon, value = field.partition(":")
-        value = value.strip(" \t")
-        if not colon or not TOKEN.fullmatch(name) or any(c < " " and c != "\t" for c in value):
-            raise RefusedError(400, "a header is not NAME: VALUE", fatal=True)
-        key = name.lower()
-        if key in headers and key in ("host", "content-length", "transfer-encoding"):
-            raise RefusedError(400, f"{key} is there twice", fatal=True)
-        headers[key] = f"{headers[key]}, {value}" if key in headers else value
-    return headers
-
-
-def _target(target: str) -> tuple[str, str | None]:
-    """Path and authority of a request target: "/path?query", or "http://authority/path?query" (RFC 9112, 3.2)."""
-    authority = None
-    if target[:7].lower() == "http://":
-        authority, slash, rest = target[7:].partition("/")
-        target = slash + rest or "/"
-        if not authority:
-            raise RefusedError(400, "the target names no host", fatal=True)
-    return target.partition("?")[0], authority
-
-
-def _has_body(headers: Mapping[str, str]) -> bool:
-    if "transfer-encoding" in headers:
-        return True
-    length = headers.get("content-length", "0")
-    if not re.fullmatch(r"[0-9]{1,100}", length):
-        raise RefusedError(400, "Content-Length is no number", fatal=True)
-    return int(length) > 0
+        self._connection.settimeout(left)
+        return self._connection.recv_into(buffer)

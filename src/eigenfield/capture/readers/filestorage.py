@@ -1,7 +1,8 @@
 """OpenCV's FileStorage files as plain trees: YAML, XML and JSON, and ROS's camera_info YAML, which looks alike.
 
-Parsed here and not by cv2.FileStorage, which is no match for damaged files. Of YAML what OpenCV writes: block
-mappings and sequences, flow collections, quoted strings, tags (passed over), comments; no anchors, no folded text.
+Not by cv2.FileStorage, which is no match for damaged files. YAML comes as events of PyYAML, without its resolvers:
+`no`, `1:30` and dates are words here, and `1e-5` is a number. Aliases are refused, as they could make a small file grow
+without end. OpenCV's YAML is none in two places, which are corrected first: `%YAML:1.0` and `{ x:1 }`.
 """
 
 from __future__ import annotations
@@ -14,7 +15,9 @@ from typing import Any
 from xml.etree.ElementTree import Element
 
 import numpy as np
+import yaml
 
+from eigenfield.capture.calibration import printable
 from eigenfield.capture.readers.text import damaged, shown, text
 from eigenfield.capture.readers.xml_tree import load_xml
 
@@ -22,13 +25,12 @@ Tree = dict[str, Any]
 EXTENSIONS = (".yml", ".yaml", ".xml", ".json")
 DEPTH_LIMIT = 32
 STORAGE_LIMIT = 8 * 2**20  # bytes: the points of a thousand charts fit
-COLON = re.compile(r":(?=\s|$)")
-KEY_LIMIT = 200  # characters
-FLOW_KEY = re.compile(r"""("[^"]*"|'[^']*'|[^\s:,\[\]{}"']+)\s*:\s*""")
-TAG = re.compile(r"!!?[^\s\[\]{},]*\s*")
-QUOTED = re.compile(r"""("(?:[^"\\]|\\.)*("|$))|('[^']*('|$))""", re.DOTALL)  # to the end where it is not closed
+HEAD = re.compile(r"\A%YAML[^\n]*")  # OpenCV writes %YAML:1.0, which is no directive of YAML
+FLOW_KEY = re.compile(r"(?<=[{,])(\s*\w+:)(?=\S)")
+QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"', re.DOTALL)
 SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
 TYPE = re.compile(r"\(?(\d*)[ucswifdhnblI]\)?")
+YAML_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same by libyaml, ten times as fast
 
 
 class _BadStorageError(Exception):
@@ -90,15 +92,10 @@ def _matrices(node: Any, depth: int) -> Any:
     return np.array(data, np.float64).reshape(shape)
 
 
-def _scalar(word: str) -> Any:
-    """A number, a quoted string without its quotes, or the word itself; None for nothing."""
-    if not word or word in ("~", "null"):
+def _number(word: str) -> Any:
+    """A number, or the word itself; None for nothing."""
+    if word in ("", "~", "null"):
         return None
-    if word[0] in "\"'":
-        match = QUOTED.fullmatch(word)
-        if match is None or len(word) < 2 or word[-1] != word[0]:
-            raise _BadStorageError(f"no end to {shown(word)}")
-        return word[1:-1]
     if word.lower() in SPECIAL:
         return SPECIAL[word.lower()]
     try:
@@ -107,29 +104,11 @@ def _scalar(word: str) -> Any:
         return word
 
 
-# JSON and XML
-
-
 def _from_json(source: str, path: Path) -> Any:
     try:
-        return _floats(json.loads(source), 0)
+        return json.loads(source, parse_int=float)
     except (ValueError, RecursionError) as error:
         raise damaged(path, f"is no valid JSON ({str(error)[:80]})") from error
-
-
-def _floats(node: Any, depth: int) -> Any:
-    if depth > DEPTH_LIMIT:
-        raise _BadStorageError("nested too deep")
-    if isinstance(node, dict):
-        return {key: _floats(value, depth + 1) for key, value in node.items()}
-    if isinstance(node, list):
-        return [_floats(value, depth + 1) for value in node]
-    if isinstance(node, int):
-        try:
-            return float(node)
-        except OverflowError:
-            return math.inf
-    return node
 
 
 def _from_xml(root: Element) -> Any:
@@ -155,187 +134,46 @@ def _words(source: str | None) -> list[Any]:
     """Numbers, or quoted strings, or one string without quotes."""
     source = (source or "").strip()
     if '"' in source:
-        return [_scalar(match[0]) for match in QUOTED.finditer(source)]
-    words = [_scalar(word) for word in source.split()]
+        return QUOTED.findall(source)
+    words = [_number(word) for word in source.split()]
     return [source] if len(words) > 1 and not all(isinstance(word, float) for word in words) else words
 
 
-# YAML
-
-
 def _from_yaml(source: str) -> Any:
-    lines = _logical_lines(source)
-    node, end = _block(lines, 0, lines[0][0], 0) if lines else (None, 0)
-    if end != len(lines):
-        raise _BadStorageError(f"line {lines[end][2]} stands further left than what it belongs to")
-    return node
+    """The documents of a stream as one: OpenCV appends another to a file that is there."""
+    source = HEAD.sub("", source).encode("utf-8", "surrogateescape").decode("utf-8", "replace").expandtabs(4)
+    try:
+        try:
+            documents = _documents(FLOW_KEY.sub(r"\1 ", source))
+        except yaml.YAMLError:
+            documents = _documents(source)  # a list of words outside braces may look the same
+    except yaml.YAMLError as error:
+        mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None)
+        place = f"line {mark.line + 1}: " if mark else ""
+        raise _BadStorageError(place + printable(str(problem or "characters that no YAML has"))) from None
+    if len(documents) > 1 and all(isinstance(document, dict) for document in documents):
+        return {key: value for document in documents for key, value in document.items()}
+    return documents[0] if documents else None
 
 
-def _logical_lines(source: str) -> list[tuple[int, str, int]]:
-    """(indent, text, line number) without comments and empty lines; collections that go over lines joined."""
-    lines: list[tuple[int, str, int]] = []
-    parts: list[str] = []
-    open_brackets = start = 0
-    for number, raw in enumerate(source.split("\n"), 1):
-        line = _without_comment(raw.expandtabs(4))
-        bare = line.strip()
-        if not bare or (not parts and (bare[0] == "%" or bare in ("---", "..."))):
-            continue
-        if not parts:
-            start, indent = number, len(line) - len(line.lstrip())
-        parts.append(bare)
-        plain = QUOTED.sub("", bare) if '"' in bare or "'" in bare else bare
-        open_brackets += sum(map(plain.count, "[{")) - sum(map(plain.count, "]}"))
-        if open_brackets < 0:
-            raise _BadStorageError(f"line {number} closes a bracket that was not opened")
-        if open_brackets == 0:
-            lines.append((indent, " ".join(parts), start))
-            parts = []
-    if parts:
-        raise _BadStorageError(f"the bracket of line {start} is not closed")
-    return lines
-
-
-def _without_comment(line: str) -> str:
-    if "#" not in line:
-        return line
-    at = 0
-    while at < len(line):
-        if line[at] == "#" and (at == 0 or line[at - 1] in " \t"):
-            return line[:at]
-        quoted = QUOTED.match(line, at)
-        at = quoted.end() if quoted else at + 1
-    return line
-
-
-def _block(lines: list[tuple[int, str, int]], at: int, indent: int, depth: int) -> tuple[Any, int]:
-    """The mapping or sequence whose lines stand at `indent`, from line `at` on, and the line after it."""
-    if depth > DEPTH_LIMIT:
-        raise _BadStorageError("nested too deep")
-    if _is_item(lines[at][1]):
-        return _sequence(lines, at, indent, depth)
-    if _split(lines[at][1]) is not None:
-        return _mapping(lines, at, indent, depth)
-    return _value(lines[at][1], lines[at][2]), at + 1
-
-
-def _is_item(line: str) -> bool:
-    return line == "-" or line.startswith("- ")
-
-
-def _sequence(lines: list[tuple[int, str, int]], at: int, indent: int, depth: int) -> tuple[list[Any], int]:
-    items = []
-    while at < len(lines) and lines[at][0] == indent and _is_item(lines[at][1]):
-        rest = lines[at][1][1:].lstrip()
-        if rest.startswith("!"):
-            rest = TAG.sub("", rest, count=1)
-        if not rest:
-            if at + 1 < len(lines) and lines[at + 1][0] > indent:
-                item, at = _block(lines, at + 1, lines[at + 1][0], depth + 1)
-            else:
-                item, at = None, at + 1
-        elif rest[0] not in "[{" and _split(rest) is not None:  # a mapping that begins on the dash's own line
-            inner = indent + len(lines[at][1]) - len(rest)
-            lines[at] = (inner, rest, lines[at][2])
-            item, at = _block(lines, at, inner, depth + 1)
-        else:
-            item, at = _value(rest, lines[at][2]), at + 1
-        items.append(item)
-    return items, at
-
-
-def _mapping(lines: list[tuple[int, str, int]], at: int, indent: int, depth: int) -> tuple[Tree, int]:
-    found: Tree = {}
-    while at < len(lines) and lines[at][0] == indent:
-        _, line, number = lines[at]
-        pair = _split(line)
-        if pair is None:
-            raise _BadStorageError(f"line {number} is no `name: value` ({shown(line)})")
-        key, rest = pair
-        if rest.startswith("!"):
-            rest = TAG.sub("", rest, count=1)
-        at += 1
-        if rest:
-            found[key] = _value(rest, number)
-        elif at < len(lines) and (lines[at][0] > indent or (lines[at][0] == indent and _is_item(lines[at][1]))):
-            found[key], at = _block(lines, at, lines[at][0], depth + 1)
-        else:
-            found[key] = None
-    return found, at
-
-
-def _split(line: str) -> tuple[str, str] | None:
-    """Name and value of a line `name: value`, the value may be empty; None where it is none."""
-    quoted = QUOTED.match(line)
-    colon = COLON.search(line, quoted.end() if quoted else 0)
-    if colon is None or not 0 < colon.start() <= KEY_LIMIT:
-        return None
-    name = line[: colon.start()].rstrip()
-    if quoted:
-        return (name[1:-1], line[colon.end() :].lstrip()) if len(name) == quoted.end() else None
-    return None if any(c in name for c in "[]{},\"'") else (name, line[colon.end() :].lstrip())
-
-
-def _value(source: str, number: int) -> Any:
-    if source[0] in "[{":
-        node, end = _flow(source, 0, 0)
-        if source[end:].strip():
-            raise _BadStorageError(f"line {number} goes on after its collection")
-        return node
-    return _scalar(source.strip())
-
-
-def _flow(source: str, at: int, depth: int) -> tuple[Any, int]:
-    """The flow collection that begins at `at`, and where it ends."""
-    if depth > DEPTH_LIMIT:
-        raise _BadStorageError("nested too deep")
-    close = "]" if source[at] == "[" else "}"
-    end = source.find(close, at)
-    inside = source[at + 1 : end]
-    if close == "]" and end > 0 and not any(c in inside for c in "[{\"'"):  # plain numbers, thousands of them
-        words = [word.strip() for word in inside.split(",")]
-        return [_scalar(word) for word in (words[:-1] if not words[-1] else words)], end + 1
-    items: list[Any] = []
-    found: Tree = {}
-    at += 1
-    while True:
-        at = _skip(source, at)
-        if at >= len(source):
-            raise _BadStorageError("a collection without end")
-        if source[at] == close:
-            return (items if close == "]" else found), at + 1
-        if source[at] in "]}":
-            raise _BadStorageError(f"a collection that ends in the other kind of bracket at {shown(source[at:])}")
-        if close == "}":
-            match = FLOW_KEY.match(source, at)
-            if match is None:
-                raise _BadStorageError(f"no `name: value` at {shown(source[at:])}")
-            at = match.end()
-        item, at = _flow_item(source, at, depth)
-        if close == "}":
-            assert match is not None
-            found[match[1].strip("\"'")] = item
-        else:
-            items.append(item)
-
-
-def _skip(source: str, at: int) -> int:
-    while at < len(source) and source[at] in " ,\t":
-        at += 1
-    return at
-
-
-def _flow_item(source: str, at: int, depth: int) -> tuple[Any, int]:
-    tag = TAG.match(source, at)
-    at = tag.end() if tag else at
-    if at < len(source) and source[at] in "[{":
-        return _flow(source, at, depth + 1)
-    quoted = QUOTED.match(source, at)
-    if quoted:
-        return _scalar(quoted[0]), quoted.end()
-    end = at
-    while end < len(source) and source[end] not in ",]}[{":
-        end += 1
-    if end == at and (end >= len(source) or source[end] not in ",]}"):
-        raise _BadStorageError(f"nothing to read at {shown(source[at:])}")
-    return _scalar(source[at:end].strip()), end
+def _documents(source: str) -> list[Any]:
+    """Every document of a YAML stream. Raises yaml.YAMLError and _BadStorageError."""
+    documents: list[Any] = []
+    open_nodes = [documents]  # a mapping's keys and values alternate in its list
+    kinds: list[type[list[Any] | dict[str, Any]]] = [list]
+    for event in yaml.parse(source, Loader=YAML_LOADER):
+        is_key = kinds[-1] is dict and len(open_nodes[-1]) % 2 == 0
+        if isinstance(event, yaml.ScalarEvent):
+            is_word = is_key or event.style not in ("", None)
+            open_nodes[-1].append(event.value if is_word else _number(event.value))
+        elif isinstance(event, yaml.CollectionStartEvent):
+            if is_key or len(kinds) > DEPTH_LIMIT:
+                raise _BadStorageError("a collection for a name" if is_key else "nested too deep")
+            open_nodes.append([])
+            kinds.append(dict if isinstance(event, yaml.MappingStartEvent) else list)
+        elif isinstance(event, yaml.CollectionEndEvent):
+            items, kind = open_nodes.pop(), kinds.pop()
+            open_nodes[-1].append(items if kind is list else dict(zip(items[::2], items[1::2], strict=True)))
+        elif isinstance(event, yaml.AliasEvent):
+            raise _BadStorageError("an alias, which is not read here")
+    return documents

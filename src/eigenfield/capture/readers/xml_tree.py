@@ -1,10 +1,12 @@
-"""XML from outside, by expat: no document type, hence no entities that grow or fetch; a limit on size and depth."""
+"""XML from outside, by defusedxml: no document type, so no entities that grow or fetch; limits of size and depth."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from xml.etree.ElementTree import Element, ParseError, TreeBuilder
-from xml.parsers import expat
+
+from defusedxml import DefusedXmlException
+from defusedxml.ElementTree import DefusedXMLParser
 
 from eigenfield.capture.readers.text import contents, damaged
 from eigenfield.core.errors import CaptureError
@@ -14,42 +16,36 @@ DEPTH_LIMIT = 64
 ELEMENT_LIMIT = 1_000_000
 
 
+class _BoundedBuilder(TreeBuilder):
+    """Raises ValueError for a tree that is nested or long beyond reason."""
+
+    depth = elements = 0
+
+    def start(self, tag: str, attributes: dict[str, str], /) -> Element:
+        self.depth += 1
+        self.elements += 1
+        if self.depth > DEPTH_LIMIT or self.elements > ELEMENT_LIMIT:
+            raise ValueError(f"more than {DEPTH_LIMIT} levels or {ELEMENT_LIMIT} elements")
+        return super().start(tag, attributes)
+
+    def end(self, tag: str, /) -> Element:
+        self.depth -= 1
+        return super().end(tag)
+
+
 def load_xml(path: Path, limit: int = XML_LIMIT) -> Element:
     """The root of an XML file. CaptureError: `calibration-missing`, `calibration-too-large`, `xml-doctype` (there is a
     document type), `calibration-damaged` (no well-formed XML, nested or long beyond reason)."""
-    data = contents(path, limit)
-    parser = expat.ParserCreate()
-    builder = TreeBuilder()
-    depth = elements = 0
-
-    def start(name: str, attributes: dict[str, str]) -> None:
-        nonlocal depth, elements
-        depth += 1
-        elements += 1
-        if depth > DEPTH_LIMIT or elements > ELEMENT_LIMIT:
-            raise damaged(path, f"is XML of more than {DEPTH_LIMIT} levels or {ELEMENT_LIMIT} elements")
-        builder.start(name, attributes)
-
-    def end(name: str) -> None:
-        nonlocal depth
-        depth -= 1
-        builder.end(name)
-
-    def refuse(*_: object) -> int:
+    parser = DefusedXMLParser(target=_BoundedBuilder(), forbid_dtd=True)
+    try:
+        parser.feed(contents(path, limit))
+        return parser.close()
+    except DefusedXmlException as error:
         raise CaptureError(
             "xml-doctype",
             "is XML with a document type (DOCTYPE), which no calibration needs and which could hide entities",
             path=path,
             remedy="remove the DOCTYPE",
-        )
-
-    parser.StartElementHandler, parser.EndElementHandler = start, end
-    parser.CharacterDataHandler = builder.data
-    parser.StartDoctypeDeclHandler = parser.EntityDeclHandler = refuse
-    parser.ExternalEntityRefHandler = refuse
-    parser.buffer_text = True
-    try:
-        parser.Parse(data, True)
-        return builder.close()
-    except (expat.ExpatError, ParseError, LookupError, ValueError, AssertionError) as error:
+        ) from error
+    except (ParseError, LookupError, ValueError, AssertionError) as error:
         raise damaged(path, f"is no well-formed XML ({str(error)[:80]})") from error
