@@ -1,9 +1,9 @@
 // Pictures of codes, decoded by the browser with colour management off.
 
+import type { ViewBytes } from "./accessors.js";
 import { decodeCodes, smallerCodes, type Codes } from "./deep.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
-import type { ViewBytes } from "./info.js";
 import * as limits from "./limits.js";
 import type { Picture, PictureFile, Plane, Precision } from "./planes.js";
 

@@ -1,31 +1,24 @@
 // The JSON of a scene, checked: what stands where in the binary chunk. No byte of that chunk is needed for it.
 
+import {
+  FLOAT,
+  UINT16,
+  UINT32,
+  UINT8,
+  accessorReader,
+  readViews,
+  streamOf,
+  viewReader,
+  type Accessor,
+  type AccessorReader,
+  type Stream,
+  type View,
+  type ViewReader,
+} from "./accessors.js";
 import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
-import { FLOAT, readColours, readPlanes, type Plane } from "./planes.js";
-
-export interface View {
-  offset: number;
-  length: number;
-  stride: number; // 0: packed
-}
-
-/** A run of `count` x `items` numbers within buffer view `view`. */
-export interface Accessor {
-  view: number;
-  offset: number;
-  count: number;
-  items: number;
-  type: ComponentType;
-  where: string;
-}
-
-/** Bytes that a decoder of ours reads: docs/coding.md. */
-export interface Stream {
-  view: number;
-  where: string;
-}
+import { readColours, readPlanes, type Plane } from "./planes.js";
 
 export interface SceneDocument {
   version: string;
@@ -53,14 +46,9 @@ export interface SceneDocument {
   preview: number | null; // buffer view of `images[0]`
 }
 
-type ComponentType = 5121 | 5123 | 5125 | 5126;
-const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
-const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
 const MOST_PARTS = 64; // of a pattern of names
 const MOST_DIGITS = 9;
 const MOST_NUMBER = 10 ** MOST_DIGITS;
-const USHORT = 5123;
-const UINT = 5125;
 
 /** Whether a glTF document says that it is a scene of ours. */
 export function isScene(json: Json): boolean {
@@ -79,7 +67,7 @@ export function readDocument(json: Json): SceneDocument {
   const version = checkVersion(extension);
   const views = readViews(root);
   const accessor = accessorReader(root, views);
-  const viewOf: ViewReader = (value) => value.integer(0, views.length - 1);
+  const viewOf = viewReader(views);
 
   checkNodes(root);
   const preview = previewOf(root, viewOf);
@@ -115,7 +103,7 @@ export function readDocument(json: Json): SceneDocument {
     triangles: codedTriangles.exists
       ? streamOf(codedTriangles, codedTriangles, viewOf)
       : triangles.exists
-        ? trianglesOf(accessor(triangles, "SCALAR", [USHORT, UINT], null), 2 * limits.MAX_CAMERAS)
+        ? trianglesOf(accessor(triangles, "SCALAR", [UINT16, UINT32], null), 2 * limits.MAX_CAMERAS)
         : null,
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
@@ -123,7 +111,7 @@ export function readDocument(json: Json): SceneDocument {
     mesh: mesh.exists ? streamOf(mesh, mesh.key("bufferView"), viewOf) : null,
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
-    indices: trianglesOf(accessor(indices, "SCALAR", [5121, USHORT, UINT], null), limits.MAX_TRIANGLES),
+    indices: trianglesOf(accessor(indices, "SCALAR", [UINT8, UINT16, UINT32], null), limits.MAX_TRIANGLES),
     preview,
   };
 }
@@ -148,24 +136,6 @@ function checkVersion(extension: Value): string {
   return version;
 }
 
-function readViews(root: Value): View[] {
-  const buffer = root.key("buffers").at(0);
-  if (buffer.key("uri").exists) throw buffer.wrong("not the binary chunk");
-  const total = buffer.key("byteLength").integer(0, 2 ** 32 - 1);
-  return root.key("bufferViews").items(limits.MAX_VIEWS).map((view) => {
-    const offset = view.key("byteOffset");
-    const stride = view.key("byteStride");
-    view.key("buffer").integer(0, 0);
-    const made = {
-      offset: offset.exists ? offset.integer(0, total) : 0,
-      length: view.key("byteLength").integer(1, total),
-      stride: stride.exists ? stride.integer(4, 252) : 0,
-    };
-    if (made.offset + made.length > total) throw view.wrong("outside the buffer");
-    return made;
-  });
-}
-
 /** Nodes make trees: in a circle three.js' loader would wait for itself. */
 function checkNodes(root: Value): void {
   const nodes = root.key("nodes").items(limits.MAX_VIEWS);
@@ -186,38 +156,6 @@ function checkNodes(root: Value): void {
   }
 }
 
-/** The buffer view that a value names. */
-export type ViewReader = (value: Value) => number;
-export type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
-
-/** Reads accessors by their index; those with a `count` must have it, and lie packed. */
-function accessorReader(root: Value, views: View[]): AccessorReader {
-  const accessors = root.key("accessors").items(limits.MAX_VIEWS);
-  return (index, kind, types, count) => {
-    const at = accessors[index.integer(0, accessors.length - 1)];
-    if (!at) throw index.wrong("no such accessor");
-    const type = at.key("componentType").integer(5120, 5126) as ComponentType;
-    if (!types.includes(type)) throw at.wrong(`component type ${type}`);
-    if (at.key("type").text(limits.MAX_NAME) !== kind) throw at.wrong(`not ${kind}`);
-    if (at.key("sparse").exists) throw at.wrong("sparse");
-    const normalised = at.key("normalized");
-    if (normalised.exists && normalised.raw !== false) throw at.wrong("normalised");
-    const items = ITEMS[kind] ?? 1;
-    const has = at.key("count").integer(1, limits.MAX_WEIGHTS);
-    if (count !== null && has !== count) throw at.wrong(`${count} numbers are needed, not ${has}`);
-    const view = at.key("bufferView").integer(0, views.length - 1);
-    const within = views[view];
-    if (!within) throw at.wrong("no such buffer view");
-    const start = at.key("byteOffset");
-    const offset = start.exists ? start.integer(0, within.length) : 0;
-    const size = BYTES[type] * items;
-    if (within.stride && (within.stride < size || kind === "SCALAR")) throw at.wrong("a stride that cannot be");
-    if (offset + (has - 1) * (within.stride || size) + size > within.length) throw at.wrong("outside its buffer view");
-    if ((offset + within.offset) % BYTES[type]) throw at.wrong("not aligned");
-    return { view, offset, count: has, items, type, where: at.where };
-  };
-}
-
 function limited(accessor: Accessor, most: number): Accessor {
   if (accessor.count > most) throw damaged(accessor.where, `more than ${most}`);
   return accessor;
@@ -226,10 +164,6 @@ function limited(accessor: Accessor, most: number): Accessor {
 function trianglesOf(accessor: Accessor, most: number): Accessor {
   if (accessor.count % 3) throw damaged(accessor.where, "torn triangles");
   return limited(accessor, 3 * most);
-}
-
-export function streamOf(entry: Value, view: Value, viewOf: ViewReader): Stream {
-  return { view: viewOf(view), where: entry.where };
 }
 
 function previewOf(root: Value, viewOf: ViewReader): number | null {
@@ -319,7 +253,7 @@ function calibrationOf(
 
 function sizesOf(cameras: Value, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
   const one = cameras.key("size");
-  if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT], 2 * count);
+  if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT32], 2 * count);
   const [width = 0, height = 0] = one.numbers(2, 1, limits.MAX_CAMERA_SIDE);
   if (!Number.isInteger(width) || !Number.isInteger(height)) throw one.wrong("no whole numbers");
   return [width, height];

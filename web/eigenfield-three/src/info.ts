@@ -1,8 +1,9 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
+import { checkFinite, readNumbers, type Accessor, type Numbers, type Stream, type ViewBytes } from "./accessors.js";
 import { decodeCameras } from "./camera-decoder.js";
-import { type Accessor, type SceneDocument, type Stream, wrongIn } from "./document.js";
-import { cutOff, damaged } from "./errors.js";
+import { type SceneDocument, wrongIn } from "./document.js";
+import { damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
@@ -65,36 +66,12 @@ export interface PlaneInfo {
   bases: { textures: number; size: [number, number]; grid: [number, number] }[];
 }
 
-/** Bytes of a buffer view. */
-export type ViewBytes = (view: number) => Promise<ArrayBuffer>;
-
-type Numbers = Float32Array | Uint32Array | Uint16Array;
-
-/** The numbers of an accessor, read whole. */
-export async function readNumbers(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Numbers> {
-  const view = await bytes(accessor.view);
-  const needed = scene.views[accessor.view]?.length ?? Infinity;
-  if (view.byteLength < needed) throw cutOff(accessor.where);
-  const count = accessor.count * accessor.items;
-  const copy = view.slice(accessor.offset, accessor.offset + (accessor.type === 5123 ? 2 : 4) * count);
-  if (accessor.type === 5125) return new Uint32Array(copy);
-  if (accessor.type === 5123) return new Uint16Array(copy);
-  return limited(new Float32Array(copy), accessor.where);
-}
-
-function limited<T extends Numbers>(numbers: T, where: string): T {
-  for (const number of numbers) {
-    if (!(Math.abs(number) <= limits.MAX_NUMBER)) throw damaged(where, `${number} among its numbers`);
-  }
-  return numbers;
-}
-
 export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promise<CaptureCamera[]> {
   const [names, { lenses, poses }, sizes, colour] = await Promise.all([
     readNames(scene, bytes),
     readCalibration(scene, bytes),
     readSizes(scene, bytes),
-    scene.colour ? readNumbers(scene.colour, scene, bytes) : null,
+    scene.colour ? readNumbers(scene.colour, scene.views, bytes) : null,
   ]);
   return names.map((name, i) => {
     const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
@@ -126,7 +103,7 @@ interface Table {
 }
 
 async function readTable(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Table> {
-  return { numbers: await readNumbers(accessor, scene, bytes), where: accessor.where };
+  return { numbers: await readNumbers(accessor, scene.views, bytes), where: accessor.where };
 }
 
 /** Five numbers of each camera's lens, twelve of its pose. */
@@ -140,7 +117,7 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
   const coded = decodeCameras(new Uint8Array(await bytes(view)), where);
   const count = coded.poses.length / 12;
   if (count !== heldOut.length) throw damaged(where, `${count} cameras in it, and ${heldOut.length} names`);
-  const table = (numbers: Float32Array): Table => ({ numbers: limited(numbers, where), where });
+  const table = (numbers: Float32Array): Table => ({ numbers: checkFinite(numbers, where), where });
   return { lenses: table(coded.intrinsics), poses: table(coded.poses) };
 }
 
@@ -200,10 +177,10 @@ async function readOwnWeights(
   bytes: ViewBytes,
 ): Promise<Numbers> {
   if (!weights) return new Float32Array(0);
-  if ("type" in weights) return readNumbers(weights, scene, bytes);
+  if ("type" in weights) return readNumbers(weights, scene.views, bytes);
   const { view, where } = weights;
   const { cameras, components, values } = decodeWeights(new Uint8Array(await bytes(view)), where);
-  if (cameras === rows && components === count) return limited(values, where);
+  if (cameras === rows && components === count) return checkFinite(values, where);
   throw damaged(where, `${cameras} x ${components} weights, and ${rows} encoded cameras x ${count} textures`);
 }
 
@@ -238,7 +215,7 @@ export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Pro
 }
 
 async function readCorners(triangles: Accessor | Stream, scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
-  if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene, bytes));
+  if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene.views, bytes));
   return decodeTriangles(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
 }
 

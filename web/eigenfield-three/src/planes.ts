@@ -1,11 +1,9 @@
 // Planes of a scene's document, checked: means, bases, and the pictures that hold them.
 
-import { streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./document.js";
+import { FLOAT, streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./accessors.js";
 import { SceneError } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
-
-export const FLOAT = 5126; // the component type of accessors
 
 const DEEP = 10; // bits of a code that may have more than 8
 

@@ -1,9 +1,9 @@
 // The geometry that is drawn: what three.js has made of the file's mesh, checked, or the coded mesh in its place.
 
 import { BufferAttribute, BufferGeometry } from "three";
-import type { SceneDocument, Stream } from "./document.js";
+import type { Stream, ViewBytes } from "./accessors.js";
+import type { SceneDocument } from "./document.js";
 import { SceneError, damaged } from "./errors.js";
-import type { ViewBytes } from "./info.js";
 import { MAX_NUMBER } from "./limits.js";
 import { decodeMesh } from "./mesh-decoder.js";
 

@@ -1,9 +1,10 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
+import type { ViewBytes } from "./accessors.js";
 import { closeMean, closePieces, decodeMean, decodePieces, type Mean, type Piece } from "./decode.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
-import { atlasOf, type ViewBytes } from "./info.js";
+import { atlasOf } from "./info.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { makePacker, type Packer, type Slot } from "./packing.js";

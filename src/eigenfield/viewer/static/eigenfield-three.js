@@ -35,201 +35,7 @@ var ae = "EIGENFIELD_eigen_textures", oe = /* @__PURE__ */ new Set([
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-]), se = 64 * 2 ** 20, ce = 16384, le = 16384, ue = 1024, de = 2 ** 27, fe = 4096, pe = 8 * 2 ** 30, M = 1e5, me = 65535, he = 2 ** 29, N = 1024, ge = 2 ** 25, _e = 2 ** 26, ve = 2 ** 27, ye = 2 ** 28, be = 1e30, P = 65536, xe = 126, F = 64, Se = 0, Ce = 1, we = 2, Te = 24, Ee = 44, De = 21, Oe = 26214, ke = 4, Ae = Float64Array.from({ length: 4095 }, (e, t) => Math.round(P / (1 + Math.exp((2047 - t) / 256)))), je = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Me = Float64Array.from({ length: 127 }, (e, t) => Math.round(P / (t + 1.5)));
-function I(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + I(Math.floor(e / 4294967296));
-}
-var Ne = class {
-	bytes;
-	low = 0;
-	high = 4294967295;
-	code = 0;
-	at = 0;
-	probability;
-	seen;
-	weights;
-	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * F).fill(P / 2), this.seen = new Uint8Array(t * F), this.weights = new Float64Array(n * F * 3).fill(Oe);
-		for (let e = 0; e < ke; e++) this.code = this.code * 256 + this.next();
-	}
-	checkEnd(e) {
-		if (this.at > this.bytes.length + ke) throw re(e);
-	}
-	flag(e, t, n, r) {
-		return this.node(e, t, n, r, 0) === 1;
-	}
-	raw(e) {
-		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(P / 2);
-		return t;
-	}
-	integer(e, t, n, r) {
-		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ce) ? -i : i;
-	}
-	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Se)) return 0;
-		let i = 0;
-		for (; i < De && this.node(e, t, n, r, we + i);) i += 1;
-		if (i < 2) return i + 1;
-		let a = 1;
-		for (let o = i - 2; o >= 0; o--) {
-			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Te + i) : o === i - 3 ? this.node(e, t, n, r, Ee + 2 * Math.min(i, 9) + (a & 1)) : this.split(P / 2), a = a * 2 + s;
-		}
-		return a + 1;
-	}
-	node(e, t, n, r, i) {
-		return this.bit(e * F + i, t * F + i, n * F + i, (r * F + i) * 3);
-	}
-	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = je[i[e] >> 4], s = je[i[t] >> 4], c = je[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / P), u = Ae[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? P - u : -u;
-		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
-	}
-	learn(e, t) {
-		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Me[r] / P), r < xe && (this.seen[e] = r + 1);
-	}
-	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / P), n = +(this.code <= t);
-		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
-		return n;
-	}
-	next() {
-		return this.bytes[this.at++] ?? 0;
-	}
-};
-function L(e, t, n) {
-	if (e.length < t) throw re(n);
-	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
-	return new DataView(e.buffer, e.byteOffset, e.byteLength);
-}
-function Pe(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw j(r, `${t} numbers announced`);
-}
-// eigenfield-three/src/table-decoder.ts
-var Fe = 12, Ie = 3, Le = 312, Re = Ie * Le, ze = 938, Be = 24, Ve = 16, He = 1722, Ue = 1726, We = 4, Ge = 5;
-function Ke(e) {
-	return new Ne(e, Ue, 21);
-}
-function qe(e) {
-	return e.flag(Re, Re, Re, Ie) ? 2 : +!!e.flag(937, 937, 937, Ie);
-}
-function Je(e) {
-	return Math.min(I(e), 11);
-}
-function Ye(e, t, n, r) {
-	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
-	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
-		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
-			0,
-			0,
-			s
-		];
-		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Le, y = e.integer(v + Je(m) * Fe + Je(g), v + 144 + Je(m + h), v + 144 + 24 + _ * Fe + Je(g + Math.abs(l)), r);
-		i[c * t + a] = p + y, s = Math.abs(y);
-	}
-	return i;
-}
-function Xe(e, t, n, r) {
-	let i = new Float64Array(t * n), a = new Float64Array(n);
-	for (let o = 0; o < t; o++) {
-		let t = 0;
-		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(I(a[s]), 23), d = Math.min(I(t), 23), f = e.integer(ze + l * Be + u, ze + (Ve + l) * Be + d, 1706 + l, Ge + l);
-			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
-		}
-	}
-	return i;
-}
-function Ze(e, t, n, r) {
-	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
-		0,
-		1,
-		0
-	];
-	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(He + s, He + s, 1724, We), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, We);
-		if (!(t >= 0 && t < n) || a[t]) throw j(r, "a grid with a camera out of place");
-		a[t] = 1, i[l] = t, o = t + 1, c += 1;
-	}
-	if (c !== n) throw j(r, "a grid without all cameras");
-	return i;
-}
-// eigenfield-three/src/camera-decoder.ts
-var Qe = 130, R = 11, $e = 1, et = 2;
-function tt(e, t = "cameras") {
-	let n = L(e, Qe, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & $e) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
-	Pe(e, Math.max(R * i, o * s), R * M, t);
-	let l = Qe + (a ? 132 : 0);
-	L(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Qe + 4 * (e * R + t), !0) : 0, d = Ke(e.subarray(l)), f = a ? Ze(d, o * s, i, t) : null, p = Xe(d, i, R, (r & et) !== 0);
-	d.checkEnd(t);
-	let m = {
-		intrinsics: new Float32Array(5 * i),
-		poses: new Float32Array(12 * i)
-	}, h = [
-		...c.subarray(7, 12),
-		0,
-		0,
-		0,
-		...c.subarray(12)
-	], g = rt(c[3], c[4], c[5], c[6]), _ = new Float64Array(R), v = 0;
-	for (let e = 0; e < (f ? f.length : i); e++) {
-		let t = f ? f[e] : e;
-		if (t < 0) continue;
-		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < R; e++) {
-			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * R + e] * t + h[e] + i;
-		}
-		nt(_, g, m, t), v += 1;
-	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw j(t, "cameras that are not finite");
-	return m;
-}
-function nt(e, t, n, r) {
-	n.intrinsics.set(e.subarray(0, 5), 5 * r);
-	let [i, a, o] = [
-		e[5],
-		e[6],
-		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = rt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
-	for (let i = 0; i < 3; i++) {
-		let a = 0;
-		for (let o = 0; o < 3; o++) {
-			let s = 0;
-			for (let e = 0; e < 3; e++) s += l[3 * i + e] * t[3 * e + o];
-			n.poses[12 * r + 4 * i + o] = s, a -= s * e[8 + o];
-		}
-		n.poses[12 * r + 4 * i + 3] = a;
-	}
-}
-function rt(e, t, n, r) {
-	return [
-		[
-			1 - 2 * (t * t + n * n),
-			2 * (e * t - n * r),
-			2 * (e * n + t * r)
-		],
-		[
-			2 * (e * t + n * r),
-			1 - 2 * (e * e + n * n),
-			2 * (t * n - e * r)
-		],
-		[
-			2 * (e * n - t * r),
-			2 * (t * n + e * r),
-			1 - 2 * (e * e + t * t)
-		]
-	].flat();
-}
-// eigenfield-three/src/json.ts
-var it = class e {
+]), se = 64 * 2 ** 20, ce = 16384, le = 16384, ue = 1024, de = 2 ** 27, fe = 4096, pe = 8 * 2 ** 30, M = 1e5, me = 65535, he = 2 ** 29, N = 1024, ge = 2 ** 25, _e = 2 ** 26, ve = 2 ** 27, ye = 2 ** 28, be = 1e30, xe = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -286,21 +92,290 @@ var it = class e {
 	wrong(e) {
 		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, z = 5126, at = 10;
-function ot(e, t) {
+}, Se = 5121, Ce = 5123, we = 5125, P = 5126, Te = {
+	[Se]: 1,
+	[Ce]: 2,
+	[we]: 4,
+	[P]: 4
+}, Ee = {
+	SCALAR: 1,
+	VEC2: 2,
+	VEC3: 3
+};
+function De(e) {
+	let t = e.key("buffers").at(0);
+	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
+	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
+	return e.key("bufferViews").items(ce).map((e) => {
+		let t = e.key("byteOffset"), r = e.key("byteStride");
+		e.key("buffer").integer(0, 0);
+		let i = {
+			offset: t.exists ? t.integer(0, n) : 0,
+			length: e.key("byteLength").integer(1, n),
+			stride: r.exists ? r.integer(4, 252) : 0
+		};
+		if (i.offset + i.length > n) throw e.wrong("outside the buffer");
+		return i;
+	});
+}
+function Oe(e) {
+	return (t) => t.integer(0, e.length - 1);
+}
+function ke(e, t) {
+	let n = e.key("accessors").items(ce);
+	return (e, r, i, a) => {
+		let o = n[e.integer(0, n.length - 1)];
+		if (!o) throw e.wrong("no such accessor");
+		let s = o.key("componentType").integer(5120, 5126);
+		if (!i.includes(s)) throw o.wrong(`component type ${s}`);
+		if (o.key("type").text(1024) !== r) throw o.wrong(`not ${r}`);
+		if (o.key("sparse").exists) throw o.wrong("sparse");
+		let c = o.key("normalized");
+		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
+		let l = Ee[r] ?? 1, u = o.key("count").integer(1, ye);
+		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
+		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
+		if (!f) throw o.wrong("no such buffer view");
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = Te[s] * l;
+		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
+		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
+		if ((m + f.offset) % Te[s]) throw o.wrong("not aligned");
+		return {
+			view: d,
+			offset: m,
+			count: u,
+			items: l,
+			type: s,
+			where: o.where
+		};
+	};
+}
+function Ae(e, t, n) {
+	return {
+		view: n(t),
+		where: e.where
+	};
+}
+async function je(e, t, n) {
+	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
+	if (r.byteLength < i) throw re(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + Te[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Me(new Float32Array(l), e.where);
+}
+function Me(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
+	return e;
+}
+// eigenfield-three/src/range-decoder.ts
+var F = 65536, Ne = 126, I = 64, Pe = 0, Fe = 1, Ie = 2, Le = 24, Re = 44, ze = 21, Be = 26214, Ve = 4, He = Float64Array.from({ length: 4095 }, (e, t) => Math.round(F / (1 + Math.exp((2047 - t) / 256)))), Ue = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), We = Float64Array.from({ length: 127 }, (e, t) => Math.round(F / (t + 1.5)));
+function L(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + L(Math.floor(e / 4294967296));
+}
+var Ge = class {
+	bytes;
+	low = 0;
+	high = 4294967295;
+	code = 0;
+	at = 0;
+	probability;
+	seen;
+	weights;
+	constructor(e, t, n) {
+		this.bytes = e, this.probability = new Uint16Array(t * I).fill(F / 2), this.seen = new Uint8Array(t * I), this.weights = new Float64Array(n * I * 3).fill(Be);
+		for (let e = 0; e < Ve; e++) this.code = this.code * 256 + this.next();
+	}
+	checkEnd(e) {
+		if (this.at > this.bytes.length + Ve) throw re(e);
+	}
+	flag(e, t, n, r) {
+		return this.node(e, t, n, r, 0) === 1;
+	}
+	raw(e) {
+		let t = 0;
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(F / 2);
+		return t;
+	}
+	integer(e, t, n, r) {
+		let i = this.magnitude(e, t, n, r);
+		return i === 0 ? 0 : this.node(e, t, n, r, Fe) ? -i : i;
+	}
+	magnitude(e, t, n, r) {
+		if (!this.node(e, t, n, r, Pe)) return 0;
+		let i = 0;
+		for (; i < ze && this.node(e, t, n, r, Ie + i);) i += 1;
+		if (i < 2) return i + 1;
+		let a = 1;
+		for (let o = i - 2; o >= 0; o--) {
+			let s;
+			s = o === i - 2 ? this.node(e, t, n, r, Le + i) : o === i - 3 ? this.node(e, t, n, r, Re + 2 * Math.min(i, 9) + (a & 1)) : this.split(F / 2), a = a * 2 + s;
+		}
+		return a + 1;
+	}
+	node(e, t, n, r, i) {
+		return this.bit(e * I + i, t * I + i, n * I + i, (r * I + i) * 3);
+	}
+	bit(e, t, n, r) {
+		let { probability: i, weights: a } = this, o = Ue[i[e] >> 4], s = Ue[i[t] >> 4], c = Ue[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / F), u = He[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? F - u : -u;
+		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
+	}
+	learn(e, t) {
+		let [n, r] = [this.probability[e], this.seen[e]];
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * We[r] / F), r < Ne && (this.seen[e] = r + 1);
+	}
+	split(e) {
+		let t = this.low + Math.floor((this.high - this.low) * e / F), n = +(this.code <= t);
+		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
+		return n;
+	}
+	next() {
+		return this.bytes[this.at++] ?? 0;
+	}
+};
+function R(e, t, n) {
+	if (e.length < t) throw re(n);
+	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
+	return new DataView(e.buffer, e.byteOffset, e.byteLength);
+}
+function Ke(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw j(r, `${t} numbers announced`);
+}
+// eigenfield-three/src/table-decoder.ts
+var qe = 12, Je = 3, Ye = 312, Xe = Je * Ye, Ze = 938, Qe = 24, $e = 16, et = 1722, tt = 1726, nt = 4, rt = 5;
+function it(e) {
+	return new Ge(e, tt, 21);
+}
+function at(e) {
+	return e.flag(Xe, Xe, Xe, Je) ? 2 : +!!e.flag(937, 937, 937, Je);
+}
+function ot(e) {
+	return Math.min(L(e), 11);
+}
+function st(e, t, n, r) {
+	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
+	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
+		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
+			0,
+			0,
+			s
+		];
+		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Ye, y = e.integer(v + ot(m) * qe + ot(g), v + 144 + ot(m + h), v + 144 + 24 + _ * qe + ot(g + Math.abs(l)), r);
+		i[c * t + a] = p + y, s = Math.abs(y);
+	}
+	return i;
+}
+function ct(e, t, n, r) {
+	let i = new Float64Array(t * n), a = new Float64Array(n);
+	for (let o = 0; o < t; o++) {
+		let t = 0;
+		for (let s = 0; s < n; s++) {
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(L(a[s]), 23), d = Math.min(L(t), 23), f = e.integer(Ze + l * Qe + u, Ze + ($e + l) * Qe + d, 1706 + l, rt + l);
+			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
+		}
+	}
+	return i;
+}
+function lt(e, t, n, r) {
+	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
+		0,
+		1,
+		0
+	];
+	for (let l = 0; l < t; l++) {
+		if (s = +!!e.flag(et + s, et + s, 1724, nt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, nt);
+		if (!(t >= 0 && t < n) || a[t]) throw j(r, "a grid with a camera out of place");
+		a[t] = 1, i[l] = t, o = t + 1, c += 1;
+	}
+	if (c !== n) throw j(r, "a grid without all cameras");
+	return i;
+}
+// eigenfield-three/src/camera-decoder.ts
+var ut = 130, z = 11, dt = 1, ft = 2;
+function pt(e, t = "cameras") {
+	let n = R(e, ut, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & dt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
+	Ke(e, Math.max(z * i, o * s), z * M, t);
+	let l = ut + (a ? 132 : 0);
+	R(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(ut + 4 * (e * z + t), !0) : 0, d = it(e.subarray(l)), f = a ? lt(d, o * s, i, t) : null, p = ct(d, i, z, (r & ft) !== 0);
+	d.checkEnd(t);
+	let m = {
+		intrinsics: new Float32Array(5 * i),
+		poses: new Float32Array(12 * i)
+	}, h = [
+		...c.subarray(7, 12),
+		0,
+		0,
+		0,
+		...c.subarray(12)
+	], g = ht(c[3], c[4], c[5], c[6]), _ = new Float64Array(z), v = 0;
+	for (let e = 0; e < (f ? f.length : i); e++) {
+		let t = f ? f[e] : e;
+		if (t < 0) continue;
+		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
+		for (let e = 0; e < z; e++) {
+			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
+			_[e] = p[v * z + e] * t + h[e] + i;
+		}
+		mt(_, g, m, t), v += 1;
+	}
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw j(t, "cameras that are not finite");
+	return m;
+}
+function mt(e, t, n, r) {
+	n.intrinsics.set(e.subarray(0, 5), 5 * r);
+	let [i, a, o] = [
+		e[5],
+		e[6],
+		e[7]
+	], s = i * i + a * a + o * o, c = 1 + s, l = ht(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	for (let i = 0; i < 3; i++) {
+		let a = 0;
+		for (let o = 0; o < 3; o++) {
+			let s = 0;
+			for (let e = 0; e < 3; e++) s += l[3 * i + e] * t[3 * e + o];
+			n.poses[12 * r + 4 * i + o] = s, a -= s * e[8 + o];
+		}
+		n.poses[12 * r + 4 * i + 3] = a;
+	}
+}
+function ht(e, t, n, r) {
+	return [
+		[
+			1 - 2 * (t * t + n * n),
+			2 * (e * t - n * r),
+			2 * (e * n + t * r)
+		],
+		[
+			2 * (e * t + n * r),
+			1 - 2 * (e * e + n * n),
+			2 * (t * n - e * r)
+		],
+		[
+			2 * (e * n - t * r),
+			2 * (t * n + e * r),
+			1 - 2 * (e * e + t * t)
+		]
+	].flat();
+}
+// eigenfield-three/src/planes.ts
+var gt = 10;
+function _t(e, t) {
 	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function st(e, t = le) {
+function vt(e, t = le) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > de) throw e.wrong(`more than ${de} texels`);
 	return [n, r];
 }
-function ct(e, t, n, r, i) {
+function yt(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = ht(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => _t(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Et(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Ot(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -318,7 +393,7 @@ function ct(e, t, n, r, i) {
 	if (s > pe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function lt(e, t) {
+function bt(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -350,15 +425,15 @@ function lt(e, t) {
 			1
 		]
 	];
-	throw ot(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw _t(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function ut(e, t, n, r, i, a = !1) {
+function xt(e, t, n, r, i, a = !1) {
 	let o = e.key("mimeType").text(N);
 	if (!/^image\/(png|jpeg|webp|avif)$/.test(o)) throw e.key("mimeType").wrong("an unknown type");
-	let s = e.key("bits"), c = s.exists ? s.integer(8, at) : 8;
-	if (c !== 8 && (c !== at || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
+	let s = e.key("bits"), c = s.exists ? s.integer(8, gt) : 8;
+	if (c !== 8 && (c !== gt || o !== "image/avif")) throw s.wrong(`${c} bits of ${o}`);
 	let l = t === 3 && c === 8 ? 1 : t;
-	r && vt(e, l * n, r);
+	r && kt(e, l * n, r);
 	let [u, d] = [e.key("scale"), e.key("zero")], f = {
 		view: i(e.key("bufferView")),
 		mimeType: o,
@@ -369,32 +444,32 @@ function ut(e, t, n, r, i, a = !1) {
 	};
 	return a && c === 8 && !u.exists && !d.exists ? {
 		...f,
-		...dt(t)
+		...St(t)
 	} : {
 		...f,
-		scale: mt(u, t, n),
-		zero: mt(d, t, n)
+		scale: Tt(u, t, n),
+		zero: Tt(d, t, n)
 	};
 }
-function dt(e) {
+function St(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function ft(e) {
+function Ct(e) {
 	return e.some(({ bits: e }) => e > 8);
 }
-function pt({ bits: e }) {
+function wt({ bits: e }) {
 	return (2 ** e - 1) / 255;
 }
-function mt(e, t, n) {
+function Tt(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function ht(e, t, n, r) {
+function Et(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -406,23 +481,23 @@ function ht(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...dt(t)
+				...St(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = st(i.key("size")), o = ut(i, t, 1, a, r, !0);
+	let a = vt(i.key("size")), o = xt(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: gt(i.key("precision"), o, r)
+		precision: Dt(i.key("precision"), o, r)
 	};
 }
-function gt(e, t, n) {
+function Dt(e, t, n) {
 	if (!e.exists) return null;
-	if (t.bits !== at) throw e.wrong(`of a mean of ${t.bits} bits`);
-	let r = st(e.key("size"), ue);
+	if (t.bits !== gt) throw e.wrong(`of a mean of ${t.bits} bits`);
+	let r = vt(e.key("size"), ue);
 	return {
 		view: n(e.key("bufferView")),
 		mimeType: "image/png",
@@ -431,19 +506,19 @@ function gt(e, t, n) {
 		where: e.where
 	};
 }
-function _t(e, t, n, r, i) {
-	let a = st(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? st(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, le) : [];
+function Ot(e, t, n, r, i) {
+	let a = vt(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? vt(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, le) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(fe).map((e) => {
-		let n = new it({
+		let n = new xe({
 			...p,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, fe) : 1;
-		return d += o, ut(n, t, o, a, i);
+		return d += o, xt(n, t, o, a, i);
 	});
 	if (d > 4096) throw e.wrong(`more than ${fe} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? Pt(h, h, i) : r(e.key("weights"), "SCALAR", [z], n * d) : null;
+	let h = e.key("codedWeights"), g = d ? h.exists ? Ae(h, h, i) : r(e.key("weights"), "SCALAR", [P], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -454,34 +529,25 @@ function _t(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function vt(e, t, [n, r]) {
+function kt(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > de) throw e.wrong(`more than ${de} texels`);
 }
 // eigenfield-three/src/document.ts
-var yt = {
-	5121: 1,
-	5123: 2,
-	5125: 4,
-	5126: 4
-}, bt = {
-	SCALAR: 1,
-	VEC2: 2,
-	VEC3: 3
-}, xt = 64, St = 9, Ct = 10 ** St, wt = 5123, Tt = 5125;
-function Et(e) {
-	let t = new it(e, "");
+var At = 64, jt = 9, Mt = 10 ** jt;
+function Nt(e) {
+	let t = new xe(e, "");
 	try {
 		return t.key("extensions").key(ae).exists;
 	} catch {
 		return !1;
 	}
 }
-function Dt(e) {
-	let t = new it(e, ""), n = t.key("extensions").key(ae), r = Ot(n), i = kt(t), a = jt(t, i), o = (e) => e.integer(0, i.length - 1);
-	At(t);
-	let s = Ft(t, o), c = n.key("cameras"), { count: l, names: u } = It(c, o), d = zt(c, l), f = d.filter((e) => !e).length, p = ct(n, f, s, a, o), m = lt(n, p), h = c.key("colour");
+function Pt(e) {
+	let t = new xe(e, ""), n = t.key("extensions").key(ae), r = Ft(n), i = De(t), a = ke(t, i), o = Oe(i);
+	It(t);
+	let s = zt(t, o), c = n.key("cameras"), { count: l, names: u } = Bt(c, o), d = Ut(c, l), f = d.filter((e) => !e).length, p = yt(n, f, s, a, o), m = bt(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
@@ -494,26 +560,26 @@ function Dt(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Bt(c, l, a, o),
-		sizes: Vt(c, l, a),
-		colour: h.exists ? a(h, "SCALAR", [z], 6 * l) : null,
-		...Ht(g),
-		triangles: v.exists ? Pt(v, v, o) : _.exists ? Nt(a(_, "SCALAR", [wt, Tt], null), 2 * M) : null,
-		settings: Ut(n.key("settings")),
-		scores: Ut(n.key("scores")),
+		calibration: Wt(c, l, a, o),
+		sizes: Gt(c, l, a),
+		colour: h.exists ? a(h, "SCALAR", [P], 6 * l) : null,
+		...Kt(g),
+		triangles: v.exists ? Ae(v, v, o) : _.exists ? Rt(a(_, "SCALAR", [Ce, we], null), 2 * M) : null,
+		settings: qt(n.key("settings")),
+		scores: qt(n.key("scores")),
 		views: i,
-		mesh: w.exists ? Pt(w, w.key("bufferView"), o) : null,
-		position: Mt(a(x.key("POSITION"), "VEC3", [z], null), _e),
-		uv: Mt(a(x.key("TEXCOORD_0"), "VEC2", [z], null), _e),
-		indices: Nt(a(S, "SCALAR", [
-			5121,
-			wt,
-			Tt
+		mesh: w.exists ? Ae(w, w.key("bufferView"), o) : null,
+		position: Lt(a(x.key("POSITION"), "VEC3", [P], null), _e),
+		uv: Lt(a(x.key("TEXCOORD_0"), "VEC2", [P], null), _e),
+		indices: Rt(a(S, "SCALAR", [
+			Se,
+			Ce,
+			we
 		], null), ve),
 		preview: s
 	};
 }
-function Ot(e) {
+function Ft(e) {
 	let t = e.key("version").text(N);
 	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
@@ -523,23 +589,7 @@ function Ot(e) {
 	}
 	return t;
 }
-function kt(e) {
-	let t = e.key("buffers").at(0);
-	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
-	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(ce).map((e) => {
-		let t = e.key("byteOffset"), r = e.key("byteStride");
-		e.key("buffer").integer(0, 0);
-		let i = {
-			offset: t.exists ? t.integer(0, n) : 0,
-			length: e.key("byteLength").integer(1, n),
-			stride: r.exists ? r.integer(4, 252) : 0
-		};
-		if (i.offset + i.length > n) throw e.wrong("outside the buffer");
-		return i;
-	});
-}
-function At(e) {
+function It(e) {
 	let t = e.key("nodes").items(ce), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -554,77 +604,42 @@ function At(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function jt(e, t) {
-	let n = e.key("accessors").items(ce);
-	return (e, r, i, a) => {
-		let o = n[e.integer(0, n.length - 1)];
-		if (!o) throw e.wrong("no such accessor");
-		let s = o.key("componentType").integer(5120, 5126);
-		if (!i.includes(s)) throw o.wrong(`component type ${s}`);
-		if (o.key("type").text(1024) !== r) throw o.wrong(`not ${r}`);
-		if (o.key("sparse").exists) throw o.wrong("sparse");
-		let c = o.key("normalized");
-		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = bt[r] ?? 1, u = o.key("count").integer(1, ye);
-		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
-		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
-		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = yt[s] * l;
-		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
-		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % yt[s]) throw o.wrong("not aligned");
-		return {
-			view: d,
-			offset: m,
-			count: u,
-			items: l,
-			type: s,
-			where: o.where
-		};
-	};
-}
-function Mt(e, t) {
+function Lt(e, t) {
 	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function Nt(e, t) {
+function Rt(e, t) {
 	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Mt(e, 3 * t);
+	return Lt(e, 3 * t);
 }
-function Pt(e, t, n) {
-	return {
-		view: n(t),
-		where: e.where
-	};
-}
-function Ft(e, t) {
+function zt(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function It(e, t) {
+function Bt(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, M),
-		names: Pt(n, n.key("bufferView"), t)
+		names: Ae(n, n.key("bufferView"), t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Rt(r) : i.items(M).map((e) => e.text(N));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ht(r) : i.items(M).map((e) => e.text(N));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Lt(a);
+	let o = Vt(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Lt(e) {
+function Vt(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Rt(e) {
+function Ht(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, M));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(xt).map((e) => {
+	let r = e.key("parts").items(At).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(N))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -632,7 +647,7 @@ function Rt(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Ct), e.key("step").integer(0, Ct)], c = e.key("digits").integer(1, St);
+		let [o, s] = [e.key("first").integer(0, Mt), e.key("step").integer(0, Mt)], c = e.key("digits").integer(1, jt);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -641,7 +656,7 @@ function Rt(e) {
 		return o;
 	});
 }
-function zt(e, t) {
+function Ut(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -652,21 +667,21 @@ function zt(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Bt(e, t, n, r) {
+function Wt(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? Pt(i, i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [z], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [z], 12 * t)
+	return i.exists ? Ae(i, i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [P], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [P], 12 * t)
 	};
 }
-function Vt(e, t, n) {
+function Gt(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Tt], 2 * t);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [we], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, me);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Ht(e) {
+function Kt(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -681,13 +696,13 @@ function Ht(e) {
 		extent: [i, a]
 	};
 }
-function Ut(e) {
+function qt(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/name-decoder.ts
-var Wt = 4 * N;
-async function Gt(e, t, n = "names") {
-	let r = await Kt(e, Math.min(ge, Wt * t), n), i = r.length / t;
+var Jt = 4 * N;
+async function Yt(e, t, n = "names") {
+	let r = await Xt(e, Math.min(ge, Jt * t), n), i = r.length / t;
 	if (i === 0 || !Number.isInteger(i)) throw j(n, `${r.length} bytes of ${t} names`);
 	let a = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -705,7 +720,7 @@ async function Gt(e, t, n = "names") {
 	}
 	return s;
 }
-async function Kt(e, t, n) {
+async function Xt(e, t, n) {
 	let r = [], i = 0, a = new Blob([Uint8Array.from(e)]).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
 	try {
 		for (let e = await a.read(); !e.done && i <= t; e = await a.read()) r.push(e.value), i += e.value.length;
@@ -718,36 +733,36 @@ async function Kt(e, t, n) {
 	return o;
 }
 // eigenfield-three/src/triangle-decoder.ts
-var qt = 5;
-function Jt(e, t = "triangles") {
-	let n = L(e, qt, t).getUint32(1, !0);
-	Pe(e, 3 * n, 6 * M, t);
-	let r = Ke(e.subarray(qt)), i = Xe(r, n, 3, !0);
+var Zt = 5;
+function Qt(e, t = "triangles") {
+	let n = R(e, Zt, t).getUint32(1, !0);
+	Ke(e, 3 * n, 6 * M, t);
+	let r = it(e.subarray(Zt)), i = ct(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw j(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var Yt = 14, Xt = 2 ** 20;
-function Zt(e, t = "weights") {
-	let n = L(e, Yt, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var $t = 14, en = 2 ** 20;
+function tn(e, t = "weights") {
+	let n = R(e, $t, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
-	Pe(e, o * s * Math.max(a, 1), ye, t), L(e, Yt + 4 * a, t);
+	Ke(e, o * s * Math.max(a, 1), ye, t), R(e, $t + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw j(t, "a grid with too few cells");
-	let l = Ke(e.subarray(Yt + 4 * a)), u = r ? Ze(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = it(e.subarray($t + 4 * a)), u = r ? lt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * Xt * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * en * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(Yt + 4 * e, !0);
+		let r = n.getFloat32($t + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
-		let i = qe(l), h = Ye(l, s, f[i], i);
+		let i = at(l), h = st(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? Qt(h, o, s) : h;
+		let g = i === 2 ? nn(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -761,14 +776,14 @@ function Zt(e, t = "weights") {
 		values: p
 	};
 }
-function Qt(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = $t(n);
+function nn(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = rn(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = $t(t);
+	let o = rn(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -776,33 +791,23 @@ function Qt(e, t, n) {
 	}
 	return i;
 }
-function $t(e) {
+function rn(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/info.ts
-var en = 1e-6;
-async function tn(e, t, n) {
-	let r = await n(e.view), i = t.views[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw re(e.where);
-	let a = e.count * e.items, o = r.slice(e.offset, e.offset + (e.type === 5123 ? 2 : 4) * a);
-	return e.type === 5125 ? new Uint32Array(o) : e.type === 5123 ? new Uint16Array(o) : nn(new Float32Array(o), e.where);
-}
-function nn(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
-	return e;
-}
-async function rn(e, t) {
+var an = 1e-6;
+async function on(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		an(e, t),
 		sn(e, t),
-		cn(e, t),
-		e.colour ? tn(e.colour, e, t) : null
+		ln(e, t),
+		un(e, t),
+		e.colour ? je(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > en && c > en)) throw j(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ln([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > an && c > an)) throw j(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = dn([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > he) throw j(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -820,13 +825,13 @@ async function rn(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? un([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? fn([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: bn(f, p),
+			centre: Sn(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -834,31 +839,31 @@ async function rn(e, t) {
 		};
 	});
 }
-async function an({ names: e, heldOut: t }, n) {
+async function sn({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await Gt(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Lt(r);
+	let r = await Yt(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Vt(r);
 	if (i) throw j(e.where, i);
 	return r;
 }
-async function on(e, t, n) {
+async function cn(e, t, n) {
 	return {
-		numbers: await tn(e, t, n),
+		numbers: await je(e, t.views, n),
 		where: e.where
 	};
 }
-async function sn(e, t) {
+async function ln(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await on(r, e, t),
-			poses: await on(i, e, t)
+			lenses: await cn(r, e, t),
+			poses: await cn(i, e, t)
 		};
 	}
-	let { view: i, where: a } = n, o = tt(new Uint8Array(await t(i)), a), s = o.poses.length / 12;
+	let { view: i, where: a } = n, o = pt(new Uint8Array(await t(i)), a), s = o.poses.length / 12;
 	if (s !== r.length) throw j(a, `${s} cameras in it, and ${r.length} names`);
 	let c = (e) => ({
-		numbers: nn(e, a),
+		numbers: Me(e, a),
 		where: a
 	});
 	return {
@@ -866,15 +871,15 @@ async function sn(e, t) {
 		poses: c(o.poses)
 	};
 }
-async function cn(e, t) {
-	if (!Array.isArray(e.sizes)) return on(e.sizes, e, t);
+async function un(e, t) {
+	if (!Array.isArray(e.sizes)) return cn(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ln(e, t, n) {
+function dn(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -898,13 +903,13 @@ function ln(e, t, n) {
 		t: a
 	};
 }
-function un(e, t, n) {
+function fn(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function dn(e, t) {
-	let n = B(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => fn(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function pn(e, t) {
+	let n = B(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => mn(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -912,26 +917,26 @@ async function dn(e, t) {
 	}
 	return o;
 }
-async function fn({ weights: e, count: t }, n, r, i) {
+async function mn({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return tn(e, r, i);
-	let { view: a, where: o } = e, { cameras: s, components: c, values: l } = Zt(new Uint8Array(await i(a)), o);
-	if (s === n && c === t) return nn(l, o);
+	if ("type" in e) return je(e, r.views, i);
+	let { view: a, where: o } = e, { cameras: s, components: c, values: l } = tn(new Uint8Array(await i(a)), o);
+	if (s === n && c === t) return Me(l, o);
 	throw j(o, `${s} x ${c} weights, and ${n} encoded cameras x ${t} textures`);
 }
 function B(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function pn(e) {
+function hn(e) {
 	return Math.max(0, ...B(e).map(({ count: e }) => e));
 }
-function mn(e, t) {
+function gn(e, t) {
 	let n = [...t, ...B(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function hn(e, t) {
+async function _n(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await gn(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await vn(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -939,10 +944,10 @@ async function hn(e, t) {
 	}
 	return r;
 }
-async function gn(e, t, n) {
-	return "type" in e ? Uint32Array.from(await tn(e, t, n)) : Jt(new Uint8Array(await n(e.view)), e.where).corners;
+async function vn(e, t, n) {
+	return "type" in e ? Uint32Array.from(await je(e, t.views, n)) : Qt(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function _n(e, t, n, r, i, a) {
+function yn(e, t, n, r, i, a) {
 	let { right: o, up: s } = e, c = H(o, s), l = [
 		0,
 		0,
@@ -971,8 +976,8 @@ function _n(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: vn(e, i),
-		size: mn(e, n),
+		bytes: bn(e, i),
+		size: gn(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -986,8 +991,8 @@ function _n(e, t, n, r, i, a) {
 		facesPlane: Math.abs(V(l, c)) > .7
 	};
 }
-function vn(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(pn(e)).fill(0);
+function bn(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(hn(e)).fill(0);
 	for (let { pictures: t } of B(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -1013,7 +1018,7 @@ function vn(e, t) {
 		textures: s
 	};
 }
-function yn(e, t) {
+function xn(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -1021,7 +1026,7 @@ function yn(e, t) {
 	];
 	return [r[0] > 0 ? V(i, e.right) / r[0] : 0, r[1] > 0 ? V(i, e.up) / r[1] : 0];
 }
-function bn(e, t) {
+function Sn(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -1040,7 +1045,7 @@ function H(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function xn(e, t, n) {
+function Cn(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -1079,7 +1084,7 @@ function xn(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = Sn(n, o, s);
+		let r = wn(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -1090,7 +1095,7 @@ function xn(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = wn(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Cn(t) * m[0], Cn(n) * m[1]], _ = [
+	let u = En(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Tn(t) * m[0], Tn(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -1107,7 +1112,7 @@ function xn(e, t, n) {
 		offset: null
 	};
 }
-function Sn({ K: e, width: t, height: n }, r, i) {
+function wn({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -1127,10 +1132,10 @@ function Sn({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Cn(e) {
+function Tn(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function wn(e) {
+function En(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
@@ -1144,24 +1149,24 @@ function wn(e) {
 	}
 	return t;
 }
-function Tn(e, t, n, r, i = 1) {
+function Dn(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return En(e, t, n), Dn(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return On(e, t, n), kn(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function En(e, t, n) {
+function On(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function Dn(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = On(e, n);
+function kn(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = An(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function On(e, t) {
+function An(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -1171,19 +1176,19 @@ function On(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var kn = 256;
-function An(e, t, n) {
+var jn = 256;
+function Mn(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / kn)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / jn)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => jn(t, i.getX(e), i.getY(e), i.getZ(e))), l = Mn(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Nn(t, i.getX(e), i.getY(e), i.getZ(e))), l = Pn(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Mn(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Pn(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -1193,7 +1198,7 @@ function An(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function jn({ K: e, R: t, t: n }, r, i, a) {
+function Nn({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -1201,36 +1206,36 @@ function jn({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Mn(e) {
+function Pn(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Nn = 4 / 3, Pn = 4, Fn = 8, In = 2, Ln = 2 ** 20;
-function Rn() {
+var Fn = 4 / 3, In = 4, Ln = 8, Rn = 2, zn = 2 ** 20;
+function Bn() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && zn(e) ? Math.min(t ?? 4, 6) * 128 * Ln : Math.min(t ?? 8, 8) * 256 * Ln;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Vn(e) ? Math.min(t ?? 4, 6) * 128 * zn : Math.min(t ?? 8, 8) * 256 * zn;
 }
-function zn(e) {
+function Vn(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function U([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Bn(e, t) {
+function Hn(e, t) {
 	let [n, r] = U(e, t);
 	return n * r;
 }
-function Vn(e) {
+function Un(e) {
 	return Math.ceil(e / 4);
 }
-function Hn(e, t) {
-	return t * Un(e);
+function Wn(e, t) {
+	return t * W(e);
 }
-function Un(e) {
+function W(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function Wn(e) {
+function Gn(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -1238,14 +1243,14 @@ function Wn(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function Gn(e, t) {
+function Kn(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Kn(e, n) <= t.memory / 2) ?? 16, o = Kn(e, a) + e.geometry, s = (t, n) => o + Jn(e, t, n), c = (n, r) => s(n, r) + Zn(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && qn(e, n) <= t.memory / 2) ?? 16, o = qn(e, a) + e.geometry, s = (t, n) => o + Yn(e, t, n), c = (n, r) => s(n, r) + Qn(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -1259,68 +1264,68 @@ function Gn(e, t) {
 	};
 	return {
 		...p,
-		limitation: Qn(p, n, e, t)
+		limitation: $n(p, n, e, t)
 	};
 }
-function Kn(e, t) {
-	let n = e.means.map((e) => qn(e) * Vn(e.channels) * Bn(e.size, t)), r = Wn(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Nn : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Fn * Bn(n, t) * (r + +!!i);
+function qn(e, t) {
+	let n = e.means.map((e) => Jn(e) * Un(e.channels) * Hn(e.size, t)), r = Gn(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Fn : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Ln * Hn(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function qn({ deep: e }) {
-	return e ? Fn : Pn;
+function Jn({ deep: e }) {
+	return e ? Ln : In;
 }
-function Jn({ bases: e, rays: t }, n, r) {
+function Yn({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Un(a) * 129 * 129 * Fn : 0;
-		return e + qn(i) * Hn(a, i.channels) * Bn(i.size, n) + o;
+		let o = t ? W(a) * 129 * 129 * Ln : 0;
+		return e + Jn(i) * Wn(a, i.channels) * Hn(i.size, n) + o;
 	}, 0);
 }
-function Yn({ means: e, bases: t }, n, r) {
-	return Xn([...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => U(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => U(e, r))]);
+function Xn({ means: e, bases: t }, n, r) {
+	return Zn([...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => U(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => U(e, r))]);
 }
-function Xn(e) {
+function Zn(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Zn(e, t) {
-	let [n, r] = Yn({
+function Qn(e, t) {
+	let [n, r] = Xn({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Pn + (e.bases.some(({ deep: e }) => e) ? In : 0)) * n * r;
+	return (In + (e.bases.some(({ deep: e }) => e) ? Rn : 0)) * n * r;
 }
-function Qn(e, t, n, r) {
+function $n(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Kn(n, 1) + Jn(n, 1, t) + Zn(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${$n(a)} MB of graphics memory and ${$n(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${er(i.join(", "))}: ${o}.`;
-}
-function $n(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let a = qn(n, 1) + Yn(n, 1, t) + Qn(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${er(a)} MB of graphics memory and ${er(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${tr(i.join(", "))}: ${o}.`;
 }
 function er(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function tr(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var tr = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", nr = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", rr = 2, ir = `
+var nr = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", rr = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ir = 2, ar = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${nr}${tr}`, ar = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", or = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", sr = `${ir}
+${rr}${nr}`, or = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", sr = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", cr = `${ar}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, cr = "sumTextures", lr = "finerValue";
-function ur(n, r, i) {
+`, lr = "sumTextures", ur = "finerValue";
+function dr(n, r, i) {
 	let o = new w({
 		glslVersion: f,
-		vertexShader: ar,
-		fragmentShader: `${ir}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: or,
+		fragmentShader: `${ar}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
 			rectangle: { value: new ee(...r) },
 			...i
@@ -1356,7 +1361,7 @@ function ur(n, r, i) {
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function dr([e, t], n) {
+function fr([e, t], n) {
 	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
@@ -1365,29 +1370,29 @@ function dr([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function fr(e, t) {
+function pr(e, t) {
 	let n = H(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...yn(e, t), V(r, n) / (Math.max(...e.extent) || 1)];
+	return [...xn(e, t), V(r, n) / (Math.max(...e.extent) || 1)];
 }
-function pr(t, n, r) {
+function mr(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(fr(n, [
+	for (let e = 0; e < i.count; e++) o.set(pr(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - rr), u = l.flatMap((e) => l.map((t) => new D(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - ir), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
 	let p = new w({
 		glslVersion: f,
-		vertexShader: or.replace("SHIFTS", String(u.length)),
-		fragmentShader: sr,
+		vertexShader: sr.replace("SHIFTS", String(u.length)),
+		fragmentShader: cr,
 		uniforms: {
 			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
@@ -1407,7 +1412,7 @@ function pr(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var mr = class {
+var hr = class {
 	mesh;
 	plane;
 	grids;
@@ -1415,14 +1420,14 @@ var mr = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Wn({
+		let [a, ...o] = Gn({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(hr), a = new T();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(gr), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: dr(U(e, n), r),
+				target: fr(U(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -1430,7 +1435,7 @@ var mr = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = ur(lr, [
+			let t = dr(ur, [
 				0,
 				0,
 				1,
@@ -1444,10 +1449,10 @@ var mr = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && vr(this.composed, n) || (this.composed = n, xr(e, t, () => {
+		this.composed && yr(this.composed, n) || (this.composed = n, Sr(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) gr(e, t, n);
+				for (let e of t.steps) _r(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -1459,22 +1464,22 @@ var mr = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = dr([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = pr(this.mesh, this.plane, t.places);
+		t.places = fr([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = mr(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function hr(e) {
+function gr(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = ur(cr, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = dr(lr, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -1498,42 +1503,42 @@ function hr(e) {
 	}
 	return i;
 }
-function gr({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function _r({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => _r(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => vr(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function _r(e, t, n, r) {
+function vr(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function vr(e, t) {
+function yr(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var yr = new i(0), br = new i();
-function xr(e, t, n) {
+var br = new i(0), xr = new i();
+function Sr(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(br), e.setClearColor(yr, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(br, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(xr), e.setClearColor(br, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(xr, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Sr(e, t, n, i, a) {
+function Cr(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Un(t) : 0;
+		u += e, d += t ? W(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -1552,19 +1557,19 @@ function Sr(e, t, n, i, a) {
 	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Cr = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", wr = {
+var wr = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Tr = {
 	bilinear: 0,
 	bicubic: 1
-}, Tr = {
+}, Er = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Er = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Dr = `
+}, Dr = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Or = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${nr}${Cr}
+${rr}${wr}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -1594,56 +1599,56 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function Or(e) {
+function kr(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new O(1, 1, 1) },
 		exposureBias: { value: new O() },
-		shown: { value: Tr.picture },
+		shown: { value: Er.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
 	}, n = new w({
 		glslVersion: f,
-		vertexShader: Er,
-		fragmentShader: Dr,
+		vertexShader: Dr,
+		fragmentShader: Or,
 		uniforms: t,
-		defines: { BICUBIC: wr.bicubic },
+		defines: { BICUBIC: Tr.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
 // eigenfield-three/src/gpu.ts
-function kr(e, t) {
+function Ar(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Ar(e, [t, n], r, i, a) {
-	return Nr(e, e.TEXTURE_2D_ARRAY, () => {
+function jr(e, [t, n], r, i, a) {
+	return Pr(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function jr(e, t, n) {
+function Mr(e, t, n) {
 	let { width: r, height: i } = n;
-	Pr(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	Fr(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Mr(e, [t, n], r = !1) {
-	return Nr(e, e.TEXTURE_2D, () => {
+function Nr(e, [t, n], r = !1) {
+	return Pr(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function Nr(e, t, n) {
+function Pr(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Pr(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Fr(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Pr(e, t, n, r) {
+function Fr(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -1657,9 +1662,9 @@ function Pr(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var Fr = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ir = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function Lr(e, t) {
-	let n = Vr(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var Ir = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Lr = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function Rr(e, t) {
+	let n = Hr(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -1667,7 +1672,7 @@ function Lr(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Rr(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), zr(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -1676,13 +1681,13 @@ function Lr(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Rr(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = zr(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Hr(e, 0, d, () => {
-				Rr(s) ? Br(e, s, c, l) : zr(e, s, c, l), Ur(e, () => u(n, r, i, a, o));
+			let f = () => Ur(e, 0, d, () => {
+				zr(s) ? Vr(e, s, c, l) : Br(e, s, c, l), Wr(e, () => u(n, r, i, a, o));
 			});
-			o ? Hr(e, 1, t.precision, () => {
-				zr(e, o.precision, 0, o.precision.height), f();
+			o ? Ur(e, 1, t.precision, () => {
+				Br(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -1690,30 +1695,30 @@ function Lr(e, t) {
 		}
 	};
 }
-function Rr(e) {
+function zr(e) {
 	return "data" in e;
 }
-function zr(e, t, n, r) {
+function Br(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Br(e, { data: t, width: n, stride: r }, i, a) {
+function Vr(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Vr(e) {
+function Hr(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Fr], [e.FRAGMENT_SHADER, Ir]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Ir], [e.FRAGMENT_SHADER, Lr]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Hr(e, t, n, r) {
+function Ur(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Pr(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Fr(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Ur(e, t) {
+function Wr(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -1728,7 +1733,7 @@ function Ur(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function Wr(e, t, n) {
+function Gr(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -1738,7 +1743,7 @@ function Wr(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Gr(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Kr(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -1766,7 +1771,7 @@ function Wr(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...qr(l, u, h),
+					...Jr(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -1774,12 +1779,12 @@ function Wr(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Un(h) : 0;
+			o += p, s += h ? W(h) : 0;
 		}
 	}), r;
 }
-function Gr({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : Kr([e]), o = {
+function Kr({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : qr([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -1789,11 +1794,11 @@ function Gr({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Kr(e) {
-	return ft(e) ? 1 : 255;
+function qr(e) {
+	return Ct(e) ? 1 : 255;
 }
-function qr(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Kr(e), o = 4 * t * Un(n), s = {
+function Jr(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = qr(e), o = 4 * t * W(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -1804,12 +1809,12 @@ function qr(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/deep.ts
-var Jr = /* @__PURE__ */ new Set([
+var Yr = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
 ]);
-async function Yr(e, t, n) {
+async function Xr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1818,7 +1823,7 @@ async function Yr(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Jr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Yr.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1832,7 +1837,7 @@ async function Yr(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function Xr(e, t, n, r) {
+function Zr(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1851,16 +1856,16 @@ function Xr(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/headers.ts
-function Zr(e) {
+function Qr(e) {
 	let t = new DataView(e);
 	try {
-		return Qr(t) ?? $r(t) ?? ei(t) ?? ti(t);
+		return $r(t) ?? ei(t) ?? ti(t) ?? ni(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function W(e, t) {
+function G(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -1868,15 +1873,15 @@ function W(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Qr(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || W(e, 12) !== "IHDR" ? null : {
+function $r(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || G(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function $r(e) {
+function ei(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -1899,12 +1904,12 @@ function $r(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function ei(e) {
-	if (W(e, 0) !== "RIFF" || W(e, 8) !== "WEBP") return null;
+function ti(e) {
+	if (G(e, 0) !== "RIFF" || G(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = W(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = G(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1924,11 +1929,11 @@ function ei(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function ti(e) {
-	if (W(e, 4) !== "ftyp") return null;
+function ni(e) {
+	if (G(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = W(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = G(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1951,15 +1956,15 @@ function ti(e) {
 	};
 }
 // eigenfield-three/src/decode.ts
-var ni = {
+var ri = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, ri = {
+}, ii = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function ii(e, t, n) {
-	let r = Zr(e);
+function ai(e, t, n) {
+	let r = Qr(e);
 	if (!r) throw j(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
@@ -1968,39 +1973,39 @@ function ii(e, t, n) {
 	if (!s || i > 16384 || a > 32768 || s > de) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function ai(e, t, n, r = 1) {
-	let [i, a] = ii(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function oi(e, t, n, r = 1) {
+	let [i, a] = ai(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Zr(e)?.type ?? t.mimeType, u;
+	}, l = Qr(e)?.type ?? t.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...ni,
+			...ri,
 			...c
 		});
 	} catch (e) {
-		throw await fi(l) ? j(t.where, "it cannot be decoded") : pi(l, t, e);
+		throw await pi(l) ? j(t.where, "it cannot be decoded") : mi(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-async function oi(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await si(await t(e.precision.view), e.precision);
+async function si(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await ci(await t(e.precision.view), e.precision);
 	return {
-		pieces: await ci(await t(r.view), r, i, n),
+		pieces: await li(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function si(e, t) {
-	let { type: n } = Zr(e) ?? {};
+async function ci(e, t) {
+	let { type: n } = Qr(e) ?? {};
 	if (n && n !== t.mimeType) throw j(t.where, `${n}, not ${t.mimeType}`);
-	return ai(e, t, t.size);
+	return oi(e, t, t.size);
 }
-async function ci(e, t, n, r = 1) {
-	if (t.bits === 8) return li(e, t, n, r);
-	let i = t.pieces * t.textures, [a, o] = ii(e, t, n && [n[0], i * n[1]]), s = await Yr(e, a, o);
-	if (!s) return li(e, t, n, r);
+async function li(e, t, n, r = 1) {
+	if (t.bits === 8) return ui(e, t, n, r);
+	let i = t.pieces * t.textures, [a, o] = ai(e, t, n && [n[0], i * n[1]]), s = await Xr(e, a, o);
+	if (!s) return ui(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -2008,7 +2013,7 @@ async function ci(e, t, n, r = 1) {
 			row: t * c,
 			rows: c
 		};
-		let n = Xr(s, t * c, c, r);
+		let n = Zr(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -2016,8 +2021,8 @@ async function ci(e, t, n, r = 1) {
 		};
 	});
 }
-async function li(e, t, n, r = 1) {
-	let i = t.pieces * t.textures, [a, o] = ii(e, t, n && [n[0], i * n[1]]), s = await ai(e, t, [a, o], i === 1 ? r : 1);
+async function ui(e, t, n, r = 1) {
+	let i = t.pieces * t.textures, [a, o] = ai(e, t, n && [n[0], i * n[1]]), s = await oi(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -2030,7 +2035,7 @@ async function li(e, t, n, r = 1) {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...ni,
+		...ri,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -2041,14 +2046,14 @@ async function li(e, t, n, r = 1) {
 		rows: d
 	}));
 }
-function ui(e) {
+function di(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
-function di({ pieces: e, precision: t }) {
-	ui(e), t?.close();
+function fi({ pieces: e, precision: t }) {
+	di(e), t?.close();
 }
-async function fi(e) {
-	let t = ri[e];
+async function pi(e) {
+	let t = ii[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -2057,21 +2062,21 @@ async function fi(e) {
 		return !1;
 	}
 }
-function pi(e, t, n) {
+function mi(e, t, n) {
 	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/strength.ts
-var G = 128, mi = .98;
-async function hi(e, t, n, r) {
+var K = 128, hi = .98;
+async function gi(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = pt(o), l = o.pieces < i, u = await li(await r(o.view), o, e.size), d = new OffscreenCanvas(G, G).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = wt(o), l = o.pieces < i, u = await ui(await r(o.view), o, e.size), d = new OffscreenCanvas(K, K).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, G, G);
-		let { data: u } = d.getImageData(0, 0, G, G);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, K, K);
+		let { data: u } = d.getImageData(0, 0, K, K);
 		(l ? [
 			0,
 			1,
@@ -2080,12 +2085,12 @@ async function hi(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), ui(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(mi * f.length)] ?? 0;
+	}), di(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(hi * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/textures.ts
-var gi = 3, _i = class {
+var _i = 3, vi = class {
 	parts;
 	options;
 	means;
@@ -2112,15 +2117,15 @@ var gi = 3, _i = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			deep: ft(t.pictures)
+			deep: Ct(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			deep: ft([t])
+			deep: Ct([t])
 		}));
 		this.needs = {
-			atlas: mn(r, i),
+			atlas: gn(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -2157,7 +2162,7 @@ var gi = 3, _i = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(di), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(fi), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2180,20 +2185,20 @@ var gi = 3, _i = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < gi && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < _i && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), ui(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), di(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(ui).catch(() => void 0);
+			for (let e of a) e.then(di).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.deep ? 255 * pt(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.deep ? 255 * wt(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2213,13 +2218,13 @@ var gi = 3, _i = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Rn();; i /= 2) {
-			let a = Gn(this.needs, kr(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, deep: r }) => Ar(e, U(t, o), Vn(n), l, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
+		for (let i = this.options.memory ?? Bn();; i /= 2) {
+			let a = Kn(this.needs, Ar(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, deep: r }) => jr(e, U(t, o), Un(n), l, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
 				let a = Math.min(r, c);
-				return Ar(e, a ? U(t, s) : [1, 1], a ? Hn(a, n) : 1, l, i);
-			})], d = Yn(this.needs, o, s), f = Mr(e, d), p = [...t, ...n].some(({ deep: e }) => e), m = p ? Mr(e, d, !0) : null, h = Mr(e, Xn(r));
+				return jr(e, a ? U(t, s) : [1, 1], a ? Wn(a, n) : 1, l, i);
+			})], d = Xn(this.needs, o, s), f = Nr(e, d), p = [...t, ...n].some(({ deep: e }) => e), m = p ? Nr(e, d, !0) : null, h = Nr(e, Zn(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: Lr(e, {
+				packer: Rr(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -2237,18 +2242,18 @@ var gi = 3, _i = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
-		this.decoded = null, (!a || n > 1) && (a?.forEach(di), a = await Promise.all(r.planes.map((e) => oi(e, i, n)))), a.forEach((n, i) => {
+		this.decoded = null, (!a || n > 1) && (a?.forEach(fi), a = await Promise.all(r.planes.map((e) => si(e, i, n)))), a.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), di(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), fi(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = ft([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = Ct([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			jr(e, r, s.picture);
+			Mr(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * pt(n) : 1;
+		let c = o ? 255 * wt(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -2263,10 +2268,10 @@ var gi = 3, _i = class {
 	}
 	decode(e, t) {
 		if (!e) return Promise.reject(/* @__PURE__ */ RangeError("no such eigen texture"));
-		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => ci(e, r, n.size, t));
+		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => li(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, vi = 1.5, yi = .001, bi = class extends l {
+}, yi = 1.5, bi = .001, xi = class extends l {
 	parts;
 	mesh;
 	info;
@@ -2297,15 +2302,15 @@ var gi = 3, _i = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = pn(n), this.counts = B(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = hn(n), this.counts = B(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new _i(e, wi(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new vi(e, Ti(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = Or(s), this.complete = new Promise((e, t) => {
+		this.material = kr(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? An(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Mn(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -2335,7 +2340,7 @@ var gi = 3, _i = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...yn(this.info.viewPlane, n.centre));
+		return this.componentWeights(...xn(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -2349,7 +2354,7 @@ var gi = 3, _i = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return vi * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return yi * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -2366,30 +2371,30 @@ var gi = 3, _i = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Ci(t, n), [i, a] = yn(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = wi(t, n), [i, a] = xn(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = wr[this.filter];
+		let l = Tr[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new mr(i, Wr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new hr(i, Gr(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Tr.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Er.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === Tr.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Er.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && fr(this.info.viewPlane, t),
+			eye: t && pr(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -2401,7 +2406,7 @@ var gi = 3, _i = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Tr[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Er[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -2409,7 +2414,7 @@ var gi = 3, _i = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Ti(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Ei(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -2420,7 +2425,7 @@ var gi = 3, _i = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				hi(s, e, o, r).then((t) => {
+				gi(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -2430,13 +2435,13 @@ var gi = 3, _i = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= yi * Math.max(...r);
+		return Math.abs(i) <= bi * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Sr(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Cr(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -2444,33 +2449,33 @@ var gi = 3, _i = class {
 		}, n;
 	}
 	fail(e) {
-		if (Ei(e)) return;
+		if (Di(e)) return;
 		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, xi = new _(), Si = new O();
-function Ci(e, t) {
-	return Si.setFromMatrixPosition(e.matrixWorld).applyMatrix4(xi.copy(t.matrixWorld).invert()), [
-		Si.x,
-		Si.y,
-		Si.z
+}, Si = new _(), Ci = new O();
+function wi(e, t) {
+	return Ci.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Si.copy(t.matrixWorld).invert()), [
+		Ci.x,
+		Ci.y,
+		Ci.z
 	];
 }
-function wi(e) {
+function Ti(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function Ti(e) {
+function Ei(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function Ei(e) {
+function Di(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Di = class {
+var Oi = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -2513,53 +2518,53 @@ var Di = class {
 		}
 		return n.buffer;
 	}
-}, Oi = 1179937895, ki = 1313821514, Ai = 5130562;
-async function ji(e) {
+}, ki = 1179937895, Ai = 1313821514, ji = 5130562;
+async function Mi(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? Ii(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? Li(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Oi) throw Ii(!1);
+	if (new DataView(t).getUint32(0, !0) !== ki) throw Li(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ki) throw j("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Ai) throw j("16", "it does not begin with JSON");
 	if (o > se) throw j("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = Ni(await e.read(20, 20 + o));
+	let s = Pi(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: Pi(s),
-		binary: () => Mi(e, 20 + o, i)
+		json: Fi(s),
+		binary: () => Ni(e, 20 + o, i)
 	};
 }
-async function Mi(e, t, n) {
+async function Ni(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === Ai) return r + 8;
+		if (t.getUint32(4, !0) === ji) return r + 8;
 		r += 8 + i;
 	}
 	throw j(String(t), "no binary chunk");
 }
-function Ni(e) {
+function Pi(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function Pi(e) {
-	if (Fi(e) > 64) throw j("20", "its JSON is nested too deep");
+function Fi(e) {
+	if (Ii(e) > 64) throw j("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw j("20", "its JSON cannot be read");
 	}
 }
-function Fi(e) {
+function Ii(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -2570,10 +2575,10 @@ function Fi(e) {
 	}
 	return n;
 }
-function Ii(e) {
+function Li(e) {
 	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
-var Li = 2 ** 24, Ri = class {
+var Ri = 2 ** 24, zi = class {
 	points;
 	start;
 	end;
@@ -2640,7 +2645,7 @@ var Li = 2 ** 24, Ri = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * Li + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * Ri + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -2648,57 +2653,57 @@ var Li = 2 ** 24, Ri = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, zi = 2 ** 20, Bi = .8, Vi = 44, Hi = 385, Ui = 897, Wi = 1086, Gi = 1095, [Ki, qi, Ji, Yi, Xi] = [
+}, Bi = 2 ** 20, Vi = .8, Hi = 44, Ui = 385, Wi = 897, Gi = 1086, Ki = 1095, [qi, Ji, Yi, Xi, Zi] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Zi(e) {
-	return Math.floor(Math.min(Math.max(e, -zi), zi) + .5);
+function Qi(e) {
+	return Math.floor(Math.min(Math.max(e, -Bi), Bi) + .5);
 }
-function Qi(e, t, n) {
+function $i(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function $i(e, t, n, r, i) {
-	i.flat ? ea(e, t, n, r, i.fine) : ta(e, t, n, r);
-}
 function ea(e, t, n, r, i) {
+	i.flat ? ta(e, t, n, r, i.fine) : na(e, t, n, r);
+}
+function ta(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Bi : -.8, _ = 1 << i >> 1, v = Zi((l + d) * .5 + g * m) + _ >> i, y = Zi((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(I(Math.floor((p * p + m * m) / b)), 23), S = Math.min(I(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, Ki), T = Math.min(I(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(Hi + x * 8 + C, E + O * 8 + C, D + S * 8 + T, qi);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? Vi : -.8, _ = 1 << i >> 1, v = Qi((l + d) * .5 + g * m) + _ >> i, y = Qi((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(L(Math.floor((p * p + m * m) / b)), 23), S = Math.min(L(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, qi), T = Math.min(L(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(Ui + x * 8 + C, E + O * 8 + C, D + S * 8 + T, Ji);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
-	let k = Qi(t, a, i) + 4 * Qi(t, o, i);
-	if (e.flag(Ui + k, 913 + Qi(t, s, i), 917 + c, Xi)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let k = $i(t, a, i) + 4 * $i(t, o, i);
+	if (e.flag(Wi + k, 913 + $i(t, s, i), 917 + c, Zi)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function ta(e, t, n, { a: r, b: i, o: a }) {
+function na(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(I(o), 43), c = 0;
+	let s = Math.min(L(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Zi(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Vi + o * 24 + c, 116 + o * Vi + s, Ji);
-		t[3 * n + o] = l + u, c = Math.min(I(Math.abs(u)), 23);
+		let l = Qi(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, Hi + o * 24 + c, 116 + o * Hi + s, Yi);
+		t[3 * n + o] = l + u, c = Math.min(L(Math.abs(u)), 23);
 	}
 }
-function na(e, t, n, r, i) {
+function ra(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -zi), zi) : 0, o = Wi + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Yi);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -Bi), Bi) : 0, o = Gi + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, Xi);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var ra = 13, ia = 11, aa = 12, K = 169, oa = 8, sa = Gi, ca = sa + K + 104 + 26, la = ca + K + 104 + ra, ua = la + 64 + 64 + K, da = ua + K + 4 + 1, fa = da + 6, [pa, ma, ha, ga, _a] = [
+var ia = 13, aa = 11, oa = 12, q = 169, sa = 8, ca = Ki, la = ca + q + 104 + 26, ua = la + q + 104 + ia, da = ua + 64 + 64 + q, fa = da + q + 4 + 1, pa = fa + 6, [ma, ha, ga, _a, va] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], va = [
+], ya = [
 	-1,
 	-.4,
 	0,
@@ -2709,12 +2714,12 @@ var ra = 13, ia = 11, aa = 12, K = 169, oa = 8, sa = Gi, ca = sa + K + 104 + 26,
 	2,
 	4
 ];
-function ya(e, t, n, r, i) {
+function ba(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new Ri(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new zi(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -2729,7 +2734,7 @@ function ya(e, t, n, r, i) {
 		if (l >= t) throw j(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(I(l - 1));
+		let t = e.raw(L(l - 1));
 		if (t >= l) throw j(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -2738,44 +2743,44 @@ function ya(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(da + n, da + 3 + n, da + n, _a)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(fa + n, fa + 3 + n, fa + n, va)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			na(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			ra(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? aa : c.status[t] !== 1 || n === i || t === e ? ia : ba(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? oa : c.status[t] !== 1 || n === i || t === e ? aa : xa(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * ra + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = sa + K + 104 + 2 * y + +(_ === v);
-		if (y < ia && e.flag(sa + x, sa + K + y * oa + S, w, pa)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * ia + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = ca + q + 104 + 2 * y + +(_ === v);
+		if (y < aa && e.flag(ca + x, ca + q + y * sa + S, w, ma)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < ia && (v !== _ || y >= ia) && e.flag(ca + x, ca + K + b * oa + C, ca + K + 104 + b, ma)) {
+		if (b < aa && (v !== _ || y >= aa) && e.flag(la + x, la + q + b * sa + C, la + q + 104 + b, ha)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === aa) + (b === aa ? 2 : 0), E = Qi(a, n, r.fine) + 4 * Qi(a, l, r.fine), D = la + 64 + S * oa + C;
-		if (e.flag(la + T * 16 + E, D, la + 64 + 64 + x, ha)) {
+		let T = +(y === oa) + (b === oa ? 2 : 0), E = $i(a, n, r.fine) + 4 * $i(a, l, r.fine), D = ua + 64 + S * sa + C;
+		if (e.flag(ua + T * 16 + E, D, ua + 64 + 64 + x, ga)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let O;
-		if (e.flag(ua + x, ua + K + T, ua + K + 4, ga)) {
+		if (e.flag(da + x, da + q + T, da + q + 4, _a)) {
 			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * O), $i(e, a, O, {
+			], 3 * O), ea(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
@@ -2787,7 +2792,7 @@ function ya(e, t, n, r, i) {
 	if (l !== t) throw j(i, "fewer places than announced");
 	return o;
 }
-function ba(e, t, n, r, i, a) {
+function xa(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -2810,21 +2815,21 @@ function ba(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = va.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = ya.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var xa = 32, Sa = 4, [Ca, wa, Ta, Ea] = [
+var Sa = 32, Ca = 4, [wa, Ta, Ea, Da] = [
 	0,
 	1,
 	2,
 	3
-], Da = fa, Oa = Da + 64 + 12 + 16, q = Oa + Sa + 1, ka = q + 4, [Aa, ja, Ma] = [
+], Oa = pa, ka = Oa + 64 + 12 + 16, J = ka + Ca + 1, Aa = J + 4, [ja, Ma, Na] = [
 	9,
 	10,
 	11
 ];
-function Na(e, t) {
+function Pa(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -2834,7 +2839,7 @@ function Na(e, t) {
 		corners: i
 	};
 }
-function Pa(e, t, n, r, i, a) {
+function Fa(e, t, n, r, i, a) {
 	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
 		faces: new Int32Array(3 * o),
 		place: new Int32Array(n),
@@ -2849,7 +2854,7 @@ function Pa(e, t, n, r, i, a) {
 		0,
 		0,
 		0
-	], p = new Int32Array(Sa), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], p = new Int32Array(Ca), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
 		0,
 		0,
 		-1
@@ -2858,7 +2863,7 @@ function Pa(e, t, n, r, i, a) {
 		return -1;
 	}, y = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + xa); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Sa); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (v(n, o) >= 0) return n;
@@ -2867,41 +2872,41 @@ function Pa(e, t, n, r, i, a) {
 	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
 		let i = t.faces[3 * n + r], o = l[i];
 		if (o < 0) return -1;
-		m.fill(Ea);
+		m.fill(Da);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (d[e] < 0) continue;
 			let t = b(d[e], i);
 			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
 		}
-		for (let e = 0; e < xa && s < Sa && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		for (let e = 0; e < Sa && s < Ca && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
 		let g = -1;
 		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = Da + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(Da + t * 16 + n * 4 + i, Da + 64 + t * 3 + r, a, Aa) && (g = p[t]);
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = Oa + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(Oa + t * 16 + n * 4 + i, Oa + 64 + t * 3 + r, a, ja) && (g = p[t]);
 		}
 		if (g < 0) {
-			if (e.flag(Oa + s, Oa + s, Oa + Sa, ja)) return -1;
-			if (g = e.raw(I(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
+			if (e.flag(ka + s, ka + s, ka + Ca, Ma)) return -1;
+			if (g = e.raw(L(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? wa : Ta);
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Ta : Ea);
 		return g;
 	}, S = () => {
 		let t = g++;
-		if (!e.flag(q, q, q, Ma)) return c.kinds[t] = e.flag(q + 1, q + 1, q + 1, Ma) ? 2 : 0, t;
+		if (!e.flag(J, J, J, Na)) return c.kinds[t] = e.flag(J + 1, J + 1, J + 1, Na) ? 2 : 0, t;
 		c.kinds[t] = 1;
 		let n = _;
-		if (_ = t, n >= 0 && e.flag(q + 2, q + 2, q + 2, Ma)) {
-			let n = e.raw(I(t - 1));
+		if (_ = t, n >= 0 && e.flag(J + 2, J + 2, J + 2, Na)) {
+			let n = e.raw(L(t - 1));
 			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
 			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(q + 3, q + 3, q + 3, Ma);
+		let r = n >= 0 && e.flag(J + 3, J + 3, J + 3, Na);
 		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
 		return t;
 	};
 	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Ca;
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = wa;
 		let r = -1, i = [];
 		for (let o = 0; o < 3; o++) {
 			let s = x(e, o);
@@ -2921,7 +2926,7 @@ function Pa(e, t, n, r, i, a) {
 	return c;
 }
 // eigenfield-three/src/mesh-values.ts
-var Fa = 16, Ia = 6, La = 13, Ra = 14, za = 20, Ba = ka, Va = Ba + 169 + 280 + 182, Ha = Va + 144 + 576 + 48, [Ua, Wa] = [12, 13], Ga = [
+var Ia = 16, La = 6, Ra = 13, za = 14, Ba = 20, Va = Aa, Ha = Va + 169 + 280 + 182, Ua = Ha + 144 + 576 + 48, [Wa, Ga] = [12, 13], Ka = [
 	.5,
 	1.5,
 	3,
@@ -2929,14 +2934,14 @@ var Fa = 16, Ia = 6, La = 13, Ra = 14, za = 20, Ba = ka, Va = Ba + 169 + 280 + 1
 	12,
 	30
 ];
-function Ka(e, t) {
-	return Zi(Number.isNaN(e) ? t : e);
+function qa(e, t) {
+	return Qi(Number.isNaN(e) ? t : e);
 }
-function qa(e) {
-	let t = Ga.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? Ia - t : Ia + t;
+function Ja(e) {
+	let t = Ka.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? La - t : La + t;
 }
-function Ja(e, t, n, r) {
+function Ya(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -2957,18 +2962,18 @@ function Ja(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Fa); e++) for (let i = 1; i < 3; i++) {
-			let o = Ya(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + Ia); e++) for (let i = 1; i < 3; i++) {
+			let o = Xa(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Fa); e++) for (let n = 1; n < 3; n++) {
-				let i = Ya(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + Ia); e++) for (let n = 1; n < 3; n++) {
+				let i = Xa(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(I(v - _), 12), b = h / g, x = Math.min(Math.max(Xa(s), p), m));
+		g > 0 && (y = Math.min(L(v - _), 12), b = h / g, x = Math.min(Math.max(Za(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -2986,15 +2991,15 @@ function Ja(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = Ka(x, b), [D, O] = [qa(S - E), qa(b - E)], ee = e.integer(Ba + D * La + O, Ba + 169 + y * za + f, Ba + 169 + 280 + D * Ra + y, Ua), k = E + ee;
-		i[3 * t + 2] = k, f = Math.min(I(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		let E = qa(x, b), [D, O] = [Ja(S - E), Ja(b - E)], ee = e.integer(Va + D * Ra + O, Va + 169 + y * Ba + f, Va + 169 + 280 + D * za + y, Wa), k = E + ee;
+		i[3 * t + 2] = k, f = Math.min(L(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Ya(e, t, n) {
+function Xa(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function Xa(e) {
+function Za(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -3014,7 +3019,7 @@ function Xa(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Za(e, t, n, r, i) {
+function Qa(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -3026,25 +3031,25 @@ function Za(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Fa); e++) {
-			let [r, s] = [Ya(a, i[e], 1), Ya(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + Ia); e++) {
+			let [r, s] = [Xa(a, i[e], 1), Xa(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = Qa(n, c, l, t, r, s, f === 2);
+			let [u, d] = $a(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, I(v));
+			_ = Math.max(_, L(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Va + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = Ha + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(Va + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Wa + n);
-			l[2 * t + n] = Ka(y[n], 0) + r, u[n] = Math.min(I(Math.abs(r)), 23);
+			let r = e.integer(Ha + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], Ga + n);
+			l[2 * t + n] = qa(y[n], 0) + r, u[n] = Math.min(L(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function Qa(e, t, n, r, i, a, o) {
+function $a(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -3058,9 +3063,9 @@ function Qa(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var $a = 144, eo = 18, to = 8;
-function no(e, t = "mesh") {
-	let n = L(e, $a, t), [r, i, a] = [
+var eo = 144, to = 18, no = 8;
+function ro(e, t = "mesh") {
+	let n = R(e, eo, t), [r, i, a] = [
 		n.getUint8(1),
 		n.getUint8(2),
 		n.getUint8(3)
@@ -3070,18 +3075,18 @@ function no(e, t = "mesh") {
 		12
 	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
 	if (o > _e || c > _e || s > ve) throw j(t, `${c} vertices and ${s} faces`);
-	if (Pe(e, Math.max(o, s, c), ve, t), r > 1 || a > to * r || i < 1 || i > eo || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
-	let u = new Ne(e.subarray($a), Ha, 16), d = ya(u, o, s, {
+	if (Ke(e, Math.max(o, s, c), ve, t), r > 1 || a > no * r || i < 1 || i > to || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let u = new Ge(e.subarray(eo), Ua, 16), d = ba(u, o, s, {
 		flat: r === 1,
 		fine: a
 	}, t);
 	u.checkEnd(t);
-	let f = Na(d.faces, o);
-	r && Ja(u, d, f.first, f.corners);
-	let p = Pa(u, d, c, f.first, f.corners, t), m = ro(d.points, l), h = Na(p.faces, c), g = Za(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), ao(io(d, p, m, g, 2 ** i), t);
+	let f = Pa(d.faces, o);
+	r && Ya(u, d, f.first, f.corners);
+	let p = Fa(u, d, c, f.first, f.corners, t), m = io(d.points, l), h = Pa(p.faces, c), g = Qa(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), oo(ao(d, p, m, g, 2 ** i), t);
 }
-function ro(e, t) {
+function io(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -3089,7 +3094,7 @@ function ro(e, t) {
 	}
 	return n;
 }
-function io(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+function ao(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -3104,14 +3109,14 @@ function io(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 		indices: new Uint32Array(t)
 	};
 }
-function ao(e, t) {
+function oo(e, t) {
 	let n = (e) => Math.abs(e) <= be;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/proxy.ts
-var oo = 65535;
-function so(e, t) {
+var so = 65535;
+function co(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3121,46 +3126,46 @@ function so(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function co({ view: n, where: r }, i) {
-	let { positions: a, uv: o, indices: s } = no(new Uint8Array(await i(n)), r);
+async function lo({ view: n, where: r }, i) {
+	let { positions: a, uv: o, indices: s } = ro(new Uint8Array(await i(n)), r);
 	if (!s.length) throw j(r, "a mesh without faces");
 	let c = new t();
 	c.setAttribute("position", new e(a, 3)), c.setAttribute("uv", new e(o, 2));
-	let l = a.length / 3 <= oo;
+	let l = a.length / 3 <= so;
 	return c.setIndex(new e(l ? Uint16Array.from(s) : s, 1)), c;
 }
-function lo(e) {
+function uo(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function uo(e) {
+function fo(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = fo(e, n, r) ?? (n === r ? null : fo(e, r, n));
+		let r = t / n, i = po(e, n, r) ?? (n === r ? null : po(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function fo(e, t, n) {
-	let [r, i] = [mo(e, 0), mo(e, 1)];
-	if (t === 1 && ho(i) > 0 || n === 1 && ho(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => J(i, e) - J(i, t));
+function po(e, t, n) {
+	let [r, i] = [ho(e, 0), ho(e, 1)];
+	if (t === 1 && go(i) > 0 || n === 1 && go(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Y(i, e) - Y(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => J(r, e) - J(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Y(r, e) - Y(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return po(n, t, (e, t) => J(r, o(t, e))) && po(t, n, (e, t) => J(i, o(e, t))) ? {
+	return mo(n, t, (e, t) => Y(r, o(t, e))) && mo(t, n, (e, t) => Y(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function po(e, t, n) {
+function mo(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3170,33 +3175,33 @@ function po(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function mo(e, t) {
+function ho(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function ho(e) {
+function go(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var J = (e, t) => e[t] ?? 0, go = 1e-6, _o = 32, vo = class {
+var Y = (e, t) => e[t] ?? 0, _o = 1e-6, vo = 32, yo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = uo(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = fo(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(yo(e), this.isLine ? 0 : yo(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(bo(e), this.isLine ? 0 : bo(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Do(e, t, this.places) : e === "bilinear" && this.grid ? ko(this.places, this.grid) : So(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => ko(e, t, this.places) : e === "bilinear" && this.grid ? jo(this.places, this.grid) : Co(this.places, this.triangles);
 	}
 };
-function yo(e) {
+function bo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function bo(e) {
+function xo(e) {
 	let t = {
 		camera: [
 			0,
@@ -3215,58 +3220,58 @@ function bo(e) {
 		t.camera[r] = e, t.weight[r] = n;
 	}), t;
 }
-var Y = (e, t) => e[2 * t] ?? 0, X = (e, t) => e[2 * t + 1] ?? 0;
-function xo(e, t, n, r, i, a) {
-	let [o, s] = [Y(n, r), X(n, r)], [c, l] = [Y(n, i) - o, X(n, i) - s], [u, d] = [Y(n, a) - o, X(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
+var X = (e, t) => e[2 * t] ?? 0, Z = (e, t) => e[2 * t + 1] ?? 0;
+function So(e, t, n, r, i, a) {
+	let [o, s] = [X(n, r), Z(n, r)], [c, l] = [X(n, i) - o, Z(n, i) - s], [u, d] = [X(n, a) - o, Z(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
 		p,
 		m
 	];
 }
-function So(e, t) {
+function Co(e, t) {
 	if (!t.length) {
-		let t = Eo(e, To(e));
-		return (n, r) => $(n, r, e, t);
+		let t = Oo(e, Do(e));
+		return (n, r) => Eo(n, r, e, t);
 	}
-	let n = Co(e, t, 3), r = wo(t);
+	let n = wo(e, t, 3), r = To(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[Q(a) * _o + Q(i)] ?? []) {
+		for (let r of n[$(a) * vo + $(i)] ?? []) {
 			let [n, l, u] = [
-				Z(t, r, 0),
-				Z(t, r, 1),
-				Z(t, r, 2)
-			], d = xo(i, a, e, n, l, u), f = Math.min(...d);
+				Q(t, r, 0),
+				Q(t, r, 1),
+				Q(t, r, 2)
+			], d = So(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? $(i, a, e, r) : bo(c.map((e, n) => [Z(t, o, n), e]));
+		return s < -1e-9 ? Eo(i, a, e, r) : xo(c.map((e, n) => [Q(t, o, n), e]));
 	};
 }
-var Z = (e, t, n) => e[3 * t + n] ?? 0;
-function Q(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * _o)));
+var Q = (e, t, n) => e[3 * t + n] ?? 0;
+function $(e) {
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * vo)));
 }
-function Co(e, t, n) {
+function wo(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
-		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Y(e, t)), s = a.map((t) => X(e, t));
-		for (let e = Q(Math.min(...s)); e <= Q(Math.max(...s)); e++) for (let t = Q(Math.min(...o)); t <= Q(Math.max(...o)); t++) r[e * _o + t]?.push(i);
+		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => X(e, t)), s = a.map((t) => Z(e, t));
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * vo + t]?.push(i);
 	}
 	return r;
 }
-function wo(e) {
+function To(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Z(e, n, r), Z(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Q(e, n, r), Q(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3275,14 +3280,14 @@ function wo(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function $(e, t, n, r) {
+function Eo(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
 		0
 	];
 	for (let o = 0; o + 1 < r.length; o += 2) {
-		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [Y(n, s), X(n, s)], [d, f] = [Y(n, c) - l, X(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
+		let [s, c] = [r[o] ?? 0, r[o + 1] ?? 0], [l, u] = [X(n, s), Z(n, s)], [d, f] = [X(n, c) - l, Z(n, c) - u], p = d * d + f * f, m = p > 0 ? Math.min(1, Math.max(0, ((e - l) * d + (t - u) * f) / p)) : 0, h = (l + m * d - e) ** 2 + (u + m * f - t) ** 2;
 		h < i && ([i, a] = [h, [
 			s,
 			c,
@@ -3290,33 +3295,33 @@ function $(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return bo([[o, 1 - c], [s, c]]);
+	return xo([[o, 1 - c], [s, c]]);
 }
-function To(e) {
+function Do(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Eo(e, t) {
+function Oo(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
-	for (let n of t) r[0] = (r[0] ?? 0) + Y(e, n) / t.length, r[1] = (r[1] ?? 0) + X(e, n) / t.length;
+	for (let n of t) r[0] = (r[0] ?? 0) + X(e, n) / t.length, r[1] = (r[1] ?? 0) + Z(e, n) / t.length;
 	let [i, a, o] = [
 		0,
 		0,
 		0
 	];
 	for (let n of t) {
-		let [t, s] = [Y(e, n) - (r[0] ?? 0), X(e, n) - (r[1] ?? 0)];
+		let [t, s] = [X(e, n) - (r[0] ?? 0), Z(e, n) - (r[1] ?? 0)];
 		[i, a, o] = [
 			i + t * t,
 			a + t * s,
 			o + s * s
 		];
 	}
-	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Y(e, t) * Math.cos(s) + X(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
+	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => X(e, t) * Math.cos(s) + Z(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Do(e, t, n) {
+function ko(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3327,15 +3332,15 @@ function Do(e, t, n) {
 		Infinity
 	];
 	for (let l = 0; 2 * l < n.length; l++) {
-		let [u, d] = [Y(n, l) - e, X(n, l) - t], f = u * u + d * d;
+		let [u, d] = [X(n, l) - e, Z(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Oo(n, r, i, a) <= go) return $(e, t, n, Eo(n, [
+	if (a < 0 || Ao(n, r, i, a) <= _o) return Eo(e, t, n, Oo(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = xo(e, t, n, r, i, a);
+	let [l, u, d] = So(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3351,15 +3356,15 @@ function Do(e, t, n) {
 		]
 	};
 }
-function Oo(e, t, n, r) {
-	let [i, a] = [Y(e, n) - Y(e, t), X(e, n) - X(e, t)], [o, s] = [Y(e, r) - Y(e, t), X(e, r) - X(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
+function Ao(e, t, n, r) {
+	let [i, a] = [X(e, n) - X(e, t), Z(e, n) - Z(e, t)], [o, s] = [X(e, r) - X(e, t), Z(e, r) - Z(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function ko(e, t) {
+function jo(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Eo(e, To(e));
-		return (n, r) => $(n, r, e, t);
+		let t = Oo(e, Do(e));
+		return (n, r) => Eo(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3368,7 +3373,7 @@ function ko(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Co(e, o.flat(), 4), c = [];
+	let s = wo(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3376,12 +3381,12 @@ function ko(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[Q(n) * _o + Q(t)] ?? []) {
-			let s = o[a], c = s ? Ao(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * vo + $(t)] ?? []) {
+			let s = o[a], c = s ? Mo(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return $(t, n, e, l);
-		let [a, c] = jo(t, n, e, r);
+		if (!r || i < -1e-9) return Eo(t, n, e, l);
+		let [a, c] = No(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3393,25 +3398,25 @@ function ko(e, t) {
 		};
 	};
 }
-function Ao(e, t, n, r) {
+function Mo(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
-		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Y(n, o), X(n, o)];
-		i = Math.min(i, (Y(n, s) - c) * (t - l) - (X(n, s) - l) * (e - c));
+		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [X(n, o), Z(n, o)];
+		i = Math.min(i, (X(n, s) - c) * (t - l) - (Z(n, s) - l) * (e - c));
 	}
 	return i;
 }
-function jo(e, t, n, r) {
+function No(e, t, n, r) {
 	let [i, a, o, s] = [
-		Y(n, r[0]),
 		X(n, r[0]),
-		Y(n, r[1]),
-		X(n, r[1])
+		Z(n, r[0]),
+		X(n, r[1]),
+		Z(n, r[1])
 	], [c, l, u, d] = [
-		Y(n, r[2]),
 		X(n, r[2]),
-		Y(n, r[3]),
-		X(n, r[3])
+		Z(n, r[2]),
+		X(n, r[3]),
+		Z(n, r[3])
 	], [f, p, m, h, g, _] = [
 		e - i,
 		t - a,
@@ -3419,24 +3424,24 @@ function jo(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Mo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Mo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Po(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Po(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Mo(e) {
+function Po(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var No = class {
+var Fo = class {
 	parser;
 	options;
 	name = ae;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Et(e.json);
+		this.parser = e, this.options = t, this.ours = Nt(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Dt(this.parser.json));
+		this.ours && (this.scene = Pt(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -3451,24 +3456,24 @@ var No = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Po(e, this.parser), [r] = n;
+		let n = Io(e, this.parser), [r] = n;
 		if (!r) throw j("/meshes/0", "no node shows it");
-		so(r.geometry, t);
+		co(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await co(t.mesh, i);
+		}, a = t.mesh && await lo(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map((e) => oi(e, i))),
-			rn(t, i),
-			dn(t, i),
-			hn(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new vo(Float64Array.from(u.flatMap((e) => yn(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = _n(t, s, f, d.grid, this.fileBytes(), lo(r.geometry)), m = {
+			Promise.all(t.planes.map((e) => si(e, i))),
+			on(t, i),
+			pn(t, i),
+			_n(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new yo(Float64Array.from(u.flatMap((e) => xn(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = yn(t, s, f, d.grid, this.fileBytes(), uo(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3479,7 +3484,7 @@ var No = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new bi(m, this.options);
+		e.userData.eigenfield = new xi(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3487,43 +3492,43 @@ var No = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Po(e, t) {
+function Io(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Fo(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Lo(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Fo(e) {
+function Lo(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Io(e, t = {}) {
+async function Ro(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Di(), i = new AbortController(), a = () => {
+	let r = new Oi(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = zo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Vo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await ji(r);
-		if (!Et(e.json)) return {
-			gltf: await Ro(r, e, o),
+		let e = await Mi(r);
+		if (!Nt(e.json)) return {
+			gltf: await Bo(r, e, o),
 			field: null
 		};
-		let i = await Lo(r, e, t);
+		let i = await zo(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof bi ? a : null
+			field: a instanceof xi ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function Lo(e, t, n) {
+async function zo(e, t, n) {
 	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3533,12 +3538,12 @@ async function Lo(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new No(e, {
+	return r.register((e) => new Fo(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Ro(e, t, n) {
+async function Bo(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3548,25 +3553,25 @@ async function Ro(e, t, n) {
 		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function zo(e, t, n, r) {
+async function Vo(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Bo(e) : await Vo(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Ho(e) : await Uo(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Ho(t.received, e);
+			throw n.aborted ? e : Wo(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Bo(e) {
+function Ho(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Vo(e, t) {
+async function Uo(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3577,7 +3582,7 @@ async function Vo(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Ho(e, t) {
+function Wo(e, t) {
 	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { bi as EigenField, No as EigenfieldPlugin, A as SceneError, Rn as defaultMemory, Io as loadEigenfield, xn as novelCamera, Tn as placeCamera };
+export { xi as EigenField, Fo as EigenfieldPlugin, A as SceneError, Bn as defaultMemory, Ro as loadEigenfield, Cn as novelCamera, Dn as placeCamera };
