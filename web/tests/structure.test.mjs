@@ -1,19 +1,22 @@
-// The source of the plug-in and the viewer as a graph: no circle of imports, no exported type twice. Needs Node.js alone.
+// The sources as a graph: no circle of imports, no exported type twice; and types that follow the schema. Needs Node.js
+// alone.
 
 import assert from "node:assert/strict";
+import { spawnSync } from "node:child_process";
 import { readFileSync, readdirSync } from "node:fs";
 import { dirname, join, relative, resolve } from "node:path";
 import { test } from "node:test";
 import { fileURLToPath } from "node:url";
 
 const WEB = fileURLToPath(new URL("..", import.meta.url));
-const FOLDERS = ["eigenfield-three/src", "viewer/src", "example", "benchmarks", "tests"];
+const FOLDERS = ["eigenfield-three/src", "viewer/src", "example", "benchmarks", "scripts", "tests"];
 const PACKAGES = { "eigenfield-three": "eigenfield-three/src/index.ts" };
 const IMPORT = /^(?:import|export)\b[^"';]*?(?:\bfrom\s*)?["']([^"']+)["']|\bimport\(\s*["']([^"']+)["']\s*\)/gm;
 const EXPORTED_TYPE = /^export (?:declare |abstract )*(?:class|interface|type|enum) (\w+)/gm;
 
 const sources = new Map(
-  FOLDERS.flatMap((folder) => readdirSync(join(WEB, folder), { recursive: true }).map((name) => join(WEB, folder, name)))
+  FOLDERS.map((folder) => join(WEB, folder))
+    .flatMap((folder) => readdirSync(folder, { recursive: true }).map((name) => join(folder, name)))
     .filter((path) => /\.(ts|mjs)$/.test(path))
     .map((path) => [path, readFileSync(path, "utf8")]),
 );
@@ -70,7 +73,12 @@ test("no class and no type is exported by two files", () => {
     if (!/\/src\//.test(path)) continue;
     for (const [, name] of text.matchAll(EXPORTED_TYPE)) owners.set(name, [...(owners.get(name) ?? []), short(path)]);
   }
-  const twice = [...owners].filter(([, paths]) => paths.length > 1).map(([name, paths]) => `${name}: ${paths.join(", ")}`);
+  const twice = [...owners].filter(([, paths]) => paths.length > 1).map(([name, paths]) => [name, ...paths].join(" "));
   assert.ok(owners.size > 80, `${owners.size} types`);
   assert.deepEqual(twice, []);
+});
+
+test("the types of the scene's JSON are those of its schema", () => {
+  const done = spawnSync(process.execPath, [join(WEB, "scripts/schema-types.mjs"), "--check"], { encoding: "utf8" });
+  assert.equal(done.status, 0, done.stderr);
 });

@@ -19,6 +19,7 @@ import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import { readColours, readPlanes, type Plane } from "./planes.js";
+import type { CamerasJson, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
 
 export interface SceneDocument {
   version: string;
@@ -63,7 +64,7 @@ export function isScene(json: Json): boolean {
 /** Reads and checks the document of a scene. Raises SceneError: `version`, `needs`, `unsupported`, `damaged`. */
 export function readDocument(json: Json): SceneDocument {
   const root = new Value(json, "");
-  const extension = root.key("extensions").key(limits.EXTENSION);
+  const extension = root.key("extensions").key(limits.EXTENSION) as Value<SceneJson>;
   const version = checkVersion(extension);
   const views = readViews(root);
   const accessor = accessorReader(root, views);
@@ -116,7 +117,7 @@ export function readDocument(json: Json): SceneDocument {
   };
 }
 
-function checkVersion(extension: Value): string {
+function checkVersion(extension: Value<SceneJson>): string {
   const version = extension.key("version").text(limits.MAX_NAME);
   if (!/^1\.\d+$/.test(version)) {
     throw new SceneError(
@@ -174,7 +175,7 @@ function previewOf(root: Value, viewOf: ViewReader): number | null {
 }
 
 /** How many cameras there are, and their names or where those are coded. */
-function namesOf(cameras: Value, viewOf: ViewReader): { count: number; names: string[] | Stream } {
+function namesOf(cameras: Value<CamerasJson>, viewOf: ViewReader): { count: number; names: string[] | Stream } {
   const coded = cameras.key("codedNames");
   if (coded.exists) {
     const count = coded.key("count").integer(1, limits.MAX_CAMERAS);
@@ -198,7 +199,7 @@ export function wrongIn(names: string[]): string | null {
 }
 
 /** Names of which the pieces are the same in all, along rows or along columns. */
-function patternNames(pattern: Value): string[] {
+function patternNames(pattern: Value<PatternJson>): string[] {
   const counts = pattern.key("counts").items(2).map((item) => item.integer(1, limits.MAX_CAMERAS));
   const [rows = 0, columns = 0] = counts;
   if (!columns || rows * columns > limits.MAX_CAMERAS) throw pattern.wrong("no counts of rows and columns");
@@ -224,7 +225,7 @@ function patternNames(pattern: Value): string[] {
   });
 }
 
-function heldOutOf(cameras: Value, count: number): boolean[] {
+function heldOutOf(cameras: Value<CamerasJson>, count: number): boolean[] {
   const flags = Array<boolean>(count).fill(false);
   const held = cameras.key("heldOut");
   if (!held.exists) return flags;
@@ -238,7 +239,7 @@ function heldOutOf(cameras: Value, count: number): boolean[] {
 }
 
 function calibrationOf(
-  cameras: Value,
+  cameras: Value<CamerasJson>,
   count: number,
   accessor: AccessorReader,
   viewOf: ViewReader,
@@ -251,7 +252,7 @@ function calibrationOf(
   };
 }
 
-function sizesOf(cameras: Value, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
+function sizesOf(cameras: Value<CamerasJson>, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
   const one = cameras.key("size");
   if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT32], 2 * count);
   const [width = 0, height = 0] = one.numbers(2, 1, limits.MAX_CAMERA_SIDE);
@@ -259,7 +260,7 @@ function sizesOf(cameras: Value, count: number, accessor: AccessorReader): Scene
   return [width, height];
 }
 
-function readViewPlane(value: Value): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {
+function readViewPlane(value: Value<ViewPlaneJson>): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {
   const [right, up] = [value.key("right").triple(), value.key("up").triple()];
   const dot = (a: number[], b: number[]): number => a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0);
   for (const off of [dot(right, right) - 1, dot(up, up) - 1, dot(right, up)]) {

@@ -4,6 +4,7 @@ import { FLOAT, streamOf, type Accessor, type AccessorReader, type Stream, type 
 import { SceneError } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
+import type { BasisJson, MeanJson, PlaneJson, PrecisionJson, SceneJson, TextureJson } from "./schema.js";
 
 const DEEP = 10; // bits of a code that may have more than 8
 
@@ -58,7 +59,7 @@ function readSize(value: Value, most = limits.MAX_SIDE): [number, number] {
 }
 
 export function readPlanes(
-  extension: Value,
+  extension: Value<SceneJson>,
   encoded: number,
   preview: number | null,
   accessor: AccessorReader,
@@ -70,7 +71,7 @@ export function readPlanes(
     const channels = plane.key("channels").integer(1, limits.MAX_CHANNELS);
     const mean = readMean(plane, channels, i === 0 ? preview : null, viewOf);
     const bases = plane.key("bases").items(limits.MAX_BASES);
-    const read = (basis: Value): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
+    const read = (basis: Value<BasisJson>): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
     return { channels, ...mean, bases: bases.map(read) };
   });
   let [decoded, textures] = [0, 0];
@@ -90,7 +91,7 @@ export function readPlanes(
 }
 
 /** What makes R, G and B of the channels; one plane of one or three channels needs nothing for it. */
-export function readColours(extension: Value, planes: Plane[]): [number, number, number][] {
+export function readColours(extension: Value<SceneJson>, planes: Plane[]): [number, number, number][] {
   const total = planes.reduce((sum, { channels }) => sum + channels, 0);
   const matrix = extension.key("toRGB");
   if (matrix.exists) {
@@ -106,7 +107,7 @@ export function readColours(extension: Value, planes: Plane[]): [number, number,
 
 /** A picture of one or `textures` textures of `size`, if that is known. `plain`: code / 255 unless it says more. */
 function readPicture(
-  value: Value,
+  value: Value<MeanJson | TextureJson>,
   channels: number,
   textures: number,
   size: [number, number] | null,
@@ -149,7 +150,7 @@ function numbersOf(value: Value, channels: number, textures: number): number[] {
 }
 
 function readMean(
-  plane: Value,
+  plane: Value<PlaneJson>,
   channels: number,
   preview: number | null,
   viewOf: ViewReader,
@@ -165,7 +166,7 @@ function readMean(
   return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
 }
 
-function readPrecision(value: Value, mean: Picture, viewOf: ViewReader): Precision | null {
+function readPrecision(value: Value<PrecisionJson>, mean: Picture, viewOf: ViewReader): Precision | null {
   if (!value.exists) return null;
   if (mean.bits !== DEEP) throw value.wrong(`of a mean of ${mean.bits} bits`);
   const size = readSize(value.key("size"), limits.MAX_PRECISION_SIDE);
@@ -173,7 +174,7 @@ function readPrecision(value: Value, mean: Picture, viewOf: ViewReader): Precisi
 }
 
 function readBasis(
-  basis: Value,
+  basis: Value<BasisJson>,
   channels: number,
   encoded: number,
   accessor: AccessorReader,
@@ -189,7 +190,7 @@ function readBasis(
   const common = basis.key("picture");
   const shared = common.exists ? common.object() : {};
   const pictures = basis.key("textures").items(limits.MAX_COMPONENTS).map((own) => {
-    const picture = new Value({ ...shared, ...own.object() }, own.where);
+    const picture = new Value<TextureJson>({ ...shared, ...own.object() }, own.where);
     const several = picture.key("count");
     const textures = several.exists ? several.integer(1, limits.MAX_COMPONENTS) : 1;
     count += textures;

@@ -2,7 +2,8 @@
 // its edge, closer by cropping, and off the plane by a part of the scene's distance.
 
 import type { PerspectiveCamera } from "three";
-import { type CaptureCamera, type EigenField, type Frame, novelCamera, placeCamera, type Vector } from "eigenfield-three";
+import { novelCamera, placeCamera } from "eigenfield-three";
+import type { CaptureCamera, EigenField, Frame, Vector } from "eigenfield-three";
 import { add, dot, scaled, turned } from "./geometry";
 import { approach, clamp, type Mode, type Push } from "./mode";
 
