@@ -1,5 +1,6 @@
 // What the JSON says of bytes: buffer views, accessors and streams, checked before a byte of them is read.
 
+import { USUAL, codecOf, type Codec, type Kind } from "./codecs.js";
 import { cutOff, damaged } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
@@ -30,8 +31,9 @@ export interface Accessor {
 }
 
 /** Bytes that a decoder of ours reads: docs/coding.md. */
-export interface Stream {
+export interface Stream<K extends Kind> {
   view: number;
+  codec: Codec<K>;
   where: string;
 }
 
@@ -94,8 +96,15 @@ export function accessorReader(root: Value, views: View[]): AccessorReader {
   };
 }
 
-export function streamOf(entry: Value, view: Value, viewOf: ViewReader): Stream {
-  return { view: viewOf(view), where: entry.where };
+/** A stream is the index of its buffer view, or an object that names its codec too. */
+export function streamOf<K extends keyof typeof USUAL>(
+  kind: K,
+  entry: Value<number | { bufferView: number; codec?: string }>,
+  viewOf: ViewReader,
+): Stream<K> {
+  const alone = typeof entry.raw === "number";
+  const codec = codecOf(kind, alone ? new Value(undefined, entry.where) : entry.key("codec"), USUAL[kind]);
+  return { view: viewOf(alone ? entry : entry.key("bufferView")), codec, where: entry.where };
 }
 
 /** The numbers of an accessor, read whole. */

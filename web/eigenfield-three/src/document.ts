@@ -15,37 +15,42 @@ import {
   type View,
   type ViewReader,
 } from "./accessors.js";
+import { CODECS } from "./codecs.js";
 import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
 import { readColours, readPlanes, type Plane } from "./planes.js";
-import type { CamerasJson, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
+import type { CamerasJson, Feature, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
 
 export interface SceneDocument {
   version: string;
   generator: string;
   planes: Plane[];
   colours: [number, number, number][]; // R, G, B of the value 1 of each channel of all planes
-  names: string[] | Stream; // as many as `heldOut`
+  names: string[] | Stream<"names">; // as many as `heldOut`
   heldOut: boolean[];
   reference: number;
-  calibration: Stream | { intrinsics: Accessor; poses: Accessor };
+  calibration: Stream<"cameras"> | { intrinsics: Accessor; poses: Accessor };
   sizes: Accessor | [number, number]; // of each photograph, or of all
   colour: Accessor | null;
   origin: [number, number, number];
   right: [number, number, number];
   up: [number, number, number];
   extent: [number, number];
-  triangles: Accessor | Stream | null;
+  triangles: Accessor | Stream<"triangles"> | null;
   settings: JsonObject;
   scores: JsonObject;
   views: View[];
-  mesh: Stream | null; // the proxy, of which what follows is then a coarse form for other viewers
+  mesh: Stream<"mesh"> | null; // the proxy, of which what follows is then a coarse form for other viewers
   position: Accessor;
   uv: Accessor;
   indices: Accessor;
   preview: number | null; // buffer view of `images[0]`
 }
+
+const LAYOUT_FEATURES: Feature[] = ["namePattern", "precision", "regions", "sharedPicture", "stacks", "toRGB"];
+const CODEC_FEATURES = Object.values(CODECS).flatMap(({ needs }) => needs ?? []);
+export const KNOWN_NEEDS: ReadonlySet<string> = new Set([...LAYOUT_FEATURES, ...CODEC_FEATURES]);
 
 const MOST_PARTS = 64; // of a pattern of names
 const MOST_DIGITS = 9;
@@ -102,14 +107,14 @@ export function readDocument(json: Json): SceneDocument {
     colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
     ...readViewPlane(viewPlane),
     triangles: codedTriangles.exists
-      ? streamOf(codedTriangles, codedTriangles, viewOf)
+      ? streamOf("triangles", codedTriangles, viewOf)
       : triangles.exists
         ? trianglesOf(accessor(triangles, "SCALAR", [UINT16, UINT32], null), 2 * limits.MAX_CAMERAS)
         : null,
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
     views,
-    mesh: mesh.exists ? streamOf(mesh, mesh.key("bufferView"), viewOf) : null,
+    mesh: mesh.exists ? streamOf("mesh", mesh, viewOf) : null,
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
     indices: trianglesOf(accessor(indices, "SCALAR", [UINT8, UINT16, UINT32], null), limits.MAX_TRIANGLES),
@@ -129,7 +134,7 @@ function checkVersion(extension: Value<SceneJson>): string {
   const needs = extension.key("needs");
   for (const need of needs.exists ? needs.items(limits.MAX_VIEWS) : []) {
     const feature = need.text(limits.MAX_NAME);
-    if (!limits.KNOWN_NEEDS.has(feature)) {
+    if (!KNOWN_NEEDS.has(feature)) {
       const message = `The scene needs "${feature.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`;
       throw new SceneError("needs", message, need.where);
     }
@@ -175,11 +180,11 @@ function previewOf(root: Value, viewOf: ViewReader): number | null {
 }
 
 /** How many cameras there are, and their names or where those are coded. */
-function namesOf(cameras: Value<CamerasJson>, viewOf: ViewReader): { count: number; names: string[] | Stream } {
+function namesOf(cameras: Value<CamerasJson>, viewOf: ViewReader): { count: number; names: SceneDocument["names"] } {
   const coded = cameras.key("codedNames");
   if (coded.exists) {
     const count = coded.key("count").integer(1, limits.MAX_CAMERAS);
-    return { count, names: streamOf(coded, coded.key("bufferView"), viewOf) };
+    return { count, names: streamOf("names", coded, viewOf) };
   }
   const pattern = cameras.key("pattern");
   const given = pattern.exists ? pattern : cameras.key("names");
@@ -245,7 +250,7 @@ function calibrationOf(
   viewOf: ViewReader,
 ): SceneDocument["calibration"] {
   const coded = cameras.key("coded");
-  if (coded.exists) return streamOf(coded, coded, viewOf);
+  if (coded.exists) return streamOf("cameras", coded, viewOf);
   return {
     intrinsics: accessor(cameras.key("intrinsics"), "SCALAR", [FLOAT], 5 * count),
     poses: accessor(cameras.key("poses"), "SCALAR", [FLOAT], 12 * count),

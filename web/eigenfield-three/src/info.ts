@@ -1,16 +1,12 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
 import { checkFinite, readNumbers, type Accessor, type Numbers, type Stream, type ViewBytes } from "./accessors.js";
-import { decodeCameras } from "./camera-decoder.js";
 import { type SceneDocument, wrongIn } from "./document.js";
 import { damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
-import { decodeNames } from "./name-decoder.js";
 import type { Basis } from "./planes.js";
-import { decodeTriangles } from "./triangle-decoder.js";
-import { decodeWeights } from "./weight-decoder.js";
 
 const SHORTEST = 1e-6; // of focal lengths, in pixels
 
@@ -90,7 +86,7 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
 
 async function readNames({ names, heldOut }: SceneDocument, bytes: ViewBytes): Promise<string[]> {
   if (Array.isArray(names)) return names;
-  const found = await decodeNames(new Uint8Array(await bytes(names.view)), heldOut.length, names.where);
+  const found = await names.codec.decode(new Uint8Array(await bytes(names.view)), heldOut.length, names.where);
   const wrong = found.some((name) => name.length > limits.MAX_NAME) ? "names that are too long" : wrongIn(found);
   if (wrong) throw damaged(names.where, wrong);
   return found;
@@ -113,8 +109,8 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
     const { intrinsics, poses } = calibration;
     return { lenses: await readTable(intrinsics, scene, bytes), poses: await readTable(poses, scene, bytes) };
   }
-  const { view, where } = calibration;
-  const coded = decodeCameras(new Uint8Array(await bytes(view)), where);
+  const { view, codec, where } = calibration;
+  const coded = codec.decode(new Uint8Array(await bytes(view)), where);
   const count = coded.poses.length / 12;
   if (count !== heldOut.length) throw damaged(where, `${count} cameras in it, and ${heldOut.length} names`);
   const table = (numbers: Float32Array): Table => ({ numbers: checkFinite(numbers, where), where });
@@ -178,8 +174,8 @@ async function readOwnWeights(
 ): Promise<Numbers> {
   if (!weights) return new Float32Array(0);
   if ("type" in weights) return readNumbers(weights, scene.views, bytes);
-  const { view, where } = weights;
-  const { cameras, components, values } = decodeWeights(new Uint8Array(await bytes(view)), where);
+  const { view, codec, where } = weights;
+  const { cameras, components, values } = codec.decode(new Uint8Array(await bytes(view)), where);
   if (cameras === rows && components === count) return checkFinite(values, where);
   throw damaged(where, `${cameras} x ${components} weights, and ${rows} encoded cameras x ${count} textures`);
 }
@@ -214,9 +210,13 @@ export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Pro
   return triangles;
 }
 
-async function readCorners(triangles: Accessor | Stream, scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
+async function readCorners(
+  triangles: Accessor | Stream<"triangles">,
+  scene: SceneDocument,
+  bytes: ViewBytes,
+): Promise<Uint32Array> {
   if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene.views, bytes));
-  return decodeTriangles(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
+  return triangles.codec.decode(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
 }
 
 export function sceneInfo(

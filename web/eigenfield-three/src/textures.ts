@@ -1,14 +1,15 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
 import type { ViewBytes } from "./accessors.js";
-import { closeMean, closePieces, decodeMean, decodePieces, type Mean, type Piece } from "./decode.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
 import { atlasOf } from "./info.js";
+import { closeMean, decodeMean, type Mean } from "./means.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { makePacker, type Packer, type Slot } from "./packing.js";
-import { codeStep, isDeep, type Basis, type Picture } from "./planes.js";
+import { closePieces, type Piece } from "./pieces.js";
+import { codeStep, hasTenBits, type Basis, type Picture } from "./planes.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
@@ -64,10 +65,10 @@ export class Textures {
     const { scene, meanSizes, rays } = parts;
     this.decoded = parts.means;
     const bases = scene.planes.flatMap(({ channels, bases }) =>
-      bases.map((basis) => ({ ...basis, channels, deep: isDeep(basis.pictures) })),
+      bases.map((basis) => ({ ...basis, channels, deep: hasTenBits(basis.pictures) })),
     );
     const means = scene.planes.map(({ channels, mean }, i): memory.Needs["means"][number] => {
-      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, deep: isDeep([mean]) };
+      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, deep: hasTenBits([mean]) };
     });
     this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
     this.means = means.map(() => new ExternalTexture());
@@ -261,7 +262,7 @@ export class Textures {
 
   private putMean(gl: WebGL2RenderingContext, made: Mean, mean: Picture, array: WebGLTexture): void {
     const { pieces, precision } = made;
-    const deep = isDeep([mean]);
+    const deep = hasTenBits([mean]);
     const [first] = pieces;
     if (first && pieces.length === 1 && !deep && "close" in first.picture) {
       gpu.putPicture(gl, array, first.picture);
@@ -279,7 +280,7 @@ export class Textures {
     const { basis, picture } = entry;
     const decoded = this.parts
       .bytes(picture.view)
-      .then((data) => decodePieces(data, picture, basis.size, down));
+      .then((data) => picture.codec.decode(data, picture, basis.size, down));
     decoded.catch(() => undefined); // awaited later, or not at all
     return decoded;
   }
