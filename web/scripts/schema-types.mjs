@@ -1,6 +1,6 @@
-// node scripts/schema-types.mjs [--check]: writes the TypeScript types of the scene's JSON from its schema. With --check
-// it writes nothing, and fails where the types that are there are others. It knows what the schema uses: $ref, $defs,
-// enum, const, oneOf, objects, arrays.
+// node scripts/schema-types.mjs [--check]: writes the TypeScript types of the scene's JSON from its schema. With
+// --check it writes nothing, and fails where the types that are there are others. It knows what the schema uses: $ref,
+// $defs, enum, const, oneOf, objects, arrays.
 
 import { readFileSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";

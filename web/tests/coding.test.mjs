@@ -1,5 +1,5 @@
-// The table of codecs against the schema, and its decoders of meshes, weights, cameras, triangles and names against what
-// Python codes and decodes, damaged bytes included.
+// The table of codecs against the schema, and its decoders of meshes, weights, cameras, triangles and names against
+// what Python codes and decodes, damaged bytes included.
 
 import assert from "node:assert/strict";
 import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";

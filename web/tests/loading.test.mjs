@@ -46,7 +46,7 @@ function tryLoad(page, source) {
       if (!field) return { plain: true, meshes: gltf.scene.children.length };
       const later = new Promise((resolve) => {
         field.addEventListener("error", ({ error }) => resolve({ code: error.code, message: error.message }));
-        field.complete.then(() => resolve(null), () => undefined); // the event tells of it
+        field.complete.then(() => resolve(null), () => undefined); // the event reports it
       });
       draw();
       return { later: await later, loaded: field.loaded };
@@ -137,7 +137,7 @@ test("what is cut off or damaged after the mean is drawn is an event, and the re
   await close();
 });
 
-test("files cut off anywhere are told of", async () => {
+test("files cut off anywhere are reported", async () => {
   const { page, close } = await lab.open();
   const bytes = sceneBytes("scene.glb");
   const part = { length: 0 };
@@ -336,8 +336,8 @@ test("streams may name their codecs; an unknown one is refused by name, and so i
       stream(find(other)).codec = codec;
       routes["/named.glb"] = { body: writeGlb({ json: other, binary }) };
       const found = await tryLoad(page, "named.glb");
-      const message = `A ${kind} stream has the codec "${codec}", which this viewer does not know; take a newer viewer.`;
-      assert.deepEqual([found.code, found.message], ["codec-unknown", message]);
+      const message = `A ${kind} stream has the codec "${codec}", which this viewer does not know`;
+      assert.deepEqual([found.code, found.message], ["codec-unknown", `${message}; take a newer viewer.`]);
       assert.match(found.where, /^\/extensions\/EIGENFIELD_eigen_textures\/.+\/codec$/);
     }
   }

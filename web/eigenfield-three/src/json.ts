@@ -16,7 +16,7 @@ type MemberOf<T, K> = unknown extends T ? unknown : Member<T, K>;
 type ItemOf<T> = unknown extends T ? unknown : Item<T>;
 
 /**
- * A value and its JSON pointer. T is what the schema says about it, `unknown` where no schema of ours does. The compiler
+ * A value and its JSON pointer. T is its type by the schema, `unknown` where no schema of ours has it. The compiler
  * checks the names of keys by T; the value itself may be anything until a method has checked it.
  */
 export class Value<T = unknown> {

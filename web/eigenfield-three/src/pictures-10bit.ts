@@ -27,13 +27,13 @@ async function decodeCodes(bytes: ArrayBuffer, width: number, height: number): P
   try {
     decoder = new ImageDecoder({ data: bytes, type: "image/avif" });
     frame = (await decoder.decode()).image;
-    const seen = frame.visibleRect;
-    if (!FORMATS.has(frame.format ?? "") || seen?.width !== width || seen.height !== height) return null;
+    const visible = frame.visibleRect;
+    if (!FORMATS.has(frame.format ?? "") || visible?.width !== width || visible.height !== height) return null;
     const data = new Uint8Array(frame.allocationSize());
     const [luma] = await frame.copyTo(data);
     return luma ? { data: data.subarray(luma.offset), width, height, stride: luma.stride } : null;
   } catch {
-    return null; // who decodes it in another way hears what is wrong
+    return null; // another decoder reports what is wrong
   } finally {
     frame?.close();
     decoder?.close();

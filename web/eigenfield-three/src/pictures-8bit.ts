@@ -7,7 +7,7 @@ import type { PictureDecoder, PictureFile } from "./pieces.js";
 
 const OPTIONS: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
 
-// Eight grey texels square and one: what tells a browser without the codec from a damaged picture.
+// Eight grey texels square and one: they distinguish a browser without the codec from a damaged picture.
 const PROBES: Record<string, string> = {
   "image/avif":
     "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAA" +

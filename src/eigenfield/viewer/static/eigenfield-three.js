@@ -2124,7 +2124,7 @@ function Bi(e, t) {
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Vi({ deep: e }) {
+function Vi({ tenBits: e }) {
 	return e ? ki : Oi;
 }
 function Hi({ bases: e, rays: t }, n, r) {
@@ -2136,7 +2136,7 @@ function Hi({ bases: e, rays: t }, n, r) {
 	}, 0);
 }
 function Ui({ means: e, bases: t }, n, r) {
-	return Wi([...e.filter(({ pieces: e, deep: t }) => e > 1 || t).map(({ size: e }) => J(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => J(e, r))]);
+	return Wi([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => J(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => J(e, r))]);
 }
 function Wi(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
@@ -2146,7 +2146,7 @@ function Gi(e, t) {
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Oi + (e.bases.some(({ deep: e }) => e) ? Ai : 0)) * n * r;
+	return (Oi + (e.bases.some(({ tenBits: e }) => e) ? Ai : 0)) * n * r;
 }
 function Ki(e, t, n, r) {
 	let i = [];
@@ -2732,12 +2732,12 @@ var Ja = 3, Ya = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			deep: Cr(t.pictures)
+			tenBits: Cr(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			deep: Cr([t])
+			tenBits: Cr([t])
 		}));
 		this.needs = {
 			atlas: ci(r, i),
@@ -2813,7 +2813,7 @@ var Ja = 3, Ya = class {
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.deep ? 255 * wr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * wr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2834,10 +2834,10 @@ var Ja = 3, Ya = class {
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? Mi();; i /= 2) {
-			let a = zi(this.needs, Ca(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, deep: r }) => wa(e, J(t, o), Fi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, deep: i }) => {
+			let a = zi(this.needs, Ca(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => wa(e, J(t, o), Fi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
 				return wa(e, a ? J(t, s) : [1, 1], a ? Ii(a, n) : 1, l, i);
-			})], d = Ui(this.needs, o, s), f = Ea(e, d), p = [...t, ...n].some(({ deep: e }) => e), m = p ? Ea(e, d, !0) : null, h = Ea(e, Wi(r));
+			})], d = Ui(this.needs, o, s), f = Ea(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Ea(e, d, !0) : null, h = Ea(e, Wi(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
 				packer: ja(e, {
 					picture: f,
