@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import LightField, PhotoSet
+from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
@@ -151,9 +151,9 @@ class Options:
             raise OptionError("fit", f"{maps[0]} is about texture maps, and a fit makes none", remedy=other)
 
 
-def check_options(capture: LightField | PhotoSet, options: Options) -> None:
+def check_options(capture: Capture, options: Options) -> None:
     """Raise OptionError for what `encode` will refuse for this capture, before its cameras and proxy are estimated."""
-    if isinstance(capture, LightField):
+    if capture.light_field is not None:
         places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
     elif capture.layout is not None:
         places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
