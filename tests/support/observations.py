@@ -46,3 +46,8 @@ def repeated(pixels: Sequence[np.ndarray], times: int, masks: Sequence[np.ndarra
     cameras = list(range(len(pixels))) * times
     instants = [time for time in range(times) for _ in pixels]
     return InMemory(list(pixels) * times, list(masks) * times, cameras, instants)
+
+
+def greys(levels: Sequence[np.ndarray]) -> InMemory:
+    """Photographs without colour, of (H, W) luma."""
+    return InMemory([np.repeat(level[..., None], 3, axis=2).astype(np.float32) for level in levels])

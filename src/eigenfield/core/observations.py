@@ -83,3 +83,13 @@ def of_cameras(observations: Observations, cameras: Sequence[int]) -> Observatio
     chosen = [index for index in range(len(observations)) if observations.camera_of(index) in place]
     chosen.sort(key=lambda index: (observations.time_of(index), place[observations.camera_of(index)]))
     return _Selection(observations, tuple(chosen), place)
+
+
+def cameras_of(observations: Observations) -> NDArray[np.int64]:
+    """(No,) the camera of each observation."""
+    return np.array([observations.camera_of(index) for index in range(len(observations))], np.int64)
+
+
+def times_of(observations: Observations) -> NDArray[np.int64]:
+    """(No,) the instant of each observation."""
+    return np.array([observations.time_of(index) for index in range(len(observations))], np.int64)

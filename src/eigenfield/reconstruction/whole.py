@@ -213,9 +213,8 @@ def _by_hand(run: Run, light_field: LightField) -> list[Primitive]:
     for text in run.settings.fit_spheres:
         region = parse_region(text)
         fitted = fit_sphere(
-            find_view(region, light_field.names), region, light_field.cameras,
-            lambda index: light_field.photograph(index).pixels, progress=run.progress,
-        )  # fmt: skip
+            find_view(region, light_field.names), region, light_field.cameras, light_field, progress=run.progress
+        )
         log.info("%s: %s", text, fitted)
         shapes.append(fitted.sphere)
     return shapes
