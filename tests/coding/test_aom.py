@@ -9,6 +9,7 @@ import pytest
 from eigenfield.coding.pictures import aom
 from eigenfield.coding.pictures.pictures_10bit import SVT, TOP, decode_deep, encode_deep
 from eigenfield.encoding.fitted import planes
+from eigenfield.encoding.options import PRESETS
 
 HAS_AOM = aom.aom_program() is not None
 
@@ -97,7 +98,7 @@ def test_a_program_that_leaves_nothing_is_not_used(tmp_path, monkeypatch):
 
 
 def test_the_best_preset_alone_is_patient():
-    assert [name for name, preset in planes.PRESETS.items() if preset.patient] == ["best"]
+    assert [name for name, preset in PRESETS.items() if preset.patient] == ["best"]
     rate = planes.KINDS["luma-chroma"][0].rate(0.01, patient=True)
     assert rate.coder is aom.encode_aom
     assert rate.trial is SVT

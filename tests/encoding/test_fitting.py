@@ -15,14 +15,12 @@ from eigenfield.cli import group
 from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Plane
-from eigenfield.encoding.encode import Options
+from eigenfield.encoding import Target
 from eigenfield.encoding.fitted import (
-    PRESETS,
     Pixels,
     PlaneSettings,
     Rate,
     Shots,
-    Target,
     code_plane,
     coded_psnr,
     fit_plane,
@@ -36,6 +34,7 @@ from eigenfield.encoding.fitted.model import Block, Model, make_composer
 from eigenfield.encoding.fitted.observations import doubtable
 from eigenfield.encoding.fitted.passes import look, psnr_of
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual, whiten
+from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
@@ -386,30 +385,6 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
     assert caught.value.code == "curve" and "--fit none" in caught.value.remedy
     result = CliRunner().invoke(group, ["evaluate", str(output), str(folder)])
     assert result.exit_code == 0 and "none: the scene was fitted" in result.stdout
-
-
-FOR_MAPS = [{"align": "dis"}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
-            {"codec": "png"}]  # fmt: skip
-
-
-@pytest.mark.parametrize("asked", FOR_MAPS, ids=lambda asked: next(iter(asked)))
-def test_what_is_about_texture_maps_alone_is_the_paper_s_way_and_said(asked, caplog):
-    assert Options(**asked).fit == "none"
-    (record,) = caplog.records
-    assert f"--{next(iter(asked)).replace('_', '-')} " in record.getMessage()
-    caplog.clear()
-    assert Options(**asked, fit="none").fit == "none" and not caplog.records
-    for fitted in ({"target": Target(psnr=30)}, {"preset": "best"}, {"fit": "photographs"}):
-        with pytest.raises(OptionError, match="about texture maps"):
-            Options(**asked, **fitted)
-
-
-def test_the_rest_is_fitted_without_a_word(caplog):
-    for asked in ({}, {"quality": 50}, {"textures": 3, "hold_out": "odd"}, {"target": Target(psnr=30)}):
-        assert Options(**asked).fit == "photographs"
-    assert not caplog.records
-    with pytest.raises(OptionError, match="no preset"):
-        Options(fit="none", preset="best")
 
 
 @pytest.mark.parametrize(

@@ -9,9 +9,10 @@ import pytest
 import eigenfield as ef
 from eigenfield.cli import main
 from eigenfield.core.payloads import stream_of
-from eigenfield.encoding.encode import Options
-from eigenfield.encoding.fitted import KINDS, Target, coded_psnr, density_of
+from eigenfield.encoding import EncodeOptions, Target
+from eigenfield.encoding.fitted import KINDS, coded_psnr
 from eigenfield.encoding.fitted.planes import scaled
+from eigenfield.encoding.options import density_of
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, validate
 from support.captures import write_capture
@@ -24,7 +25,7 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     folder, output = fitted
     files, drawn = [], []
     monkeypatch.setattr(
-        "eigenfield.encoding.target.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
+        "eigenfield.encoding.fitted.reach.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
     )
     monkeypatch.setattr(
         "eigenfield.encoding.fitted.planes.coded_psnr", lambda *given: drawn.append(coded_psnr(*given)) or drawn[-1]
@@ -66,10 +67,10 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", 0.1)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 0.1)
         once = ef.encode(capture, **options, target=asked)
         assert "fitted again for quality" not in caplog.text  # the meshes differ by less
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", 1e-3)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 1e-3)
         found = ef.encode(capture, **options, target=asked)
     assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
     assert len(found.mesh.faces) < len(once.mesh.faces)
@@ -90,7 +91,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", share)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", share)
         with caplog.at_level("INFO", "eigenfield.encode"):
             made.append(ef.encode(capture, **options, target=asked))
         assert ("fitted again" in caplog.text) == (share < 1)
@@ -114,10 +115,10 @@ def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
 def test_the_density_is_what_a_quality_pays_for():
     found = [density_of(quality) for quality in (0, 60, 79, 89, 91, 100)]
     assert found == sorted(found) and found[:2] == [0.9, 0.9] and found[-2:] == [1.5, 1.5]
-    assert Options(fit="photographs", preset="small").atlas_density == density_of(79)
-    assert Options(fit="photographs", quality=60).atlas_density == 0.9
-    assert Options(fit="photographs", quality=60, density=1.2).atlas_density == 1.2
-    assert Options(fit="none").atlas_density == 1.5
+    assert EncodeOptions(preset="small").resolved().density == density_of(79)
+    assert EncodeOptions(quality=60).resolved().density == 0.9
+    assert EncodeOptions(quality=60, density=1.2).resolved().density == 1.2
+    assert EncodeOptions(fit="none").resolved().density == 1.5
 
 
 def test_chroma_gets_less_dense_later_than_luma():

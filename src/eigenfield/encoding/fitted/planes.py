@@ -20,11 +20,11 @@ from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.observations import Shots, doubtable, thinned
 from eigenfield.encoding.fitted.rate import Rate, price_of
+from eigenfield.encoding.options import DENSEST, Preset
 
 log = logging.getLogger("eigenfield.fit")
 
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
-DENSEST = 1.5  # atlas texels per photograph pixel along one axis
 SIDE_STEP = 16  # atlas sides are multiples of this
 
 
@@ -82,19 +82,6 @@ TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
 THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
 FEW_ROUNDS = 4  # at most, or the preset's, for fewer: they take longer to settle, and what is far off does not even out
-
-
-@dataclass(frozen=True)
-class Preset:
-    """What a fit aims at. quality: 0 to 100. rounds: at most (see FEW_ROUNDS). patient: coded by libaom where there is
-    one."""
-
-    quality: int
-    rounds: int
-    patient: bool = False
-
-
-PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4, patient=True)}
 
 
 def fitted_textures(cameras: int) -> int:
@@ -167,13 +154,6 @@ def step_of(quality: int) -> float:
     """Quantiser step by which those of all planes are counted, in the photographs' range: quality 0 to 100 is SVT-AV1's
     crf 63 to 0 at half a grey level a code and TEXTURE_SHARE of the atlas's density."""
     return encoder_step(0.63 * (100 - quality)) * HALF_LEVEL / TEXTURE_SHARE
-
-
-def density_of(quality: int) -> float:
-    """Atlas texels per photograph pixel along one axis that a quality pays for: the coarser the codes, the less is left
-    of what a denser atlas could hold. Least bytes for the same luma on Tarot at 0.9 (quality 62), 1.05 (68) and 1.35
-    (86), on Shop at 1.25 (80), on Antinous at 1.0 (75)."""
-    return float(np.clip(0.9 + 0.6 * (quality - 60) / 31, 0.9, DENSEST))
 
 
 def byte_price(quality: int) -> float:

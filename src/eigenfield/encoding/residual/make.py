@@ -34,10 +34,15 @@ def with_residual(
 ) -> Scene:
     """The scene with a residual.
 
-    scene: as its file gives it back (`format.read_scene`), since what coding has lost is in the residual too. capture:
-    what it was encoded from. quality: 0 to 100, the film's: `crf_of`.
+    Args:
+        scene: As its file gives it back (`gltf.read_scene`), since the residual holds what coding has lost too.
+        capture: What it was encoded from.
+        quality: Of the film, 0 to 100 (`crf_of`).
+        progress: Told of each photograph.
 
-    Raises OptionError `not-photographs`, as `check_residual`, and what reading photographs raises.
+    Raises:
+        OptionError: `not-photographs` for a scene that is not R, G, B; as `check_residual`.
+        CaptureError: A photograph cannot be read.
     """
     if scene.channels != 3:
         raise OptionError(
@@ -67,8 +72,11 @@ def with_residual(
 
 
 def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
-    """Rows and columns of the pictures in a film of these cameras. Raises OptionError `residual-quality` outside 0 to
-    100, `residual` where the encoder does not take frames so large."""
+    """Rows and columns of the pictures in a film of these cameras.
+
+    Raises:
+        OptionError: `residual-quality` outside 0 to 100, `residual` where the encoder does not take frames so large.
+    """
     if not 0 <= quality <= 100:
         raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
     rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
