@@ -20,7 +20,7 @@ from eigenfield.encoding.fields import options_of
 from eigenfield.encoding.fitted import KINDS
 from eigenfield.encoding.options import PRESETS, UNKNOWN, density_of
 from eigenfield.encoding.projected import FILTERS, METHODS
-from eigenfield.gltf import encode_scene, read_scene, save
+from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
 FOR_MAPS = [{"align": "dis"}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
@@ -172,14 +172,23 @@ def test_options_and_their_fields_by_name_are_the_same(folder):
         ef.encode(capture, proxy, colour="red")
 
 
-def test_a_codec_or_a_quality_codes_the_pictures_at_once(folder):
-    capture, proxy, asked = ef.open_capture(folder), folder / "proxy.ply", {"textures": 2, "atlas": 64, "fit": "none"}
-    plain = ef.encode(capture, proxy, **asked)
-    assert plain.planes[0].bases[0].textures.dtype == "float32"
-    for file in ({"codec": "png"}, {"quality": 40}, {"codec": "avif", "quality": 90}):
-        made = ef.encode(capture, proxy, **asked, **file)
-        assert made.planes[0].bases[0].textures.dtype == "uint8"
-        assert encode_scene(made) == encode_scene(read_scene(encode_scene(plain, **file)))
+@pytest.mark.parametrize("words", ["--codec png", "--quality 40", "--fit none", "--preset small"])
+def test_the_library_saves_what_the_command_line_does(folder, tmp_path, words):
+    words = ["--proxy", str(folder / "proxy.ply"), "--atlas", "64", "-n", "2", *words.split()]
+    result = CliRunner().invoke(group, ["encode", str(folder), "-q", "-o", str(tmp_path / "cli.glb"), *words])
+    assert result.exit_code == 0, result.output
+    options = command_line(*words)
+    scene = ef.encode(ef.open_capture(folder), folder / "proxy.ply", options)
+    save(scene, tmp_path / "library.glb", **options.for_save)
+    assert (tmp_path / "library.glb").read_bytes() == (tmp_path / "cli.glb").read_bytes()
+
+
+def test_what_save_is_given():
+    nothing = {"codec": None, "quality": None}
+    assert EncodeOptions(codec="png").for_save == {"codec": "png", "quality": None}
+    assert EncodeOptions(fit="none", quality=40).for_save == {"codec": None, "quality": 40}
+    assert EncodeOptions(quality=40).for_save == EncodeOptions(codec="png", residual=40).for_save == nothing
+    assert EncodeOptions(codec="png", residual=40).coding == {"codec": "png", "quality": None}
 
 
 @pytest.mark.parametrize(
@@ -190,6 +199,6 @@ def test_a_residual_from_the_library_is_that_of_the_command_line(folder, tmp_pat
     result = CliRunner().invoke(group, ["encode", str(folder), "-q", "-o", str(tmp_path / "cli.glb"), *words])
     assert result.exit_code == 0, result.output
     made = ef.encode(ef.open_capture(folder), folder / "proxy.ply", command_line(*words))
-    save(made, tmp_path / "library.glb")
+    save(made, tmp_path / "library.glb", **command_line(*words).for_save)
     assert made.residual is not None
     assert (tmp_path / "library.glb").read_bytes() == (tmp_path / "cli.glb").read_bytes()

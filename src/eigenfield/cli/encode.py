@@ -133,7 +133,7 @@ def command(
             scratch = output.with_suffix(".work") if work is None else work
             made = _reconstructed(capture, place, options, settings, blind, scratch, progress, quiet)
             scene = encode(made.light_field, made.mesh, options, triangles=None, work=scratch, progress=progress)
-        save(scene, output, overwrite=overwrite, progress=progress)
+        save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]

@@ -40,12 +40,12 @@ def encode(
         proxy: A triangle mesh in the cameras' world, or its file.
         options: What is asked for; None for the defaults.
         work: Folder for scratch files, up to 17 bytes a pixel or 4 bytes x channels x cameras x texels.
-        progress: Told of each stage.
+        progress: Reports each stage.
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
     Returns:
-        The scene. Of a fit its pictures are coded. The paper's are numbers, which `save` codes, unless a codec, a
-        quality or a residual was asked for: then the scene is what its file gives back.
+        The scene. A fit has coded its pictures, and a scene with a residual is what its file gives back. Otherwise the
+        paper's way makes numbers, which `save` codes when it is given `options.for_save`.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.
@@ -70,9 +70,7 @@ def encode(
     plan = plan_encoding(capture, proxy, asked, folder, progress)
     scene = (encode_projected if projected else encode_fitted)(plan, folder, progress)
 
-    quality = meant.quality if projected else None  # a fit has coded its pictures
-    if any(value is not None for value in (meant.codec, quality, meant.residual)):
-        scene = read_scene(encode_scene(scene, codec=meant.codec, quality=quality, progress=progress))
-    if meant.residual is not None:
-        scene = with_residual(scene, capture, meant.residual, progress)
-    return scene
+    if meant.residual is None:
+        return scene
+    stored = read_scene(encode_scene(scene, **meant.coding, progress=progress))  # the residual is of what a file holds
+    return with_residual(stored, capture, meant.residual, progress)

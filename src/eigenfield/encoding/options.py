@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, replace
-from typing import TypeVar
+from typing import TypedDict, TypeVar
 
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding.fields import documented, option, options_of
@@ -22,7 +22,7 @@ DEFAULT_PRESET = "balanced"
 DEFAULT_PLANES = "luma-chroma"
 SIDE_LIMIT = 16384  # texels along a side of an atlas
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
-DENSEST = 1.5  # of a fit, likewise
+DENSEST = 1.5  # likewise, with a fit
 ABOUT_MAPS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
 ABOUT_FITS = ("target", "preset", "planes")  # options that the paper's way has no use for
 UNKNOWN = {
@@ -62,13 +62,26 @@ def density_of(quality: int) -> float:
     return min(max(0.9 + 0.6 * (quality - 60) / 31, 0.9), DENSEST)
 
 
+class Coding(TypedDict):
+    """Arguments of `save` and `encode_scene`.
+
+    Attributes:
+        codec: "avif", "webp" or "png"; None: what is coded already is kept, and the rest becomes AVIF.
+        quality: 0 to 100, for AVIF; None: its default.
+    """
+
+    codec: str | None
+    quality: int | None
+
+
 @documented
 @dataclass(frozen=True, kw_only=True)
 class EncodeOptions:
     """What `encode` is asked for. Every option may be left out; `resolved` says what that means.
 
     An option that cannot be, or two that exclude each other, raise OptionError when the value is made. The command
-    line has the same options: `--uv-ssim` is `uv_ssim`.
+    line has the same options: `--uv-ssim` is `uv_ssim`. Without a fit `codec` and `quality` are about the file: give
+    `for_save` to `save`.
     """
 
     textures: int | None = option(
@@ -142,7 +155,7 @@ class EncodeOptions:
         "together.  [default: luma-chroma]",
         choices=("luma-chroma", "rgb"),
     )
-    target: Target | None = option("What the file is to reach, by the quality of a fit (`Target`).", parts=Target)
+    target: Target | None = option("What the file is to reach, by the fit's quality (`Target`).", parts=Target)
     residual: int | None = option(
         "For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
         "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
@@ -164,7 +177,7 @@ class EncodeOptions:
         """The options as they are meant: what was left out is filled in, as far as it follows from the rest alone.
 
         None stays what depends on the capture, what the chosen way has no use for, and what is decided later: with a
-        target the quality and a density that follows it; without a fit the codec and the quality, which `save` takes.
+        target the quality and a density that follows it; without a fit the codec and the quality of the file.
         """
         if self._chosen_fit == "none":
             return replace(
@@ -181,6 +194,18 @@ class EncodeOptions:
             density = density_of(quality)
         planes = self.planes or DEFAULT_PLANES
         return replace(self, fit="photographs", preset=preset, quality=quality, density=density, planes=planes)
+
+    @property
+    def coding(self) -> Coding:
+        """How pictures that are not fitted are coded: `codec` and `quality` of `save` and `encode_scene`."""
+        if self._chosen_fit == "none":
+            return {"codec": self.codec, "quality": self.quality}
+        return {"codec": None, "quality": None}  # they are coded already
+
+    @property
+    def for_save(self) -> Coding:
+        """`coding` for who saves the scene that `encode` returns, whose pictures are coded where it has a residual."""
+        return {"codec": None, "quality": None} if self.residual is not None else self.coding
 
     @property
     def about_maps(self) -> list[str]:

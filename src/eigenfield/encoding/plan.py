@@ -152,7 +152,7 @@ def plan_encoding(
         proxy: A mesh, or its file.
         asked: The options; a target is planned for at its preset's quality.
         work: Folder for scratch files.
-        progress: Told of each stage.
+        progress: Reports each stage.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: As `encode`.
@@ -162,6 +162,7 @@ def plan_encoding(
 
 
 def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
+    """What the options mean; with a target, for the preset's quality, from which the search may lead elsewhere."""
     return replace(asked, target=None).resolved()
 
 
@@ -179,7 +180,7 @@ def _prepare(
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
     cameras = views.cameras
-    triangles = _worth(views, options) if _simplifies(options) else options.triangles
+    triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding([view.camera for view in views.capture.views], cameras, mesh)
     if options.fit == "none":
@@ -190,9 +191,11 @@ def _prepare(
     return PreparedProxy(proxy, mesh, views, by_quality=_simplifies(options) and relief is None)  # it keeps its atlas
 
 
-def _worth(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
-    """Of a mesh as it was read: the triangles that its pictures are worth at the options' quality; None for a relief,
-    which is simplified when it is coded."""
+def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
+    """A function of a mesh as it was read: how many triangles its pictures are worth at the options' quality.
+
+    It returns None for a relief, which is simplified when it is coded.
+    """
 
     def triangles(mesh: Mesh) -> int | None:
         if mesh.uv is not None and relief_lattice(mesh, views.cameras, DEPTH_ERROR) is not None:
@@ -226,8 +229,10 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, views: CaptureViews) -> tupl
 
 
 def _coded_mesh(mesh: Mesh, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Mesh:
-    """The mesh as a fitted file keeps it: a relief simplified to what its pictures are worth, unless a number of
-    triangles was asked for."""
+    """The mesh as a fitted file keeps it.
+
+    A relief is simplified to what its pictures are worth, unless a number of triangles was asked for.
+    """
     if not _simplifies(options):
         return coded_mesh(mesh, views.cameras, views.reference)
     texels = float(np.prod(atlas)) * texels_per_pixel(mesh, views.cameras[views.reference]) ** 2

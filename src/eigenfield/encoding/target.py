@@ -30,7 +30,7 @@ class Target:
     """
 
     size: int | None = option(
-        "The best file of at most this size (500kB, 1.5MB, 300000), by the quality of a fit.", metavar="SIZE"
+        "The best file of at most this size (500kB, 1.5MB, 300000), by the fit's quality.", metavar="SIZE"
     )
     psnr: float | None = option("The smallest file with this PSNR, RGB, of captured views.", metavar="DB")
     ssim: float | None = option("The smallest file with this SSIM of captured views.", metavar="S")

@@ -20,7 +20,7 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
     Args:
         plan: Cameras, mesh and atlas, and the options.
         work: Folder for scratch files of up to 17 bytes a pixel.
-        progress: Told of each stage.
+        progress: Reports each stage.
 
     Raises:
         CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).

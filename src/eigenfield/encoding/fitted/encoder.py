@@ -28,7 +28,7 @@ class FittedEncoder:
         plan: What they were fitted for.
         photographs: Those of the encoded cameras, and where their pixels land on the mesh.
         fits: The planes.
-        progress: Told of each coding.
+        progress: Reports each coding.
     """
 
     plan: EncodePlan
@@ -61,9 +61,9 @@ def open_encoder(
     """Fit planes to a plan's photographs.
 
     Args:
-        plan: Of a fit.
+        plan: One whose options ask for a fit.
         work: Folder for scratch files of up to 17 bytes a pixel.
-        progress: Told of each stage.
+        progress: Reports each stage.
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
     views, options = plan.views, plan.options

@@ -30,7 +30,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     Args:
         plan: Cameras, mesh and atlas, and the options.
         work: Folder for a scratch file of 4 bytes x channels x cameras x texels.
-        progress: Told of each stage.
+        progress: Reports each stage.
 
     Raises:
         CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).
