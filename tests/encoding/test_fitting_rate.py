@@ -10,7 +10,7 @@ from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.core.payloads import files_of
 from eigenfield.encoding.fitted import rate
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
-from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.planes import KINDS
 from eigenfield.encoding.fitted.rate import Price, Rate, code_worthwhile, price_of, price_of_mean
 from eigenfield.encoding.fitted.solve import Scales
@@ -19,7 +19,7 @@ SIZE, CAMERAS, STEP = (48, 64), 8, 0.03
 
 
 @pytest.fixture(scope="module")
-def made() -> tuple[Block, Model, Scales]:
+def made() -> tuple[Block, PlaneModel, Scales]:
     """Four components, each half as strong as the one before, of blobs a few texels wide; each texel of the mean is
     seen in ten pixels."""
     rng = np.random.default_rng(5)
@@ -28,7 +28,7 @@ def made() -> tuple[Block, Model, Scales]:
     soft /= soft.std()
     strength = 0.2 * 0.5 ** np.arange(4, dtype=np.float32)
     block = Block((0, SIZE[0], 0, SIZE[1]), soft[:4] * strength[:, None, None, None], np.ones((CAMERAS, 4), np.float32))
-    model = Model(np.eye(1, 3, dtype=np.float32), 0.5 + 0.1 * soft[4], SIZE, [block])
+    model = PlaneModel(np.eye(1, 3, dtype=np.float32), 0.5 + 0.1 * soft[4], SIZE, [block])
     share = np.full(SIZE, 10.0, np.float32)
     return block, model, Scales(share, share, (0.0, 0.0))
 
@@ -96,10 +96,10 @@ def test_nothing_is_measured_where_nothing_is_looked_for(made):
     block, model, scales = made
     for plain in (
         price_of_mean(model, scales, Rate(STEP, STEP, svt(8))),
-        price_of_mean(Model(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
+        price_of_mean(PlaneModel(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
     ):
         assert plain.measured == plain.reckoned
-    flat = Model(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
+    flat = PlaneModel(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
     even = price_of_mean(flat, scales, Rate(STEP, STEP, svt(8), search=True))
     assert even.measured == even.reckoned
 

@@ -13,7 +13,7 @@ from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.observations import Observations, cameras_of, of_cameras
 from eigenfield.core.viewplane import ViewPlane, find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
 
@@ -53,10 +53,6 @@ class CaptureViews:
         return [self.cameras[index] for index in self.encoded]
 
     @property
-    def encoded_names(self) -> list[str]:
-        return [self.capture.names[index] for index in self.encoded]
-
-    @property
     def encoded_reference(self) -> int:
         """The reference camera, counted among the encoded ones."""
         return int(np.searchsorted(self.encoded, self.reference))
@@ -70,6 +66,16 @@ class CaptureViews:
     def observations(self) -> Observations:
         """Those of the encoded cameras, which are counted among themselves."""
         return of_cameras(self.capture, self.encoded.tolist())
+
+    @cached_property
+    def taken_by(self) -> NDArray[np.int64]:
+        """(No,) the camera of each of `observations`, whose rows of texture maps and weights these are."""
+        return self.encoded[cameras_of(self.observations)]
+
+    @property
+    def observation_names(self) -> list[str]:
+        """Of the cameras that took `observations`."""
+        return [self.capture.names[index] for index in self.taken_by]
 
 
 def select_views(capture: LightField, options: EncodeOptions) -> CaptureViews:

@@ -13,7 +13,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.colour import to_rgb
-from eigenfield.encoding.fitted.observations import Shots, open_shots
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import KINDS, Fits, fitted_textures, open_fits
 from eigenfield.encoding.options import PRESETS, EncodeOptions, known
 from eigenfield.encoding.plan import EncodePlan, plan_encoding
@@ -26,13 +26,13 @@ class FittedEncoder:
 
     Attributes:
         plan: What they were fitted for.
-        photographs: Those of the encoded cameras, and where their pixels land on the mesh.
+        data: The observations of the encoded cameras, and where their pixels land on the mesh.
         fits: The planes.
         progress: Reports each coding.
     """
 
     plan: EncodePlan
-    photographs: Shots
+    data: FitData
     fits: Fits
     progress: Progress | None = None
 
@@ -67,19 +67,19 @@ def open_encoder(
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
     views, options = plan.views, plan.options
-    cameras, names = views.encoded_cameras, views.encoded_names
-    asked = fitted_textures(len(cameras)) if options.textures is None else options.textures
-    textures, kinds = component_count(asked, len(cameras)), KINDS[known(options.planes)]
+    cameras, observations = views.encoded_cameras, views.observations
+    asked = fitted_textures(len(observations)) if options.textures is None else options.textures
+    textures, kinds = component_count(asked, len(observations)), KINDS[known(options.planes)]
     size = plan.atlas[1], plan.atlas[0]
     with (
-        open_shots(cameras, views.observations, plan.mesh, size, work, progress, views.encoded_reference) as shots,
-        open_fits(shots, plan.density, textures, PRESETS[known(options.preset)], kinds, work, progress) as fits,
+        open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.encoded_reference) as data,
+        open_fits(data, plan.density, textures, PRESETS[known(options.preset)], kinds, work, progress) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone
-            places = views.coordinates[views.encoded]
+            names, places = views.observation_names, views.coordinates[views.taken_by]
             warn_of_disagreement(mean.squares, mean.pixels, mean.channels, mean.total, names, places)
-        yield FittedEncoder(plan, shots, fits, progress)
+        yield FittedEncoder(plan, data, fits, progress)
 
 
 @contextlib.contextmanager

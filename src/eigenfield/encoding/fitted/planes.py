@@ -18,7 +18,7 @@ from eigenfield.core.scene import Plane
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.observations import Shots, doubtable, thinned
+from eigenfield.encoding.fitted.observations import FitData, subsampled, with_robust_weights
 from eigenfield.encoding.fitted.rate import Rate, price_of
 from eigenfield.encoding.options import DENSEST, Preset
 
@@ -32,12 +32,16 @@ SIDE_STEP = 16  # atlas sides are multiples of this
 class Kind:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
-    matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis; ahead:
-    as if the atlas had so many texels a pixel more, up to DENSEST.
-    textures: of the number asked for. mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's
-    density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the pictures are
-    steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras. searched:
-    see `Rate`; not chroma, whose mean says nothing of what luma's bytes are worth.
+    Attributes:
+        name: of the plane.
+        matrix: (C, 3) its channels from R, G, B.
+        mean_share, texture_share: densities, of the atlas's along an axis.
+        textures: of the number asked for.
+        mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's density: a texel answers for as many
+            pixels as its plane is less dense, so that equal steps in the pictures are steps in proportion to density.
+        subsampled: fitted to fewer pixels where there are many observations.
+        ahead: densities are as if the atlas had so many texels a pixel more, up to DENSEST.
+        searched: see `Rate`; not chroma, whose mean says nothing of what luma's bytes are worth.
     """
 
     name: str
@@ -47,7 +51,7 @@ class Kind:
     textures: float
     mean_step: float
     texture_step: float
-    thinned: bool
+    subsampled: bool
     ahead: float
     searched: bool
 
@@ -61,8 +65,14 @@ class Kind:
         return PlaneSettings(self.matrix, mean, grid, count, count)
 
     def rate(self, step: float, patient: bool = False, few: bool = False) -> Rate:
-        """step: see `step_of`. patient: coded by libaom, which the machine must have. few: cameras, whose textures
-        are about as many and draw each photograph on its own; 5x4 views lose 0.14 dB by a search at high rates."""
+        """How finely the plane is coded.
+
+        Args:
+            step: see `step_of`.
+            patient: coded by libaom, which the machine must have.
+            few: observations, whose textures are about as many and draw each photograph on its own; 5x4 views lose
+                0.14 dB by a search at high rates.
+        """
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
         coder, trial = (encode_aom, SVT) if patient else (SVT, None)
         return Rate(mean_step, texture_step, coder, trial, search=self.searched and not few)
@@ -77,16 +87,16 @@ KINDS = {
     "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
 }
 HALF_LEVEL = 0.002  # grey level, in the photographs' range
-TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
+TEXTURES_SHARE = 1 / 2  # of the observations, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
-THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
+SUBSAMPLED_FROM = 50  # observations, from which every second pixel each way is enough for weights, and for chroma
 FEW_ROUNDS = 4  # at most, or the preset's, for fewer: they take longer to settle, and what is far off does not even out
 
 
-def fitted_textures(cameras: int) -> int:
+def fitted_textures(observations: int) -> int:
     """Luma's number of eigen textures unless it is asked for, before coding keeps those that are worth their bytes."""
-    return min(max(round(TEXTURES_SHARE * cameras), min(TEXTURES_LEAST, cameras - 1)), TEXTURES_MOST)
+    return min(max(round(TEXTURES_SHARE * observations), min(TEXTURES_LEAST, observations - 1)), TEXTURES_MOST)
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +112,7 @@ class Fits:
         """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
-        few = len(self.planes[0][1].pixels.every) < THINNED_FROM
+        few = len(self.planes[0][1].pixels.every) < SUBSAMPLED_FROM
         return {
             kind.name: code_plane(fit, kind.rate(step, self.patient, few), grid, precision, progress)
             for kind, fit in self.planes
@@ -121,7 +131,7 @@ class Fits:
 
 @contextlib.contextmanager
 def open_fits(
-    shots: Shots,
+    data: FitData,
     density: float,
     textures: int,
     preset: Preset,
@@ -129,20 +139,29 @@ def open_fits(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Fits]:
-    """Planes fitted to `shots`, which stay open. density: of their atlas. textures: luma's number."""
-    size = shots.surface.size
-    few = len(shots) < THINNED_FROM
+    """Planes fitted.
+
+    Args:
+        data: what they are fitted to, which stays open.
+        density: texels of its atlas for a pixel, along an axis.
+        textures: luma's number.
+        preset: what the fit aims at.
+        kinds: the planes.
+        work: folder for scratch files.
+        progress: reports the steps.
+    """
+    few = len(data) < SUBSAMPLED_FROM
     rounds = max(preset.rounds, FEW_ROUNDS) if few else preset.rounds
     with contextlib.ExitStack() as kept:
-        some = kept.enter_context(thinned(shots, 1 if few else 2, work))
+        some = kept.enter_context(subsampled(data, 1 if few else 2, work))
 
         def fit(kind: Kind) -> OpenFit:
             if few:
-                doubted = kept.enter_context(doubtable(shots, work))
-                pixels = Pixels(shots, doubted, doubted)
+                robust = kept.enter_context(with_robust_weights(data, work))
+                pixels = Pixels(data, robust, robust)
             else:
-                pixels = Pixels(shots, some if kind.thinned else shots, some)
-            return fit_plane(pixels, kind.settings(size, density, textures), kind.name, rounds, work, progress)
+                pixels = Pixels(data, some if kind.subsampled else data, some)
+            return fit_plane(pixels, kind.settings(data.size, density, textures), kind.name, rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:

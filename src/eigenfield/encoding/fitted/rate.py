@@ -14,7 +14,7 @@ from eigenfield.coding.pictures.pictures_10bit import Coder, svt
 from eigenfield.core.payloads import files_of
 from eigenfield.core.scene import Basis
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean, first_pictures
-from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.parallel import parallel_map
 
@@ -51,7 +51,7 @@ class Price:
     measured: float
 
 
-def price_of_mean(model: Model, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None) -> Price:
+def price_of_mean(model: PlaneModel, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None) -> Price:
     """precision: as `code_mean`. Measured where `rate` searches and there is what to search for."""
     seen = scales.mean[scales.mean > 0]
     reckoned = price_of(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0

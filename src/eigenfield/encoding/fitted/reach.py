@@ -13,7 +13,7 @@ import numpy as np
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
-from eigenfield.encoding.fitted.observations import Shots
+from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.options import known
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.target import FIRST, Target, Tried, search
@@ -27,7 +27,7 @@ log = logging.getLogger("eigenfield.encode")
 MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
 NEAR_QUALITIES = 3  # beside the plan's: those have as good as its mesh and atlas
 DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer for a second fit
-MEASURED_CAMERAS = 48  # at most, evenly spread, by which a PSNR or SSIM is judged
+MEASURED_OBSERVATIONS = 48  # at most, evenly spread, by which a PSNR or SSIM is judged
 
 
 def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> Scene:
@@ -41,12 +41,12 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
         scene = encoder.with_figures(found.result)
         other = _other_plan(plan, found, work, progress)
         if other is not None:
-            found = _compared(target, found, encoder.photographs)
+            found = _compared(target, found, encoder.data)
     if other is not None:
         words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
         log.info(words, found.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
         with open_encoder(other, work, progress, warn=False) as encoder:
-            second = _compared(target, _search(target, encoder, found.quality), encoder.photographs)
+            second = _compared(target, _search(target, encoder, found.quality), encoder.data)
             sizes = second.size, second.measured, found.size, found.measured
             if target.merit(second) > target.merit(found):
                 log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
@@ -75,32 +75,32 @@ def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried
 
     def code(quality: int) -> Tried[Scene]:
         scene = encoder.scene(quality)
-        measured = 0.0 if target.size else _measured(target, scene, encoder.photographs)
+        measured = 0.0 if target.size else _measured(target, scene, encoder.data)
         return Tried(quality, len(encode_scene(scene)), measured, scene)
 
     return search(target, code, first)
 
 
-def _compared(target: Target, found: Tried[Scene], shots: Shots) -> Tried[Scene]:
+def _compared(target: Target, found: Tried[Scene], data: FitData) -> Tried[Scene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
-    return found if target.size is None else replace(found, measured=_measured(target, found.result, shots))
+    return found if target.size is None else replace(found, measured=_measured(target, found.result, data))
 
 
-def _measured(target: Target, scene: Scene, shots: Shots) -> float:
-    """The mean PSNR or SSIM over covered pixels of some captured cameras, drawn as they are."""
-    renderer, count = Renderer(scene), len(shots)
-    encoded = scene.encoded
+def _measured(target: Target, scene: Scene, data: FitData) -> float:
+    """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
+    renderer, observations, count = Renderer(scene), data.observations, len(data)
+    cameras = [scene.cameras[index] for index in scene.encoded]
 
-    def of_camera(index: int) -> float | None:
-        picture = renderer.draw(scene.cameras[encoded[index]], np.eye(count)[index])
-        covered, weight = picture.covered, shots.weight(index)
-        if weight.size:
-            covered &= weight > 0
+    def of_observation(index: int) -> float | None:
+        picture = renderer.draw(cameras[observations.camera_of(index)], np.eye(count)[index])
+        covered, mask = picture.covered, observations.mask(index)
+        if mask.size:
+            covered &= mask > 0
         measure = psnr if target.ssim is None else ssim
-        return measure(to_codes(picture.image), shots.photograph(index), covered)
+        return measure(to_codes(picture.image), observations.codes_of(index), covered)
 
-    some = np.unique(np.linspace(0, count - 1, min(count, MEASURED_CAMERAS)).round().astype(int))
-    values = [value for value in parallel_stream(of_camera, some.tolist()) if value is not None]
+    some = np.unique(np.linspace(0, count - 1, min(count, MEASURED_OBSERVATIONS)).round().astype(int))
+    values = [value for value in parallel_stream(of_observation, some.tolist()) if value is not None]
     return float(np.mean(values)) if values else 0.0
 
 

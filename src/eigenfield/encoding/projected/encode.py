@@ -52,12 +52,13 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
             own["harmonise"] = options.harmonise
             colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views.held_out)
         if options.align is not None:
-            align_maps(maps, views.encoded_reference, options.align, progress)
+            reference = views.taken_by.tolist().index(views.reference)
+            align_maps(maps, reference, options.align, progress)
         mean = _mean_of(maps, progress)  # equation 1
         spreader = make_spreader(maps.atlas, mean.seen)
         basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
         if options.keep_maps is not None:
-            write_maps(maps, mean.values, spreader, views.encoded_names, Path(options.keep_maps), progress=progress)
+            write_maps(maps, mean.values, spreader, views.observation_names, Path(options.keep_maps), progress=progress)
     return plan.scene((Plane(spreader(mean.values), (basis,)),), own, colours=colours)
 
 
@@ -81,8 +82,8 @@ def _basis_of(
     """
     options, views = plan.options, plan.views
     gram = gram_matrix(maps, mean, progress)  # equation 3
-    places = views.coordinates[views.encoded]
-    disagreement_of(maps, mean, gram, views.encoded_names, places, aligned=options.align is not None)
+    names, places = views.observation_names, views.coordinates[views.taken_by]
+    disagreement_of(maps, mean, gram, names, places, aligned=options.align is not None)
     decomposition = spectrum(gram)  # equation 4
     if options.uv_ssim is None:
         count = component_count(known(options.textures), maps.count)
