@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.7"  # a reader takes any 1.x
-VERSIONS = tuple(f"1.{minor}" for minor in range(8))
+VERSION = "1.7"  # of the format without its codecs; a reader takes any 1.x
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk

@@ -195,8 +195,8 @@ class EncodedScene(Scene):
     for byte, and codes anew what was edited.
 
     Attributes:
-        payloads: Of mesh, cameras, means, eigen textures and weights, each under the key of its content; empty for
-            parts that have not been coded, or that a file holds as plain numbers.
+        payloads: Of mesh, cameras, means, eigen textures, weights and the picture for other viewers, each under the key
+            of its content. Parts that have not been coded, or that a file holds as plain numbers, have none.
     """
 
     payloads: Payloads = field(default_factory=Payloads)

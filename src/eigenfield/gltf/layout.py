@@ -32,7 +32,7 @@ from eigenfield.gltf.layout_geometry import (
 )
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
-from eigenfield.gltf.streams import FEATURES
+from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quoted
 
 _KEYS = {
@@ -76,7 +76,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     if extension is None:
         return None
     version = extension["version"].text()
-    if version not in limits.VERSIONS:
+    if minor(version) > LATEST:
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )

@@ -49,6 +49,14 @@ OTHER_FEATURES = {  # what `needs` may name beside the needs of codecs, and the 
 FEATURES = OTHER_FEATURES | {codec.needs: codec.since for codec in CODECS.values() if codec.needs is not None}
 
 
+def minor(version: str) -> int:
+    """x of version 1.x."""
+    return int(version.removeprefix("1."))
+
+
+LATEST = max(map(minor, [limits.VERSION, *(codec.since for codec in CODECS.values())]))  # that is known here
+
+
 def codec_entry(codec: str, place: str) -> dict[str, str]:
     """What the JSON says of a codec: nothing where readers take it unless another is named."""
     picture = PICTURES.get(codec)

@@ -31,7 +31,7 @@ from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.kept import Kept, kept_payloads
 from eigenfield.gltf.layout import read_layout
 from eigenfield.gltf.name_pattern import name_pattern
-from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry
+from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
 from eigenfield.runtime.files import atomic_writer, refuse_existing
 
@@ -231,7 +231,7 @@ def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
         found.add("1.1")
     if scene.residual is not None:
         found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth else "1.0"}
-    return max(found, key=limits.VERSIONS.index)
+    return max(found, key=minor)
 
 
 def _primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:

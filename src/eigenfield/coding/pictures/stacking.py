@@ -17,14 +17,14 @@ from eigenfield.coding.codecs import CODECS, PictureCodec, encoder
 from eigenfield.core.errors import FormatError, OptionError
 
 PICTURES = {name: codec for name, codec in CODECS.items() if isinstance(codec, PictureCodec)}
-SAVED = tuple(name for name, codec in PICTURES.items() if codec.bits == 8 and codec.encode is not None)
+SAVE_CODECS = tuple(name for name, codec in PICTURES.items() if codec.bits == 8 and codec.encode is not None)
 DEFAULT_CODEC = "avif"
 
 
 def check_codec(codec: str, quality: int | None) -> None:
     """Raises OptionError for a codec or a quality that cannot be: `codec`, `codec-missing`, `quality`."""
-    if codec not in SAVED:
-        raise OptionError("codec", f"there is no codec {codec!r}", remedy=f"use {', '.join(SAVED)}")
+    if codec not in SAVE_CODECS:
+        raise OptionError("codec", f"there is no codec {codec!r}", remedy=f"use {', '.join(SAVE_CODECS)}")
     if codec in ("avif", "webp") and not features.check(codec):
         raise OptionError(
             "codec-missing", f"this Pillow has no {codec}", remedy="install a wheel of pillow 11.3 or later"
@@ -54,8 +54,8 @@ def picture_size(width: int, height: int, channels: int, count: int = 1, bits: i
 
 
 def encode(codes: NDArray[np.uint8], codec: str, quality: int) -> bytes:
-    """(H, W, C) uint8 codes as a picture by one of SAVED; one thread, the same bytes each time. quality: 0..100, for
-    lossy ones."""
+    """(H, W, C) uint8 codes as a picture by one of SAVE_CODECS; one thread, the same bytes each time. quality: 0..100,
+    for lossy ones."""
     data: bytes = encoder(codec)(stacked(codes), quality)
     return data
 
