@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from eigenfield.core.errors import ProxyError as ProxyError
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.progress import Progress as Progress
+    from eigenfield.core.scene import EncodedScene as EncodedScene
     from eigenfield.core.scene import Scene as Scene
     from eigenfield.encoding import EncodeOptions as EncodeOptions
     from eigenfield.encoding import Target as Target
@@ -50,6 +51,7 @@ _HOME = {
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
     "EncodeOptions": "encoding",
+    "EncodedScene": "core.scene",
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",

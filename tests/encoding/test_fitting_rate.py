@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from eigenfield.coding.pictures.pictures_10bit import svt
-from eigenfield.core.payloads import files_of
 from eigenfield.encoding.fitted import rate
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
 from eigenfield.encoding.fitted.model import Block, PlaneModel
@@ -36,8 +35,8 @@ def made() -> tuple[Block, PlaneModel, Scales]:
 def left(block: Block, scales: Scales, step: float, price: float) -> float:
     """Squared error and the price of bytes with the best number of components, written out."""
     coded = code_basis(rate._basis_of(block, SIZE), step, rate.QUICK)
-    values = coded.values().transpose(0, 3, 1, 2)
-    sizes = [len(file.data) / file.count for file in files_of(coded) or () for _ in range(file.count)]
+    values = coded.basis.values().transpose(0, 3, 1, 2)
+    sizes = [len(one.data) / one.count for one in coded.pictures for _ in range(one.count)]
     totals = []
     for count in range(block.count + 1):
         drawn = np.zeros_like(block.textures)
@@ -72,9 +71,9 @@ def test_textures_are_coded_at_the_step_that_was_found(made):
         assert coded.count == block.count
         found[search] = coded
     finer = code_basis(rate._basis_of(block, SIZE), STEP / 1.2, svt(8))
-    assert [f.data for f in files_of(found[True])] == [f.data for f in files_of(finer)]
+    assert [one.data for one in found[True].pictures] == [one.data for one in finer.pictures]
     usual = code_basis(rate._basis_of(block, SIZE), STEP, svt(8))
-    assert [f.data for f in files_of(found[False])] == [f.data for f in files_of(usual)]
+    assert [one.data for one in found[False].pictures] == [one.data for one in usual.pictures]
 
 
 def test_what_a_byte_of_the_mean_takes_off_is_measured(made):

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from eigenfield.capture import LightField
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.progress import Progress
-    from eigenfield.core.scene import Scene
+    from eigenfield.core.scene import EncodedScene
 
 __all__ = ["EncodeOptions", "Target", "encode"]
 
@@ -30,7 +30,7 @@ def encode(
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,
     **changes: Any,
-) -> Scene:
+) -> EncodedScene:
     """Encode a light field on a proxy mesh: fitted to its photographs, or projected as the paper does.
 
     Options about texture maps choose the paper's way, with a warning, where neither was asked for.
@@ -44,8 +44,8 @@ def encode(
         changes: Fields of `EncodeOptions` by name, in place of those of `options`.
 
     Returns:
-        The scene. A fit has coded its pictures, and a scene with a residual is what its file gives back. Otherwise the
-        paper's way makes numbers, which `save` codes when it is given `options.for_save`.
+        The scene, with what its parts were coded to. A fit has coded all of it, and a scene with a residual is what its
+        file gives back. Otherwise the paper's way makes numbers, which `save` codes when given `options.for_save`.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.

@@ -221,7 +221,7 @@ class EncodeOptions:
         return self.fit or ("none" if self.about_maps and not self._about_fits else "photographs")
 
     def _check_file(self) -> None:
-        from eigenfield.coding.pictures.pictures_8bit import DEFAULT_CODEC, check_codec
+        from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec
 
         check_codec(self.codec or DEFAULT_CODEC, self.quality)
         if self.residual is not None and self.target is not None:

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from eigenfield.capture import LightField
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import stream_of
+from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Plane, Scene
+from eigenfield.core.scene import EncodedScene, Plane
 from eigenfield.core.version import __version__
 from eigenfield.encoding.fitted import byte_price, fit_surface
 from eigenfield.encoding.geometry import slim_mesh, triangles_worth
@@ -63,6 +63,7 @@ class EncodePlan:
         proxy: The proxy from which the same plan at another quality is made.
         views: The cameras as the file keeps them, and which of them are encoded.
         mesh: The proxy as the file keeps it.
+        payloads: What mesh and cameras were coded to; without a fit they are not.
         atlas: Width and height of its atlas.
     """
 
@@ -71,12 +72,13 @@ class EncodePlan:
     proxy: PreparedProxy
     views: CaptureViews
     mesh: Mesh
+    payloads: Payloads
     atlas: tuple[int, int]
 
     @property
     def mesh_bytes(self) -> int:
         """Of the coded mesh in the file; 0 where it is not coded."""
-        return len(stream_of(self.mesh) or b"")
+        return size_of(self.payloads.get(mesh_key(self.mesh), ()))
 
     @cached_property
     def density(self) -> float:
@@ -96,14 +98,16 @@ class EncodePlan:
         planes: tuple[Plane, ...],
         own: Mapping[str, Any],
         *,
+        payloads: Payloads | None = None,
         colours: NDArray[np.float32] | None = None,
         to_rgb: NDArray[np.float32] | None = None,
-    ) -> Scene:
+    ) -> EncodedScene:
         """The scene with these planes.
 
         Args:
             planes: As in `Scene`, with a row of weights for each encoded camera.
             own: What its settings say of how the planes were made.
+            payloads: What the planes were coded to.
             colours: As in `Scene`.
             to_rgb: As in `Scene`.
         """
@@ -122,7 +126,7 @@ class EncodePlan:
                 "pixels": sum(camera.width * camera.height for camera in views.encoded_cameras),
             },
         }
-        return Scene(
+        return EncodedScene(
             mesh=self.mesh,
             planes=planes,
             names=tuple(views.capture.names),
@@ -135,6 +139,7 @@ class EncodePlan:
             generator=f"eigenfield {__version__}",
             colours=colours,
             to_rgb=to_rgb,
+            payloads=self.payloads | (payloads or {}),
         )
 
 
@@ -208,12 +213,14 @@ def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Calla
 
 def _at_its_quality(proxy: PreparedProxy, asked: EncodeOptions) -> EncodePlan:
     """The plan with a prepared proxy: the atlas's size and, for a fit, mesh and cameras as they are coded."""
-    options, views, mesh = _for_one_quality(asked), proxy.views, proxy.mesh
-    atlas = _atlas_size(options, mesh, views)
-    if options.fit != "none":
-        mesh = _coded_mesh(mesh, views, options, atlas)
-        views = replace(views, cameras=coded_cameras(views.cameras, mesh, grid_of(views.coordinates)))
-    return EncodePlan(asked, options, proxy, views, mesh, atlas)
+    options, views = _for_one_quality(asked), proxy.views
+    atlas = _atlas_size(options, proxy.mesh, views)
+    if options.fit == "none":
+        return EncodePlan(asked, options, proxy, views, proxy.mesh, Payloads(), atlas)
+    mesh = _coded_mesh(proxy.mesh, views, options, atlas)
+    cameras = coded_cameras(views.cameras, mesh.value, grid_of(views.coordinates))
+    views = replace(views, cameras=cameras.value)
+    return EncodePlan(asked, options, proxy, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
 
 
 def _atlas_size(options: EncodeOptions, mesh: Mesh, views: CaptureViews) -> tuple[int, int]:
@@ -228,7 +235,7 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, views: CaptureViews) -> tupl
     return side, side
 
 
-def _coded_mesh(mesh: Mesh, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Mesh:
+def _coded_mesh(mesh: Mesh, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
     """The mesh as a fitted file keeps it.
 
     A relief is simplified to what its pictures are worth, unless a number of triangles was asked for.

@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.encoder import open_encoder
 from eigenfield.encoding.fitted.reach import reach_target
 from eigenfield.encoding.options import known
 from eigenfield.encoding.plan import EncodePlan
 
 
-def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> Scene:
+def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
     """A scene whose drawn pictures match the plan's photographs as far as its quality, or its target, allows.
 
     Its planes are coded already: `save` keeps their bytes.

@@ -10,8 +10,9 @@ from pathlib import Path
 
 from eigenfield.capture import LightField
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payloads
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import KINDS, Fits, fitted_textures, open_fits
@@ -36,19 +37,24 @@ class FittedEncoder:
     fits: Fits
     progress: Progress | None = None
 
-    def coded(self, quality: int) -> Scene:
+    def coded(self, quality: int) -> EncodedScene:
         """The scene coded at a quality, 0 to 100, with its figures."""
         return self.with_figures(self.scene(quality))
 
-    def scene(self, quality: int) -> Scene:
+    def scene(self, quality: int) -> EncodedScene:
         """The scene coded at a quality, without its figures: its settings have only the room for them."""
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
         own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.reached()}}
         planes = self.fits.coded(quality, self.plan.views.grid, self.progress)
-        return self.plan.scene(tuple(planes.values()), own, to_rgb=None if options.planes == "rgb" else to_rgb())
+        return self.plan.scene(
+            tuple(plane.value for plane in planes.values()),
+            own,
+            payloads=Payloads.joined(plane.payloads for plane in planes.values()),
+            to_rgb=None if options.planes == "rgb" else to_rgb(),
+        )
 
-    def with_figures(self, scene: Scene) -> Scene:
+    def with_figures(self, scene: EncodedScene) -> EncodedScene:
         """A scene that `scene` made, with the PSNR of each of its planes in its settings."""
         fitted = {**scene.settings["fitted"], "psnr": self.fits.reached(scene.planes)}
         return replace(scene, settings={**scene.settings, "fitted": fitted})

@@ -17,11 +17,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.arrays.weights import code_weights
+from eigenfield.coding.codecs import encoder
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Basis, Plane
-from eigenfield.encoding.fitted.code_planes import coded_plane, with_weights
+from eigenfield.core.scene import Plane
+from eigenfield.encoding.fitted.code_planes import WEIGHTS_CODEC, CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
@@ -183,7 +184,7 @@ def code_plane(
     grid: NDArray[np.int64] | None = None,
     precision: NDArray[np.float32] | None = None,
     progress: Progress | None = None,
-) -> Plane:
+) -> Coded[Plane]:
     """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
     As its files give it back.
 
@@ -198,26 +199,29 @@ def code_plane(
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
     tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
-    bases: list[Basis] = []
+    bases: list[CodedBasis] = []
     price = price_of_mean(open_loop, scales, rate, precision)
     for block in open_loop.blocks:
         coded = code_worthwhile(block, model.grid, scales, rate, price)
         if not coded.count:
             continue
-        values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])
+        values, weights = (
+            coded.basis.values().transpose(0, 3, 1, 2),
+            np.ascontiguousarray(block.weights[:, : coded.count]),
+        )
         model.blocks.append(replace(block, textures=np.ascontiguousarray(values), weights=weights))
         bases.append(coded)
     tick()
     if bases:
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         for number, block in enumerate(model.blocks):
-            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
+            stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, stream)
     tick()
     left = residual(pixels.fitted, model, True, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.coder, precision)
+    plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision)
     tick(last=True)
     return plane
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.aom import aom_program, encode_aom
 from eigenfield.coding.pictures.pictures_10bit import SMALLEST, SVT, encoder_step
+from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Plane
 from eigenfield.encoding.fitted.colour import split_matrix
@@ -108,7 +109,7 @@ class Fits:
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-    ) -> dict[str, Plane]:
+    ) -> dict[str, Coded[Plane]]:
         """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)

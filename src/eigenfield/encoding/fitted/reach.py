@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Scene
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.options import known
@@ -30,7 +30,7 @@ DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer for a sec
 MEASURED_OBSERVATIONS = 48  # at most, evenly spread, by which a PSNR or SSIM is judged
 
 
-def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> Scene:
+def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> EncodedScene:
     """The scene whose file reaches the target, or with a warning the nearest.
 
     Mesh and atlas belong to a quality. Where the target is met at one that has clearly others than the plan's, there is
@@ -59,7 +59,7 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
 
 
 def _other_plan(
-    plan: EncodePlan, found: Tried[Scene], work: Path | None, progress: Progress | None
+    plan: EncodePlan, found: Tried[EncodedScene], work: Path | None, progress: Progress | None
 ) -> EncodePlan | None:
     """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
     if abs(found.quality - known(plan.options.quality)) <= NEAR_QUALITIES:
@@ -70,10 +70,10 @@ def _other_plan(
     return other if mesh or atlas else None
 
 
-def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried[Scene]:
+def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried[EncodedScene]:
     """As `search`, of what the encoder makes."""
 
-    def code(quality: int) -> Tried[Scene]:
+    def code(quality: int) -> Tried[EncodedScene]:
         scene = encoder.scene(quality)
         measured = 0.0 if target.size else _measured(target, scene, encoder.data)
         return Tried(quality, len(encode_scene(scene)), measured, scene)
@@ -81,12 +81,12 @@ def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried
     return search(target, code, first)
 
 
-def _compared(target: Target, found: Tried[Scene], data: FitData) -> Tried[Scene]:
+def _compared(target: Target, found: Tried[EncodedScene], data: FitData) -> Tried[EncodedScene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
     return found if target.size is None else replace(found, measured=_measured(target, found.result, data))
 
 
-def _measured(target: Target, scene: Scene, data: FitData) -> float:
+def _measured(target: Target, scene: EncodedScene, data: FitData) -> float:
     """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
     renderer, observations, count = Renderer(scene), data.observations, len(data)
     cameras = [scene.cameras[index] for index in scene.encoded]
@@ -104,7 +104,7 @@ def _measured(target: Target, scene: Scene, data: FitData) -> float:
     return float(np.mean(values)) if values else 0.0
 
 
-def _warn_of_miss(target: Target, nearest: Tried[Scene]) -> None:
+def _warn_of_miss(target: Target, nearest: Tried[EncodedScene]) -> None:
     """Say that no file reaches the target, and why."""
     if target.size is not None:
         log.warning(

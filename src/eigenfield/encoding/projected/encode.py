@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.scene import Basis, EncodedScene, Plane
 from eigenfield.encoding.options import known
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
@@ -24,7 +24,7 @@ from eigenfield.encoding.projected.uv_measure import smallest_count
 from eigenfield.encoding.projected.write_maps import write_maps
 
 
-def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> Scene:
+def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
     """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
 
     Args:

@@ -11,7 +11,7 @@ from eigenfield.coding.video.av1 import Planes, encode_film
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import Residual, Scene
+from eigenfield.core.scene import EncodedScene, Residual
 from eigenfield.encoding.residual.colour import to_planes
 from eigenfield.encoding.residual.orders import film_order
 from eigenfield.encoding.residual.views import surface_colours
@@ -27,11 +27,11 @@ PRESET = 2  # SVT-AV1's: 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
 
 
 def with_residual(
-    scene: Scene,
+    scene: EncodedScene,
     capture: LightField,
     quality: int = DEFAULT_QUALITY,
     progress: Progress | None = None,
-) -> Scene:
+) -> EncodedScene:
     """The scene with a residual.
 
     Args:
