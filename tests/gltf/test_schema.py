@@ -15,6 +15,7 @@ from jsonschema import Draft202012Validator
 from eigenfield.coding import limits
 from eigenfield.core.scene import Residual
 from eigenfield.gltf import encode_scene, layout
+from eigenfield.gltf.streams import FEATURES
 from support import schema
 from support.coded_scenes import coded_scene, precise_scene
 from support.glb_surgery import DOCUMENT, changed, ours, outcome
@@ -47,7 +48,7 @@ def test_the_schema_is_one():
 
 def test_files_of_every_kind_keep_to_it(files):
     needed = {need for data in files.values() for need in extension_of(data)["needs"]}
-    assert needed >= limits.FEATURES - {"codedNames"}
+    assert needed >= FEATURES.keys() - {"codedNames"}
     for kind, data in files.items():
         assert violation(extension_of(data)) is None, kind
 
@@ -239,7 +240,7 @@ def test_limits_are_those_of_the_code():
 
 
 def test_features_and_keys_are_those_of_the_code():
-    assert set(DEFINITIONS["feature"]["enum"]) == limits.FEATURES
+    assert set(DEFINITIONS["feature"]["enum"]) == FEATURES.keys()
     assert set(SCHEMA["properties"]) == layout._KEYS
 
 

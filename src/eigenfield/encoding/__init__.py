@@ -45,7 +45,8 @@ def encode(
 
     Returns:
         The scene, with what its parts were coded to. A fit has coded all of it, and a scene with a residual is what its
-        file gives back. Otherwise the paper's way makes numbers, which `save` codes when it is given `options.for_save`.
+        file gives back. Otherwise the paper's way makes numbers, which `save` codes when it is given
+        `options.for_save`.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.
