@@ -73,5 +73,7 @@ def encode(
 
     if meant.residual is None:
         return scene
-    stored = read_scene(encode_scene(scene, **meant.coding, progress=progress))  # the residual is of what a file holds
+    # the residual is of what a file holds, and so is its picture for other viewers
+    stored = read_scene(encode_scene(scene, **meant.coding, progress=progress))
+    stored = replace(stored, payloads=stored.payloads.without("preview"))
     return with_residual(stored, capture, meant.residual, progress)
