@@ -82,6 +82,10 @@ class Payloads(Mapping[Key, tuple[Payload, ...]]):
     def __or__(self, other: Mapping[Key, Sequence[Payload]]) -> Payloads:
         return Payloads({**self._found, **other})
 
+    def without(self, kind: str) -> Payloads:
+        """All but those of one kind of content."""
+        return Payloads({key: payloads for key, payloads in self._found.items() if key[0] != kind})
+
     @staticmethod
     def joined(several: Iterable[Payloads]) -> Payloads:
         """All of several."""

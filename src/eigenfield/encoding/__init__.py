@@ -45,7 +45,8 @@ def encode(
 
     Returns:
         The scene, with what its parts were coded to. A fit has coded all of it, and a scene with a residual is what its
-        file gives back. Otherwise the paper's way makes numbers, which `save` codes when given `options.for_save`.
+        file gives back. Otherwise the paper's way makes numbers, which `save` codes when it is given
+        `options.for_save`.
 
     Raises:
         CaptureError, ProxyError, OptionError, OutputError: Each names the file and the remedy.
@@ -72,5 +73,7 @@ def encode(
 
     if meant.residual is None:
         return scene
-    stored = read_scene(encode_scene(scene, **meant.coding, progress=progress))  # the residual is of what a file holds
+    # the residual is of what a file holds, and so is its picture for other viewers
+    stored = read_scene(encode_scene(scene, **meant.coding, progress=progress))
+    stored = replace(stored, payloads=stored.payloads.without("preview"))
     return with_residual(stored, capture, meant.residual, progress)

@@ -18,7 +18,7 @@ from eigenfield.gltf.document import FLOAT, Document, all_finite
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
 from eigenfield.gltf.streams import codec_named, read_stream
-from eigenfield.gltf.strict_json import Value
+from eigenfield.gltf.strict_json import Value, quoted
 
 MOST_BITS = max(codec.bits for codec in PICTURES.values())
 
@@ -227,8 +227,13 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
 
 
 def _picture(document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int) -> Picture:
-    bits = entry["bits"].integer(8, MOST_BITS) if entry.has("bits") else 8
-    data, codec = document.data(entry["bufferView"]), codec_named(entry, place) or _codec_of(entry, bits)
+    data, bits = document.data(entry["bufferView"]), entry["bits"].integer(8, MOST_BITS) if entry.has("bits") else 8
+    usual = _codec_of(entry, bits)
+    codec = codec_named(entry, place) or usual
+    if (PICTURES[codec].mime, PICTURES[codec].bits) != (PICTURES[usual].mime, bits):
+        entry["codec"].fail(
+            "picture-type", f"{codec} is no codec of {bits} bits in a picture of type {entry['mimeType'].value}"
+        )
     affine = None
     if place != "mean" or PICTURES[codec].bits != 8 or entry.has("scale") or entry.has("zero"):
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
@@ -237,7 +242,7 @@ def _picture(document: Document, entry: Value, place: str, size: tuple[int, int]
 
 
 def _codec_of(entry: Value, bits: int) -> str:
-    """The codec of a picture that names none. FormatError `picture-type`."""
+    """The usual codec of pictures of an entry's type. FormatError `picture-type`."""
     mime = entry["mimeType"].text()
     found = codec_of(mime, bits)
     if found is None and bits != 8:
@@ -251,8 +256,9 @@ def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
     if mean.bits == 8:
         entry.fail("picture-type", "only pictures of 10 bits have a precision")
     width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
-    data, codec = document.data(entry["bufferView"]), codec_named(entry, "precision")
-    assert codec is not None
+    data, codec = document.data(entry["bufferView"]), "png"
+    if codec_named(entry, "precision") != codec:
+        entry["codec"].fail("codec-unknown", f"a precision is a {codec}, not {quoted(entry['codec'].value)}")
     stacking.check_picture(data, codec, width, height, 1, entry.where)
     return Picture(data, codec, width, height, 1, None, entry.where)
 

@@ -17,30 +17,32 @@ from eigenfield.gltf.strict_json import Value, quoted
 
 @dataclass(frozen=True)
 class Place:
-    """A place in the extension where a stream stands: the index of a buffer view, or an object with a `bufferView`.
+    """A place in the extension where a stream stands: an object with a `bufferView`.
 
     Attributes:
         path: From the extension, `*` for every entry of an array.
         kind: Of its codecs.
         codec: Unless the object has a `codec`; None: what the `mimeType` and the `bits` of a picture say.
         part: Of the file, that its bytes count to (`contents.parts`).
+        bare: Whether the index of the buffer view may stand there alone.
     """
 
     path: str
     kind: str
     codec: str | None
     part: str
+    bare: bool = False
 
 
 PLACES = {
     "mesh": Place("mesh", "mesh", "mesh-1", "mesh"),
-    "cameras": Place("cameras/coded", "cameras", "cameras-1", "other"),
+    "cameras": Place("cameras/coded", "cameras", "cameras-1", "other", bare=True),
     "names": Place("cameras/codedNames", "names", "names-1", "other"),
-    "triangles": Place("viewPlane/codedTriangles", "triangles", "triangles-1", "other"),
+    "triangles": Place("viewPlane/codedTriangles", "triangles", "triangles-1", "other", bare=True),
     "mean": Place("planes/*/mean", "picture", None, "mean"),
     "precision": Place("planes/*/mean/precision", "picture", "png", "mean"),
     "textures": Place("planes/*/bases/*/textures/*", "picture", None, "textures"),
-    "weights": Place("planes/*/bases/*/codedWeights", "weights", "weights-1", "weights"),
+    "weights": Place("planes/*/bases/*/codedWeights", "weights", "weights-1", "weights", bare=True),
     "residual": Place("residual", "residual", "video-1", "residual"),
 }
 OTHER_FEATURES = {  # what `needs` may name beside the needs of codecs, and the version that brought it
@@ -64,9 +66,9 @@ def codec_entry(codec: str, place: str) -> dict[str, str]:
     return {} if codec == usual else {"codec": codec}
 
 
-def reference_of(entry: Value) -> Value:
+def _reference(entry: Value, place: Place) -> Value:
     """The index of a stream's buffer view."""
-    return entry["bufferView"] if isinstance(entry.value, dict) else entry
+    return entry if place.bare and isinstance(entry.value, int) else entry["bufferView"]
 
 
 def codec_named(entry: Value, place: str) -> str | None:
@@ -89,7 +91,7 @@ def read_stream(document: Document, entry: Value, place: str) -> Payload:
     """The stream that `entry` is or names, not decoded. FormatError `codec-unknown`, `view-*`, `truncated`."""
     codec = codec_named(entry, place)
     assert codec is not None
-    return Payload(codec, bytes(document.data(reference_of(entry))))
+    return Payload(codec, bytes(document.data(_reference(entry, PLACES[place]))))
 
 
 def streams(extension: Value) -> Iterator[tuple[Place, Value]]:
@@ -98,7 +100,7 @@ def streams(extension: Value) -> Iterator[tuple[Place, Value]]:
     for place in PLACES.values():
         with contextlib.suppress(FormatError):
             for entry in _at(extension, place.path.split("/")):
-                yield place, reference_of(entry)
+                yield place, _reference(entry, place)
 
 
 def _at(value: Value, path: Sequence[str]) -> Iterator[Value]:

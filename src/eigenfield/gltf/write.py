@@ -253,16 +253,10 @@ def _index_type(mesh: Mesh, small: bool) -> int:
     return UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
 
 
-def _stream(payload: Payload, place: str, buffer: Buffer) -> dict[str, Any]:
-    """Where a stream is, and its codec if that is to be said."""
-    return {"bufferView": buffer.stream(payload, place), **codec_entry(payload.codec, place)}
-
-
-def _bare_stream(payload: Payload, place: str, buffer: Buffer) -> int | dict[str, Any]:
-    """As `_stream`; the index of the buffer view alone where that is all."""
-    entry = _stream(payload, place, buffer)
-    index: int = entry["bufferView"]
-    return index if len(entry) == 1 else entry
+def _stream(payload: Payload, place: str, buffer: Buffer) -> Any:
+    """The entry of a stream: where it is, and its codec if that is to be said."""
+    index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
+    return index if PLACES[place].bare and not named else {"bufferView": index, **named}
 
 
 def _plane(
@@ -283,7 +277,7 @@ def _plane(
         if basis.grid is not None:
             entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
         if stream is not None:
-            entry["codedWeights"] = _bare_stream(stream, "weights", buffer)
+            entry["codedWeights"] = _stream(stream, "weights", buffer)
         elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
         entry |= _textures([_picture(file, "textures") for file in files])
@@ -366,7 +360,7 @@ def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, 
     made = _names(scene.names, None if stream is None else buffer)
     made["heldOut"] = np.flatnonzero(scene.held_out).tolist()
     if stream is not None:
-        made["coded"] = _bare_stream(stream, "cameras", buffer)
+        made["coded"] = _stream(stream, "cameras", buffer)
     else:
         cameras = scene.cameras
         intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
@@ -417,7 +411,7 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     if len(scene.triangles):
         stream = _encoded("triangles", scene.triangles) if short else None
         if stream is not None:
-            made["codedTriangles"] = _bare_stream(stream, "triangles", buffer)
+            made["codedTriangles"] = _stream(stream, "triangles", buffer)
         else:
             made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT32, "SCALAR")
     return made
