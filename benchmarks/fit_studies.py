@@ -55,8 +55,10 @@ class Lever:
     filter: str = "bicubic"
 
 
-def _kinds(change: Callable[[planes.Kind], planes.Kind]) -> contextlib.AbstractContextManager[Any]:
-    return patch.dict(planes.KINDS, {"luma-chroma": tuple(map(change, planes.KINDS["luma-chroma"]))})
+def _plane_presets(
+    change: Callable[[planes.PlanePreset], planes.PlanePreset],
+) -> contextlib.AbstractContextManager[Any]:
+    return patch.dict(planes.PLANE_PRESETS, {"luma-chroma": tuple(map(change, planes.PLANE_PRESETS["luma-chroma"]))})
 
 
 def _open_loop() -> contextlib.AbstractContextManager[Any]:
@@ -93,10 +95,11 @@ LEVERS = {
     "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=EncodeOptions(planes="rgb")),
     "dense": Lever(
         "the mean as coarse as the textures",
-        lambda: _kinds(lambda kind: replace(kind, mean_share=kind.texture_share)),
+        lambda: _plane_presets(lambda one: replace(one, mean_share=one.texture_share)),
     ),
     "coarse": Lever(
-        "textures as dense as the mean", lambda: _kinds(lambda kind: replace(kind, texture_share=kind.mean_share))
+        "textures as dense as the mean",
+        lambda: _plane_presets(lambda one: replace(one, texture_share=one.mean_share)),
     ),
     "rank": Lever("15 textures", options=EncodeOptions(textures=15)),
     "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),

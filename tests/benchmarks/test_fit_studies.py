@@ -24,7 +24,7 @@ def ready(tmp_path_factory):
 def test_levers_are_put_back():
     before = (
         options.PRESETS.copy(),
-        planes.KINDS.copy(),
+        planes.PLANE_PRESETS.copy(),
         fit.find_regions,
         fit.fit_weights,
         (rate.LAGRANGE, rate.OTHER_STEPS),
@@ -37,7 +37,7 @@ def test_levers_are_put_back():
         with lever.change(), lever.coding():
             pass
     after = (
-        options.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
+        options.PRESETS, planes.PLANE_PRESETS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
         plan.slim_mesh, planes.mean_precision, fit.fill_unseen, plan.fit_surface,
     )  # fmt: skip
     assert before == after

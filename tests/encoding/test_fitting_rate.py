@@ -10,7 +10,7 @@ from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.encoding.fitted import rate
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
 from eigenfield.encoding.fitted.model import Block, PlaneModel
-from eigenfield.encoding.fitted.planes import KINDS
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS
 from eigenfield.encoding.fitted.rate import Price, Rate, code_worthwhile, price_of, price_of_mean
 from eigenfield.encoding.fitted.solve import Scales
 
@@ -104,6 +104,6 @@ def test_nothing_is_measured_where_nothing_is_looked_for(made):
 
 
 def test_luma_is_searched_where_cameras_are_many():
-    luma, chroma = KINDS["luma-chroma"]
+    luma, chroma = PLANE_PRESETS["luma-chroma"]
     assert luma.rate(0.01).search
     assert not luma.rate(0.01, few=True).search and not chroma.rate(0.01).search

@@ -10,7 +10,7 @@ import eigenfield as ef
 from eigenfield.cli import main
 from eigenfield.core.payloads import mesh_key, size_of
 from eigenfield.encoding import EncodeOptions, Target
-from eigenfield.encoding.fitted import KINDS, coded_psnr
+from eigenfield.encoding.fitted import PLANE_PRESETS, coded_psnr
 from eigenfield.encoding.fitted.planes import scaled
 from eigenfield.encoding.options import density_of
 from eigenfield.evaluation import evaluate
@@ -123,7 +123,7 @@ def test_the_density_is_what_a_quality_pays_for():
 
 
 def test_chroma_gets_less_dense_later_than_luma():
-    luma, chroma = KINDS["luma-chroma"]
+    luma, chroma = PLANE_PRESETS["luma-chroma"]
     for density, share in ((0.9, 1.1 / 0.9), (1.2, 1.4 / 1.2), (1.4, 1.5 / 1.4), (1.5, 1.0), (2.0, 1.0), (0.01, 2.0)):
         assert luma.settings((800, 960), density, 20).mean == (800, 960)
         found = chroma.settings((800, 960), density, 20)

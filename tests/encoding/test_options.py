@@ -17,7 +17,7 @@ from eigenfield.cli.field_options import from_fields
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fields import options_of
-from eigenfield.encoding.fitted import KINDS
+from eigenfield.encoding.fitted import PLANE_PRESETS
 from eigenfield.encoding.options import PRESETS, UNKNOWN, density_of
 from eigenfield.encoding.projected import FILTERS, METHODS
 from eigenfield.gltf import encode_scene, save
@@ -99,7 +99,7 @@ def test_what_options_mean(asked, meant):
 
 
 def test_choices_are_what_there_is_to_choose():
-    tables = {"preset": PRESETS, "planes": KINDS, "resampling": FILTERS, "align": METHODS}
+    tables = {"preset": PRESETS, "planes": PLANE_PRESETS, "resampling": FILTERS, "align": METHODS}
     choices = {name: set(one.choices) for name, one in options_of(EncodeOptions) if one.choices}
     assert all(choices[name] == set(table) for name, table in tables.items())
     assert set(choices) == {*UNKNOWN, "codec"}

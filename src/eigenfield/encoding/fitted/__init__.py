@@ -5,12 +5,12 @@ from __future__ import annotations
 from eigenfield.encoding.fitted.colour import split_matrix, to_rgb
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, subsampled
-from eigenfield.encoding.fitted.planes import KINDS, Fits, byte_price, fitted_textures, open_fits
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, byte_price, fitted_textures, open_fits
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.surface import fit_surface
 
 __all__ = [
-    "KINDS",
+    "PLANE_PRESETS",
     "FitData",
     "Fits",
     "Pixels",

@@ -15,7 +15,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
-from eigenfield.encoding.fitted.planes import KINDS, Fits, fitted_textures, open_fits
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, fitted_textures, open_fits
 from eigenfield.encoding.options import PRESETS, EncodeOptions, known
 from eigenfield.encoding.plan import EncodePlan, plan_encoding
 from eigenfield.encoding.projected import component_count, warn_of_disagreement
@@ -75,11 +75,11 @@ def open_encoder(
     views, options = plan.views, plan.options
     cameras, observations = views.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
-    textures, kinds = component_count(asked, len(observations)), KINDS[known(options.planes)]
+    textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[known(options.planes)]
     size = plan.atlas[1], plan.atlas[0]
     with (
         open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.encoded_reference) as data,
-        open_fits(data, plan.density, textures, PRESETS[known(options.preset)], kinds, work, progress) as fits,
+        open_fits(data, plan.density, textures, PRESETS[known(options.preset)], planes, work, progress) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone

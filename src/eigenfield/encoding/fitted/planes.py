@@ -30,7 +30,7 @@ SIDE_STEP = 16  # atlas sides are multiples of this
 
 
 @dataclass(frozen=True, eq=False)
-class Kind:
+class PlanePreset:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
     Attributes:
@@ -80,12 +80,12 @@ class Kind:
 
 
 _LUMA, _CHROMA = split_matrix()
-KINDS = {
+PLANE_PRESETS = {
     "luma-chroma": (
-        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),
-        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
+        PlanePreset("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),
+        PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
     ),
-    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
+    "rgb": (PlanePreset("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
 }
 HALF_LEVEL = 0.002  # grey level, in the photographs' range
 TEXTURES_SHARE = 1 / 2  # of the observations, see `fitted_textures`
@@ -102,9 +102,9 @@ def fitted_textures(observations: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """Planes fitted, not coded yet. patient: see `Kind.rate`."""
+    """Planes fitted, not coded yet. patient: see `PlanePreset.rate`."""
 
-    planes: tuple[tuple[Kind, OpenFit], ...]
+    planes: tuple[tuple[PlanePreset, OpenFit], ...]
     patient: bool
 
     def coded(
@@ -115,8 +115,8 @@ class Fits:
         precision = mean_precision(self.planes[0][1].scales)
         few = len(self.planes[0][1].pixels.every) < SUBSAMPLED_FROM
         return {
-            kind.name: code_plane(fit, kind.rate(step, self.patient, few), grid, precision, progress)
-            for kind, fit in self.planes
+            plane.name: code_plane(fit, plane.rate(step, self.patient, few), grid, precision, progress)
+            for plane, fit in self.planes
         }
 
     def reached(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
@@ -136,7 +136,7 @@ def open_fits(
     density: float,
     textures: int,
     preset: Preset,
-    kinds: Sequence[Kind] = KINDS["luma-chroma"],
+    planes: Sequence[PlanePreset] = PLANE_PRESETS["luma-chroma"],
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Fits]:
@@ -147,7 +147,7 @@ def open_fits(
         density: texels of its atlas for a pixel, along an axis.
         textures: luma's number.
         preset: what the fit aims at.
-        kinds: the planes.
+        planes: which, and how each is fitted and coded.
         work: folder for scratch files.
         progress: reports the steps.
     """
@@ -156,18 +156,18 @@ def open_fits(
     with contextlib.ExitStack() as kept:
         some = kept.enter_context(subsampled(data, 1 if few else 2, work))
 
-        def fit(kind: Kind) -> OpenFit:
+        def fit(plane: PlanePreset) -> OpenFit:
             if few:
                 robust = kept.enter_context(with_robust_weights(data, work))
                 pixels = Pixels(data, robust, robust)
             else:
-                pixels = Pixels(data, some if kind.subsampled else data, some)
-            return fit_plane(pixels, kind.settings(data.size, density, textures), kind.name, rounds, work, progress)
+                pixels = Pixels(data, some if plane.subsampled else data, some)
+            return fit_plane(pixels, plane.settings(data.size, density, textures), plane.name, rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:
             log.info("coded by %s", "libaom" if patient else "SVT-AV1: an ffmpeg program with libaom saves 8 to 10 %")
-        yield Fits(tuple((kind, fit(kind)) for kind in kinds), patient)
+        yield Fits(tuple((plane, fit(plane)) for plane in planes), patient)
 
 
 def step_of(quality: int) -> float:
@@ -179,7 +179,7 @@ def step_of(quality: int) -> float:
 def byte_price(quality: int) -> float:
     """Squared error of luma that a byte takes off the pictures at a quality, for each pixel that a texel of the mean is
     seen in."""
-    return price_of(KINDS["luma-chroma"][0].mean_step * step_of(quality))
+    return price_of(PLANE_PRESETS["luma-chroma"][0].mean_step * step_of(quality))
 
 
 def scaled(size: tuple[int, int], share: float) -> tuple[int, int]:
