@@ -28,14 +28,14 @@ def coded(picture: np.ndarray[Any, Any], quality: int) -> tuple[int, np.ndarray[
 def maps_at_equal_ssim(scene_path: Path, capture: ef.LightField, target: float) -> dict[str, Any]:
     """The lowest AVIF quality at which the filled maps reach `target`, and all maps' bytes against the file's."""
     scene = ef.load(scene_path)
-    mean = to_codes(scene.planes[0].mean)
-    atlas = make_atlas(scene.mesh, mean.shape[1], mean.shape[0])
+    mean = to_codes(scene.appearance.planes[0].mean)
+    atlas = make_atlas(scene.proxy.mesh, mean.shape[1], mean.shape[0])
     names = [view.name for view in capture.views]
     maps = []
-    for row in np.linspace(0, len(scene.encoded) - 1, SAMPLE).round().astype(int):
-        index = scene.encoded[row]
-        photograph = capture.photograph(names.index(scene.names[index]))
-        values, seen = texture_map(atlas, scene.cameras[index], photograph.pixels, photograph.mask)
+    for row in np.linspace(0, len(scene.rig.encoded) - 1, SAMPLE).round().astype(int):
+        index = scene.rig.encoded[row]
+        photograph = capture.photograph(names.index(scene.rig.names[index]))
+        values, seen = texture_map(atlas, scene.rig.cameras[index], photograph.pixels, photograph.mask)
         filled, visible = mean.copy(), np.zeros(mean.shape[:2], bool)
         filled.reshape(-1, 3)[atlas.texel[seen > 0]] = to_codes(values[seen > 0])
         visible.reshape(-1)[atlas.texel[seen > 0]] = True
@@ -54,7 +54,7 @@ def maps_at_equal_ssim(scene_path: Path, capture: ef.LightField, target: float) 
         else:
             low = middle + 1
     reached, size = at(high)
-    total, own = size * len(scene.encoded), scene_path.stat().st_size
+    total, own = size * len(scene.rig.encoded), scene_path.stat().st_size
     return {
         "quality": high, "ssim": round(reached, 4), "maps_bytes_estimated": round(total), "sample": SAMPLE,
         "file_bytes": own, "saving": round(1 - own / total, 4),

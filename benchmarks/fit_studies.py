@@ -69,8 +69,8 @@ def _open_loop() -> contextlib.AbstractContextManager[Any]:
     return stack
 
 
-def _whole(mesh: Any, cameras: Any, reference: int, *_: Any) -> Any:
-    return coded_mesh(mesh, cameras, reference)
+def _whole(proxy: Any, cameras: Any, reference: int, *_: Any) -> Any:
+    return coded_mesh(proxy, cameras, reference)
 
 
 def _no_rounds() -> contextlib.AbstractContextManager[Any]:
@@ -116,7 +116,7 @@ LEVERS = {
         "one sample a pixel at edges too, in the fit and in drawing",
         lambda: patch.object(drawing, "STANDARD", drawing.CENTRE),
     ),
-    "relief": Lever("the relief not simplified", lambda: patch.object(plan, "slim_mesh", _whole)),
+    "relief": Lever("the relief not simplified", lambda: patch.object(plan, "simplify_proxy_rd", _whole)),
     "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
 }
 
@@ -211,7 +211,7 @@ def drawn_figures(
 
     def pictures() -> Iterator[NDArray[np.uint8]]:
         for index in range(len(photographs)):
-            picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter=filter)
+            picture = renderer.draw(scene.rig.cameras[index], camera_weights(scene, index), filter=filter)
             yield to_codes(picture.image)
 
     return rates.point(pictures(), photographs, covered, names)
@@ -228,7 +228,7 @@ def held_out(ready: Prepared) -> dict[str, Any]:
             figures = ef.evaluate(scene, ready.light_field, path=path, circles=ready.circles(), png_maps="none")
             image = figures["image"]
             point: dict[str, Any] = {
-                "parameter": quality, "bytes": path.stat().st_size, "textures": scene.textures,
+                "parameter": quality, "bytes": path.stat().st_size, "textures": scene.appearance.textures,
             }  # fmt: skip
             for part in ("encoded", "held_out"):
                 point[part] = {key: value for key, value in image[part].items() if not isinstance(value, (list, str))}

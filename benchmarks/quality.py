@@ -94,7 +94,7 @@ def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
     atlas = int(how[3]) if "--atlas" in how else None
     scene = ef.encode(capture, how[1], **{"atlas": atlas, "fit": "none", **options})
     figures = ef.evaluate(
-        scene, capture, png_maps="none", circles=None if circles is None else read_circles(circles, scene.names)
+        scene, capture, png_maps="none", circles=None if circles is None else read_circles(circles, scene.rig.names)
     )
     return {"uv": figures["uv"], "image": figures["image"], "textures": figures["textures"]}
 

@@ -173,7 +173,7 @@ def contact_sheet(
         prepared.drawn(Renderer(scene), scene, index)[0],
         pictures.read(ready.work / other["shown"]),
     ]
-    words = [f"photograph {scene.names[index]}"] + [
+    words = [f"photograph {scene.rig.names[index]}"] + [
         f"{name}: {one['bytes'] / 1000:.1f} kB, {one['psnr']:.2f} / {one['psnr_luma']:.2f} dB"
         for name, one in (("eigenfield", own), (film["name"], other))
     ]

@@ -21,9 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import measure
+from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
 from eigenfield.rendering.software.kernels import TILE
@@ -70,14 +73,18 @@ def scene_of(mesh: Mesh, cameras: list[Camera], count: int) -> Scene:
     plane = fit_view_plane(cameras)
     places = plane.coordinates([camera.centre for camera in cameras])
     return Scene(
-        mesh=mesh,
-        planes=(Plane(random.random((SIDE, SIDE, 3)).astype(np.float32), (Basis(textures, scale, zero, weights),)),),
-        names=tuple(str(index) for index in range(len(cameras))),
-        cameras=tuple(cameras),
-        held_out=np.zeros(len(cameras), bool),
-        reference=len(cameras) // 2,
-        view_plane=plane,
-        triangles=delaunay_triangles(places),
+        proxy=Proxy(mesh=mesh),
+        rig=Rig(
+            names=tuple(str(index) for index in range(len(cameras))),
+            cameras=tuple(cameras),
+            held_out=np.zeros(len(cameras), bool),
+            reference=len(cameras) // 2,
+            view_plane=plane,
+            triangles=delaunay_triangles(places),
+        ),
+        appearance=Appearance(
+            planes=(Plane(random.random((SIDE, SIDE, 3)).astype(np.float32), (Basis(textures, scale, zero, weights),)),)
+        ),
     )
 
 
@@ -131,7 +138,7 @@ def best(work: Callable[[], object], times: int = 7) -> float:
 
 def composition(scene: Scene) -> dict[str, Any]:
     """Equation 8 alone, over the whole atlas, beside NumPy's matrix product of weights and float32 textures."""
-    plane = scene.planes[0]
+    plane = scene.appearance.planes[0]
     basis = plane.bases[0]
     omega = view_weights(scene, (0.31, -0.17)) @ basis.weights
     tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE, SIDE // TILE), bool), 3)

@@ -25,7 +25,7 @@ import numpy as np
 from PIL import Image
 
 import measure
-from eigenfield.core.scene import Plane
+from eigenfield.core.appearance import Plane
 from eigenfield.gltf import parts, save
 from render import SIDE, array, relief, scene_of
 
@@ -40,10 +40,12 @@ def write_scenes(folder: Path) -> list[str]:
     names = []
     for count in COUNTS:
         scene = scene_of(mesh, cameras, count)
-        plane = scene.planes[0]
+        plane = scene.appearance.planes[0]
         basis = plane.bases[0]
         smooth = np.repeat(np.repeat(basis.textures[:, ::64, ::64], 64, axis=1), 64, axis=2)
-        small = replace(scene, planes=(Plane(plane.mean, (replace(basis, textures=smooth),)),))
+        small = replace(
+            scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (replace(basis, textures=smooth),)),))
+        )
         names.append(f"{count}.glb")
         save(small, folder / names[-1], codec="png", overwrite=True)
     mean = np.rint(255 * np.clip(plane.mean, 0, 1)).astype(np.uint8)

@@ -62,9 +62,9 @@ def free_view(scene, camera):
     from eigenfield.imaging.raster import rasterise_view
     from eigenfield.rendering import view_weights
 
-    face = rasterise_view(scene.mesh, camera).face
+    face = rasterise_view(scene.proxy.mesh, camera).face
     rows, columns = np.nonzero(face >= 0)
-    corners = scene.mesh.vertices.astype(float)[scene.mesh.faces[face[rows, columns]]]
+    corners = scene.proxy.mesh.vertices.astype(float)[scene.proxy.mesh.faces[face[rows, columns]]]
     pixels = np.stack([columns + 0.5, rows + 0.5, np.ones(len(rows))])
     directions = (camera.R.T @ np.linalg.solve(camera.K, pixels)).T
     eye = camera.centre
@@ -74,13 +74,13 @@ def free_view(scene, camera):
     # barycentric coordinates: the corners' sum makes the point, and they add up to 1
     corners, homogeneous = np.insert(corners, 3, 1.0, axis=2), np.insert(points, 3, 1.0, axis=1)
     part = np.stack([np.linalg.lstsq(c.T, p, rcond=None)[0] for c, p in zip(corners, homogeneous, strict=True)])
-    uv = (part[..., None] * scene.mesh.uv[scene.mesh.faces[face[rows, columns]]]).sum(1)
+    uv = (part[..., None] * scene.proxy.mesh.uv[scene.proxy.mesh.faces[face[rows, columns]]]).sum(1)
 
-    plane = scene.view_plane
+    plane = scene.rig.view_plane
     normal = np.cross(plane.right, plane.up)
     along = ((plane.origin - points) @ normal) / ((eye - points) @ normal)
     places = plane.coordinates(np.where(along[:, None] > 0, points + along[:, None] * (eye - points), eye))
-    mean, basis = scene.planes[0].mean, scene.planes[0].bases[0]
+    mean, basis = scene.appearance.planes[0].mean, scene.appearance.planes[0].bases[0]
     weights = np.stack([view_weights(scene, place) for place in places]) @ basis.weights
     colours = bilinear(mean, uv)
     for j, eigen in enumerate(basis.values()):
@@ -122,14 +122,14 @@ def composite(scene, mix):
     """(H, W, D): what is drawn for view weights mix (Ne,): each plane's mean and sums made as fine as the finest,
     channels side by side, then joined by `to_rgb`."""
     channels = []
-    for plane in scene.planes:
-        total = finer(plane.mean.astype(float), scene.atlas)
+    for plane in scene.appearance.planes:
+        total = finer(plane.mean.astype(float), scene.appearance.atlas)
         for basis in plane.bases:
             sum_ = np.zeros((*basis.size, plane.mean.shape[2]))
             (row, column), (height, width) = basis.corner, basis.textures.shape[1:3]
             inside = sum_[row : row + height, column : column + width]
             inside += np.tensordot(mix @ basis.weights, basis.values().astype(float), 1)
-            total += finer(sum_, scene.atlas)
+            total += finer(sum_, scene.appearance.atlas)
         channels.append(total)
     stacked = np.concatenate(channels, axis=2)
-    return stacked if scene.to_rgb is None else stacked @ scene.to_rgb.T.astype(float)
+    return stacked if scene.appearance.to_rgb is None else stacked @ scene.appearance.to_rgb.T.astype(float)

@@ -28,8 +28,8 @@ def test_tarot_before_coding(data, hold_out, part, whole, outside):
     """Atlas 1024, 15 textures, bicubic both ways: what a prototype reached at density 1, or more."""
     folder, capture = tarot(data)
     scene = ef.encode(capture, folder / "calibration" / "proxy.ply", atlas=1024, hold_out=hold_out, fit="none")
-    assert len(scene.mesh.faces) == 66_208  # its own atlas is valid: kept as it is
-    circles = read_circles(folder / "ball.json", scene.names)
+    assert len(scene.proxy.mesh.faces) == 66_208  # its own atlas is valid: kept as it is
+    circles = read_circles(folder / "ball.json", scene.rig.names)
     figures = ef.evaluate(scene, capture, png_maps="none", circles=circles)["image"][part]
     assert figures["coverage"] > 0.999
     assert figures["psnr"] >= whole and figures["outside"]["psnr"] >= outside

@@ -8,6 +8,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 
+from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import save
 from support.coded_scenes import coded_scene
 from support.scenes import bumpy_square, tiny_scene
@@ -22,7 +23,7 @@ def main(folder: Path) -> None:
         for channels, textures in SHAPES:
             scene = tiny_scene(channels, textures, cameras=6, held_out=(1,))
             save(scene, folder / f"{codec}-{channels}-{textures}.glb", codec=codec, overwrite=True)
-    large = replace(tiny_scene(), mesh=bumpy_square(256))
+    large = replace(tiny_scene(), proxy=Proxy(bumpy_square(256)))
     save(large, folder / "large.glb", codec="png", overwrite=True)
     save(tiny_scene(cameras=2), folder / "line.glb", overwrite=True)
     save(coded_scene(), folder / "coded.glb", overwrite=True)

@@ -81,8 +81,8 @@ def between(
         notes.append("The encoded cameras are on no full grid: photographs are blended with Delaunay weights.")
     return {
         "cameras": len(chosen),
-        "held_out": int(scene.held_out.sum()),
-        "encoded": len(scene.encoded),
+        "held_out": int(scene.rig.held_out.sum()),
+        "encoded": len(scene.rig.encoded),
         "methods": rows,
         "holes": _holes(stage, peers, chosen),
         "bytes": _bytes(stage, peers, file),
@@ -103,13 +103,13 @@ def weights_study(
 def start(scene: Scene, light_field: LightField) -> tuple[Stage, Peers]:
     """Match the photographs, decode the encoded cameras', prepare both renderers."""
     views = match_photographs(scene, light_field)
-    shown = np.array([index for index in scene.encoded if int(index) in views], np.int64)
+    shown = np.array([index for index in scene.rig.encoded if int(index) in views], np.int64)
 
     def photograph(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         picture = light_field.photograph(views[int(shown[index])])
         return picture.pixels, picture.mask
 
-    lumigraph = make_lumigraph(scene.mesh, [scene.cameras[index] for index in shown], photograph)
+    lumigraph = make_lumigraph(scene.proxy.mesh, [scene.rig.cameras[index] for index in shown], photograph)
     return Stage(scene, light_field, views, Renderer(scene)), Peers(shown, lumigraph)
 
 
@@ -118,24 +118,24 @@ def ways_of(stage: Stage, peers: Peers) -> dict[str, Way]:
     ways: dict[str, Way] = {
         "nearest": partial(_nearest, stage, peers),
         "blend": partial(_blend, stage, peers),
-        "lumigraph": lambda index: draw_lumigraph(peers.lumigraph, stage.scene.cameras[index])[0],
+        "lumigraph": lambda index: draw_lumigraph(peers.lumigraph, stage.scene.rig.cameras[index])[0],
     }
     return ways | {mode: partial(_ours, stage, mode) for mode in MODES}
 
 
 def covered_by_proxy(stage: Stage, index: int, mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:
     """(H, W) the pixels that count for a camera: the proxy on all of a pixel's samples, and within the mask."""
-    weights = np.zeros(len(stage.scene.encoded))
-    covered = stage.renderer.draw(stage.scene.cameras[index], weights, textures=0).covered
+    weights = np.zeros(len(stage.scene.rig.encoded))
+    covered = stage.renderer.draw(stage.scene.rig.cameras[index], weights, textures=0).covered
     return covered if mask is None else covered & (mask > 0.5)
 
 
 def _ours(stage: Stage, mode: str, index: int) -> NDArray[np.float32]:
-    return stage.renderer.draw(stage.scene.cameras[index], camera_weights(stage.scene, index, mode)).image
+    return stage.renderer.draw(stage.scene.rig.cameras[index], camera_weights(stage.scene, index, mode)).image
 
 
 def _nearest(stage: Stage, peers: Peers, index: int) -> NDArray[np.uint8]:
-    centre = stage.scene.cameras[index].centre
+    centre = stage.scene.rig.cameras[index].centre
     near = int(np.argmin(np.linalg.norm(peers.lumigraph.centres - centre, axis=1)))
     return _as_large(peers.lumigraph.photograph(near), stage, index)
 
@@ -143,9 +143,9 @@ def _nearest(stage: Stage, peers: Peers, index: int) -> NDArray[np.uint8]:
 def _blend(stage: Stage, peers: Peers, index: int) -> NDArray[np.float32]:
     """The four neighbours of a grid with bilinear weights; without one, those of the Delaunay triangle."""
     scene = stage.scene
-    x, y = scene.view_plane.coordinates(scene.cameras[index].centre)[0]
-    weights = view_weights(scene, (float(x), float(y)), _blended_by(scene))[np.isin(scene.encoded, peers.shown)]
-    total = np.zeros((scene.cameras[index].height, scene.cameras[index].width, 3), np.float32)
+    x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
+    weights = view_weights(scene, (float(x), float(y)), _blended_by(scene))[np.isin(scene.rig.encoded, peers.shown)]
+    total = np.zeros((scene.rig.cameras[index].height, scene.rig.cameras[index].width, 3), np.float32)
     for near in np.flatnonzero(weights):
         photograph = _as_large(peers.lumigraph.photograph(int(near)), stage, index)
         total += np.float32(weights[near] / weights.sum() / 255) * photograph
@@ -162,14 +162,14 @@ def _blended_by(scene: Scene) -> str:
 
 def _as_large(photograph: NDArray[np.uint8], stage: Stage, index: int) -> NDArray[np.uint8]:
     """Photographs of one capture may differ in size."""
-    camera = stage.scene.cameras[index]
+    camera = stage.scene.rig.cameras[index]
     if photograph.shape[:2] == (camera.height, camera.width):
         return photograph
     return np.asarray(cv2.resize(photograph, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.uint8)
 
 
 def _chosen(stage: Stage, sample: int | None) -> list[int]:
-    held = [int(index) for index in np.flatnonzero(stage.scene.held_out) if int(index) in stage.views]
+    held = [int(index) for index in np.flatnonzero(stage.scene.rig.held_out) if int(index) in stage.views]
     if not held:
         raise ValueError("the scene holds out no camera whose photograph is here")
     return spread_over_array(stage.scene, held, len(held) if sample is None else sample)
@@ -194,7 +194,7 @@ def _measured(
         photograph = stage.capture.photograph(stage.views[index])
         covered = covered_by_proxy(stage, index, photograph.mask)
         true = to_codes(photograph.pixels)
-        circle = None if circles is None else circles.get(stage.scene.names[index])
+        circle = None if circles is None else circles.get(stage.scene.rig.names[index])
         for key, draw in usable.items():
             started = time.perf_counter()
             drawn = to_codes(draw(index))
@@ -203,7 +203,7 @@ def _measured(
             if circles is not None:
                 beyond = covered if circle is None else covered & circle.outside(true.shape[1], true.shape[0])
                 figures[key][-1]["psnr_outside"] = psnr(drawn, true, beyond)
-    names = [stage.scene.names[index] for index in chosen]
+    names = [stage.scene.rig.names[index] for index in chosen]
     rows = []
     for key in usable:
         row: dict[str, Any] = {"key": key, "title": TITLES[key], **summary(figures[key], names)}
@@ -215,7 +215,7 @@ def _holes(stage: Stage, peers: Peers, chosen: Sequence[int]) -> float:
     """The part of the proxy's pixels in the held-out views that no encoded photograph sees."""
     surface, holes = 0, 0
     for index in chosen:
-        _, on, unseen = draw_lumigraph(peers.lumigraph, stage.scene.cameras[index])
+        _, on, unseen = draw_lumigraph(peers.lumigraph, stage.scene.rig.cameras[index])
         surface, holes = surface + int(on.sum()), holes + int(unseen.sum())
     return holes / max(surface, 1)
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.appearance import Basis, Plane
+from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected import SIDE_CAP, Atlas, Spreader, make_atlas, make_spreader
 from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
@@ -98,7 +99,7 @@ def losses(
     """
     scene = ef.load(scene_file)
     capture = as_encoded(scene, light_field)
-    chosen = spread_over_array(scene, scene.encoded.tolist(), SAMPLE) if cameras is None else list(cameras)
+    chosen = spread_over_array(scene, scene.rig.encoded.tolist(), SAMPLE) if cameras is None else list(cameras)
     session = start_session(scene, capture)
     views, drawn = _from_file(session, chosen)
     uncoded = encode_again(scene, capture)
@@ -156,10 +157,10 @@ def ladder(rungs: Mapping[str, Mapping[str, float]]) -> list[dict[str, Any]]:
 def as_encoded(scene: Scene, light_field: LightField) -> LightField:
     """The scene's cameras in its order, with their photographs. Raises ValueError where an encoded one has none."""
     found = match_photographs(scene, light_field)
-    missing = [scene.names[index] for index in range(len(scene.names)) if index not in found]
+    missing = [scene.rig.names[index] for index in range(len(scene.rig.names)) if index not in found]
     if missing:
         raise ValueError(f"{missing[0]} has no photograph here: the scene cannot be encoded again")
-    views = [replace(light_field.views[found[i]], camera=camera) for i, camera in enumerate(scene.cameras)]
+    views = [replace(light_field.views[found[i]], camera=camera) for i, camera in enumerate(scene.rig.cameras)]
     return replace(light_field, views=tuple(views), layout=None)
 
 
@@ -167,15 +168,15 @@ def encode_again(
     scene: Scene, capture: LightField, textures: int | None = None, atlas: tuple[int, int] | None = None
 ) -> Scene:
     """The scene as `encode` makes it, before coding, with the options that it records; others where asked for."""
-    height, width = scene.planes[0].mean.shape[:2]
-    held = [scene.names[index] for index in np.flatnonzero(scene.held_out)]
+    height, width = scene.appearance.planes[0].mean.shape[:2]
+    held = [scene.rig.names[index] for index in np.flatnonzero(scene.rig.held_out)]
     return ef.encode(
         capture,
-        scene.mesh,
-        textures=scene.textures if textures is None else textures,
+        scene.proxy.mesh,
+        textures=scene.appearance.textures if textures is None else textures,
         atlas=(width, height) if atlas is None else atlas,
         align=scene.settings.get("align"),
-        reference=scene.names[scene.reference],
+        reference=scene.rig.names[scene.rig.reference],
         hold_out=",".join(held) or None,
         resampling=scene.settings.get("resampling", "bicubic"),
         harmonise=scene.settings.get("harmonise"),
@@ -185,8 +186,8 @@ def encode_again(
 
 def rounded_to_codes(scene: Scene) -> Scene:
     """The scene with means and textures as 8-bit codes, as a lossless file keeps them."""
-    planes, harmonised = [], scene.colours is not None  # colours brought together may lie beyond 0..1
-    for plane in scene.planes:
+    planes, harmonised = [], scene.appearance.colours is not None  # colours brought together may lie beyond 0..1
+    for plane in scene.appearance.planes:
         mean = mean_values(*mean_codes(plane.mean, harmonised))
         bases = []
         for basis in plane.bases:
@@ -195,7 +196,7 @@ def rounded_to_codes(scene: Scene) -> Scene:
             stored = np.stack(codes) if codes else basis.textures
             bases.append(Basis(stored, scale, zero, basis.weights))
         planes.append(Plane(mean, tuple(bases)))
-    return replace(scene, planes=tuple(planes))
+    return replace(scene, appearance=replace(scene.appearance, planes=tuple(planes)))
 
 
 def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
@@ -204,15 +205,15 @@ def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
     assert session.atlas is not None
     atlas, scene = session.atlas, session.scene
     gutter = make_spreader(atlas, np.ones(atlas.count, bool))
-    mean = mean_at(scene.planes[0].mean, atlas)
-    surface = make_surface(scene.mesh, atlas.height, atlas.width)
-    detail = median_footprint(surface, scene.cameras[scene.reference])
+    mean = mean_at(scene.appearance.planes[0].mean, atlas)
+    surface = make_surface(scene.proxy.mesh, atlas.height, atlas.width)
+    detail = median_footprint(surface, scene.rig.cameras[scene.rig.reference])
     pictures = {}
     for index in chosen:
-        camera = scene.cameras[index]
+        camera = scene.rig.cameras[index]
         values, seen = session.texture(index, session.photograph(index))
         texture = _whole(gutter, np.where(seen[:, None] > 0, values, mean))
-        drawn = draw_texture(scene.mesh, texture, camera, detail=detail)  # sampled as the renderer does
+        drawn = draw_texture(scene.proxy.mesh, texture, camera, detail=detail)  # sampled as the renderer does
         colour = camera_colour(scene, index)
         image = drawn.image
         if colour is not None:
@@ -226,10 +227,10 @@ def denser(session: Session) -> Session:
     assert session.atlas is not None
     factor = min(2.0, SIDE_CAP / max(session.atlas.width, session.atlas.height))
     width, height = round(session.atlas.width * factor), round(session.atlas.height * factor)
-    finer = replace(session, atlas=make_atlas(session.scene.mesh, width, height), reference=None)
+    finer = replace(session, reference=None, atlas=make_atlas(session.scene.proxy.mesh, width, height))
     if session.align is None:
         return finer
-    reference = finer.scene.reference
+    reference = finer.scene.rig.reference
     return replace(finer, reference=finer.texture(reference, finer.photograph(reference)))
 
 
@@ -285,7 +286,7 @@ def _draw(session: Session, chosen: Sequence[int]) -> Pictures:
 
 
 def _side(scene: Scene) -> int:
-    return max(scene.planes[0].mean.shape[:2])
+    return max(scene.appearance.planes[0].mean.shape[:2])
 
 
 def _alone(
@@ -297,10 +298,14 @@ def _alone(
     quality: int | None,
 ) -> list[dict[str, Any]]:
     """Each loss switched off from the whole pipeline, all others on."""
-    height, width, channels = scene.planes[0].mean.shape
+    height, width, channels = scene.appearance.planes[0].mean.shape
     plans = {
-        "truncation": ("all components, coded", {"textures": len(scene.encoded) - 1}, len(scene.encoded) - 1),
-        "resampling": ("texels twice as dense, coded", {"atlas": (2 * width, 2 * height)}, 4 * scene.textures),
+        "truncation": ("all components, coded", {"textures": len(scene.rig.encoded) - 1}, len(scene.rig.encoded) - 1),
+        "resampling": (
+            "texels twice as dense, coded",
+            {"atlas": (2 * width, 2 * height)},
+            4 * scene.appearance.textures,
+        ),
     }
     rows: list[dict[str, Any]] = [
         {"key": "quantisation", "title": "float textures", **_gained(rungs["file"], rungs["quantisation"])}

@@ -75,7 +75,7 @@ def fitted(
                         "file": path.name,
                         "bytes": path.stat().st_size,
                         "parts": dict(parts(path)),
-                        "textures": scene.textures,
+                        "textures": scene.appearance.textures,
                         "encode_seconds": round(fit + seconds, 2),
                         "access_seconds": access(path, order[len(order) // 2]),
                         **figures(path, order, photographs, covered, names),
@@ -107,8 +107,8 @@ def paper(
         seconds = time.perf_counter() - started
         points.append(
             {
-                "parameter": f"density {density:g}, {len(scene.mesh.faces)} triangles, N {scene.textures}, "
-                f"quality {quality}",
+                "parameter": f"density {density:g}, {len(scene.proxy.mesh.faces)} triangles, "
+                f"N {scene.appearance.textures}, quality {quality}",
                 "bytes": path.stat().st_size,
                 "parts": dict(parts(path)),
                 "encode_seconds": round(seconds, 2),
@@ -143,7 +143,7 @@ def access(path: Path, index: int) -> dict[str, float]:
     renderer = Renderer(scene)
     drawn(renderer, scene, index)
     first = time.perf_counter() - started
-    drawn(renderer, scene, (index + 1) % len(scene.cameras))
+    drawn(renderer, scene, (index + 1) % len(scene.rig.cameras))
     return {"first": round(first, 4), "next": round(time.perf_counter() - started - first, 4)}
 
 
@@ -155,7 +155,7 @@ def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) 
 def covered_pixels(path: Path, order: Sequence[int], light_field: LightField) -> Covered:
     """The pixels that a file's mesh covers in some of a light field's views, within the mask where there is one."""
     scene = ef.load(path)
-    renderer, cameras = Renderer(scene), dict(zip(scene.names, range(len(scene.names)), strict=True))
+    renderer, cameras = Renderer(scene), dict(zip(scene.rig.names, range(len(scene.rig.names)), strict=True))
 
     def of_view(index: int) -> NDArray[np.bool_]:
         mask = light_field.photograph(index).mask

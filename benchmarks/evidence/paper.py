@@ -46,7 +46,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
         way: start_session(_encode(prepared, align), light_field, curve="sample") for way, align in ways.items()
     }
     plain = sessions["plain"].scene
-    counts = [count for count in (QUICK_COUNTS if prepared.quick else COUNTS) if count <= plain.textures]
+    counts = [count for count in (QUICK_COUNTS if prepared.quick else COUNTS) if count <= plain.appearance.textures]
     found = {way: _measured(session, counts) for way, session in sessions.items()}
     maps = _map_bytes(sessions["plain"])
     for way, session in sessions.items():
@@ -67,7 +67,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
         },
         "fps": _frames(plain),
         "view": [render.WIDTH, render.HEIGHT],
-        "figure6": figure6(first_textures(plain, min(15, plain.textures)), prepared, folder),
+        "figure6": figure6(first_textures(plain, min(15, plain.appearance.textures)), prepared, folder),
     }  # fmt: skip
 
 
@@ -78,24 +78,26 @@ def _encode(prepared: Prepared, align: str | None) -> Scene:
 
 def _map_bytes(session: Session) -> int:
     """Bytes of all cameras' filled texture maps as PNG, from MAPS of them."""
-    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.appearance.planes[0]
     assert atlas is not None
 
     def of_camera(row: int) -> int:
-        values, seen = session.texture(int(scene.encoded[row]), session.photograph(int(scene.encoded[row])))
+        values, seen = session.texture(int(scene.rig.encoded[row]), session.photograph(int(scene.rig.encoded[row])))
         return measure_map(plane, row, atlas, values, seen, (0,), png=True).png or 0
 
-    return round(float(np.mean(parallel_map(of_camera, evenly(range(len(scene.encoded)), MAPS)))) * len(scene.encoded))
+    return round(
+        float(np.mean(parallel_map(of_camera, evenly(range(len(scene.rig.encoded)), MAPS)))) * len(scene.rig.encoded)
+    )
 
 
 def _measured(session: Session, counts: list[int]) -> list[dict[str, Any]]:
     """The UV measure for each number of textures."""
-    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.appearance.planes[0]
     assert atlas is not None
 
     def of_camera(index: int) -> MapFigures:
         values, seen = session.texture(index, session.photograph(index))
-        return measure_map(plane, int(np.searchsorted(scene.encoded, index)), atlas, values, seen, counts)
+        return measure_map(plane, int(np.searchsorted(scene.rig.encoded, index)), atlas, values, seen, counts)
 
     cameras = parallel_map(of_camera, sorted(session.curved))
     return [
@@ -109,13 +111,13 @@ def _measured(session: Session, counts: list[int]) -> list[dict[str, Any]]:
 
 def _png_bytes(session: Session, counts: list[int]) -> list[int]:
     """Bytes for the first n textures, for each n: PNG pictures, black outside the charts, and float32 weights."""
-    scene, atlas, plane = session.scene, session.atlas, session.scene.planes[0]
+    scene, atlas, plane = session.scene, session.atlas, session.scene.appearance.planes[0]
     assert atlas is not None
     basis = plane.bases[0]
     scale, zero = basis_scale(basis, True)
     sizes = parallel_map(lambda k: png_size(atlas, texture_codes(basis, k, scale, zero)), range(counts[-1]))
     mean, sums = png_size(atlas, mean_codes(plane.mean)[0]), np.cumsum([0, *sizes])
-    return [mean + int(sums[count]) + 4 * count * len(scene.encoded) for count in counts]
+    return [mean + int(sums[count]) + 4 * count * len(scene.rig.encoded) for count in counts]
 
 
 def _rows(scene: Scene, counts: list[int], points: list[dict[str, Any]], maps: int, way: str) -> list[dict[str, Any]]:
@@ -143,7 +145,7 @@ def _rows(scene: Scene, counts: list[int], points: list[dict[str, Any]], maps: i
 def _frames(scene: Scene) -> list[dict[str, Any]]:
     """Frames per second of the software renderer at the benchmark's size, all textures summed for every frame."""
     rows = []
-    for count in (count for count in FRAMES if count <= scene.textures):
+    for count in (count for count in FRAMES if count <= scene.appearance.textures):
         some = first_textures(scene, count)
         rows.append(
             {"textures": count, **{way: render.frames(some, way, 50)["fps"] for way in ("bilinear", "bicubic")}}

@@ -34,19 +34,19 @@ def figure6(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, An
     fills what it does not see), drawn from the eigen textures, and that one's error, times ERROR_GAIN."""
     session, renderer = start_session(scene, prepared.light_field), Renderer(scene)
     rows = []
-    corner = int(scene.encoded[0])
-    for index in dict.fromkeys((scene.reference, corner)):
+    corner = int(scene.rig.encoded[0])
+    for index in dict.fromkeys((scene.rig.reference, corner)):
         photograph = codes(prepared.light_field, session.photographs[index])
         own_map = own_maps(session, [index])[index]
         eigen, covered = drawn(renderer, scene, index)
         shown = {
-            "photograph": photograph, "proxy": shaded(scene.mesh, scene, index), "own_map": own_map, "eigen": eigen,
-            "error": heat(eigen, photograph, covered),
+            "photograph": photograph, "proxy": shaded(scene.proxy.mesh, scene, index), "own_map": own_map,
+            "eigen": eigen, "error": heat(eigen, photograph, covered),
         }  # fmt: skip
         name = f"{prepared.capture.name}-figure6-{index}"
         rows.append(
             {
-                "camera": scene.names[index],
+                "camera": scene.rig.names[index],
                 **{key: write(picture, folder, f"{name}-{key}") for key, picture in shown.items()},
                 "psnr_own": psnr(own_map, photograph, covered), "psnr_eigen": psnr(eigen, photograph, covered),
             }
@@ -57,8 +57,8 @@ def figure6(scene: Scene, prepared: Prepared, folder: Path) -> list[dict[str, An
 def between_cameras(stage: Stage, peers: Peers, prepared: Prepared, folder: Path) -> list[dict[str, Any]]:
     """A held-out photograph, and what each way of `between` draws in its place: that nearest the array's centre."""
     scene = stage.scene
-    held = np.flatnonzero(scene.held_out)
-    places = scene.view_plane.coordinates([camera.centre for camera in scene.cameras])
+    held = np.flatnonzero(scene.rig.held_out)
+    places = scene.rig.view_plane.coordinates([camera.centre for camera in scene.rig.cameras])
     index = int(held[np.argmin(np.linalg.norm(places[held], axis=1))])
     photograph = codes(prepared.light_field, stage.views[index])
     ways = ways_of(stage, peers)
@@ -67,7 +67,7 @@ def between_cameras(stage: Stage, peers: Peers, prepared: Prepared, folder: Path
     }
     return [
         {
-            "label": label, "camera": scene.names[index],
+            "label": label, "camera": scene.rig.names[index],
             "picture": write(picture, folder, f"{prepared.capture.name}-between-{number}"),
         }
         for number, (label, picture) in enumerate(shown.items())
@@ -76,7 +76,7 @@ def between_cameras(stage: Stage, peers: Peers, prepared: Prepared, folder: Path
 
 def shaded(mesh: Mesh, scene: Scene, index: int) -> Picture:
     """The bare proxy from camera `index`, lit from the camera: grey by the angle of each triangle."""
-    camera = scene.cameras[index]
+    camera = scene.rig.cameras[index]
     face = rasterise_view(mesh, camera).face
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

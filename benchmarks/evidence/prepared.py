@@ -113,16 +113,19 @@ def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:
 
 def drawn(renderer: Renderer, scene: Scene, index: int) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
     """What the scene draws from its camera `index`, 8-bit, and the covered pixels."""
-    picture = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter="bicubic")
+    picture = renderer.draw(scene.rig.cameras[index], camera_weights(scene, index), filter="bicubic")
     return to_codes(picture.image), picture.covered
 
 
 def first_textures(scene: Scene, count: int) -> Scene:
     """The scene with its first `count` eigen textures alone, as if it had been encoded so."""
     planes = tuple(
-        replace(plane, bases=tuple(basis.truncated(count) for basis in plane.bases)) for plane in scene.planes
+        replace(plane, bases=tuple(basis.truncated(count) for basis in plane.bases))
+        for plane in scene.appearance.planes
     )
-    return replace(scene, planes=planes, settings={**scene.settings, "textures": count})
+    return replace(
+        scene, appearance=replace(scene.appearance, planes=planes), settings={**scene.settings, "textures": count}
+    )
 
 
 def as_json(figures: Any) -> Any:

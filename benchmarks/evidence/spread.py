@@ -15,8 +15,8 @@ def spread_over_array(scene: Scene, indices: Sequence[int], count: int) -> list[
     plane, each taken once; all of them where there are no more."""
     if len(indices) <= count:
         return sorted(int(index) for index in indices)
-    places = scene.view_plane.coordinates(np.array([scene.cameras[index].centre for index in indices]))
-    rows = 1 if scene.view_plane.is_line else max(1, round(math.sqrt(count)))
+    places = scene.rig.view_plane.coordinates(np.array([scene.rig.cameras[index].centre for index in indices]))
+    rows = 1 if scene.rig.view_plane.is_line else max(1, round(math.sqrt(count)))
     shares = np.diff(np.rint(np.linspace(0, count, rows + 1)).astype(int))  # nodes in each row of cells
     free = np.ones(len(indices), bool)
     chosen = []

@@ -77,11 +77,11 @@ def _row(scene: Scene, light_field: LightField, size: int | None, filter: str = 
     """The columns of HEAD: the bytes, then both kinds of cameras."""
     renderer = Renderer(scene)
     row: list[Any] = [None if size is None else round(size / 1e3)]
-    for indices in (scene.encoded.tolist(), np.flatnonzero(scene.held_out).tolist()):
+    for indices in (scene.rig.encoded.tolist(), np.flatnonzero(scene.rig.held_out).tolist()):
         chosen = spread_over_array(scene, indices, SAMPLE) if indices else []
 
         def of_camera(index: int) -> tuple[float, float]:
-            image = renderer.draw(scene.cameras[index], camera_weights(scene, index), filter=filter).image
+            image = renderer.draw(scene.rig.cameras[index], camera_weights(scene, index), filter=filter).image
             photograph = codes(light_field, index)
             return psnr(image, photograph) or 0.0, ssim(image, photograph) or 0.0
 
@@ -164,7 +164,7 @@ def _cameras(prepared: Prepared) -> dict[str, Any] | None:
         held = ",".join(light_field.names[index] for index in test)
         scene = ef.encode(some, prepared.mesh, textures=TEXTURES, hold_out=held, fit="none")
         kept, size = _decoded(scene, prepared)  # its photographs are in another order than the capture's
-        rows.append([name, encoded.size, scene.textures, *_row(kept, some, size)])
+        rows.append([name, encoded.size, scene.appearance.textures, *_row(kept, some, size)])
     return {
         "title": "Number of cameras", "columns": ["encoded", "", "N", *HEAD], "rows": rows,
         "words": f"Held out are the same {len(test)} cameras each time. Cameras and mesh come from all photographs.",

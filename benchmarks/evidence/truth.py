@@ -46,10 +46,10 @@ def true_geometry(
         "estimated": (ef.encode(made.light_field, made.mesh, **options), made.light_field),
     }
     first = scenes["true"][0]
-    parts = {"encoded": first.encoded.tolist(), "held_out": np.flatnonzero(first.held_out).tolist()}
+    parts = {"encoded": first.rig.encoded.tolist(), "held_out": np.flatnonzero(first.rig.held_out).tolist()}
     result: dict[str, Any] = {"views": len(exact), "textures": textures, "density": density, "words": WORDS}
     for part, indices in parts.items():
-        result[part] = compare(scenes, [first.names[i] for i in spread_over_array(first, indices, SAMPLE)])
+        result[part] = compare(scenes, [first.rig.names[i] for i in spread_over_array(first, indices, SAMPLE)])
     return result
 
 
@@ -62,7 +62,7 @@ def compare(scenes: Mapping[str, tuple[Scene, LightField]], names: Sequence[str]
         session = start_session(scene, capture)
         drawn[kind] = {}
         for place, name in enumerate(names):
-            image, surface = session.draw(scene.names.index(name))
+            image, surface = session.draw(scene.rig.names.index(name))
             drawn[kind][place] = to_codes(image)
             covered[place] = surface & covered.get(place, surface)
             photographs[place] = _photograph(session, name)
@@ -75,4 +75,4 @@ def compare(scenes: Mapping[str, tuple[Scene, LightField]], names: Sequence[str]
 
 
 def _photograph(session: Session, name: str) -> NDArray[np.uint8]:
-    return to_codes(session.photograph(session.scene.names.index(name)).pixels)
+    return to_codes(session.photograph(session.scene.rig.names.index(name)).pixels)

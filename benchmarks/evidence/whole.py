@@ -20,11 +20,11 @@ def whole(prepared: Prepared) -> dict[str, Any]:
     settings = scene.settings
     return {
         "encode": everything["encode"], "bytes": everything["bytes"], "ratio": everything["ratio"],
-        "textures": scene.textures, "density": settings["density"], "atlas": settings["atlas"],
+        "textures": scene.appearance.textures, "density": settings["density"], "atlas": settings["atlas"],
         "encoded": everything["image"]["encoded"], "uv": everything["uv"],
         "hold_out_rule": prepared.hold_out,
         "held_scene": {
-            "bytes": some["bytes"]["total"], "textures": held.textures, "encode": some["encode"],
+            "bytes": some["bytes"]["total"], "textures": held.appearance.textures, "encode": some["encode"],
             "encoded": some["image"]["encoded"], "held_out": some["image"]["held_out"],
         },
     }  # fmt: skip

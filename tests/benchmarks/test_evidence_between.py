@@ -57,7 +57,7 @@ def test_with_exact_geometry_both_ways_on_the_proxy_beat_those_without_it(captur
     for row in rows.values():
         assert row["worst"]["psnr"]["value"] <= row["psnr"] and row["worst"]["flip"]["value"] >= row["flip"]
     assert result["bytes"]["scene"] == file.stat().st_size
-    encoded = [light_field.bytes(i) for i in range(25) if not scene.held_out[i]]
+    encoded = [light_field.bytes(i) for i in range(25) if not scene.rig.held_out[i]]
     assert result["bytes"]["photographs"] == sum(encoded)
 
 
@@ -80,10 +80,10 @@ def test_pixels_outside_circles_are_counted_apart(capture):
     from eigenfield.evaluation import Circle
 
     _, light_field, scene, _ = capture
-    none = {name: Circle(0, 0, 0) for name in scene.names}
+    none = {name: Circle(0, 0, 0) for name in scene.rig.names}
     row = weights_study(scene, light_field, 2, none)["methods"][0]
     assert row["psnr_outside"] == row["psnr"]
-    left = {name: Circle(0, 28, 32) for name in scene.names}
+    left = {name: Circle(0, 28, 32) for name in scene.rig.names}
     row = weights_study(scene, light_field, 2, left)["methods"][0]
     assert row["psnr_outside"] != row["psnr"]
 
@@ -183,7 +183,7 @@ def test_a_sample_is_spread_over_the_array():
     scene = tiny_scene(cameras=25)
     assert spread_over_array(scene, list(range(25)), 25) == list(range(25))
     nine = spread_over_array(scene, list(range(25)), 9)
-    places = scene.view_plane.coordinates([scene.cameras[i].centre for i in nine])
+    places = scene.rig.view_plane.coordinates([scene.rig.cameras[i].centre for i in nine])
     for sign in ((-1, -1), (1, -1), (-1, 1), (1, 1)):
         assert (places * sign > 0.1).all(axis=1).any()
     assert len(set(spread_over_array(scene, list(range(25)), 7))) == 7
@@ -200,6 +200,6 @@ def test_psnr_of_ours_agrees_with_evaluate(capture):
 
 def test_without_held_out_photographs_there_is_nothing_to_measure(capture):
     _, light_field, scene, _ = capture
-    kept = light_field.subset(np.flatnonzero(~scene.held_out).tolist())
+    kept = light_field.subset(np.flatnonzero(~scene.rig.held_out).tolist())
     with pytest.raises(ValueError, match="holds out no camera"):
         between(*start(scene, kept))

@@ -78,12 +78,12 @@ def test_encoding_again_gives_the_same_bytes(coded):
     scene = ef.load(file)
     again = encode_again(scene, as_encoded(scene, light_field))
     first = ef.encode(light_field, file.parent / "proxy.ply", textures=3, density=1.0, fit="none")
-    for a, b in zip(again.planes, first.planes, strict=True):
+    for a, b in zip(again.appearance.planes, first.appearance.planes, strict=True):
         assert (a.mean == b.mean).all() and (a.bases[0].textures == b.bases[0].textures).all()
-    codes = rounded_to_codes(again).planes[0].bases[0].textures
+    codes = rounded_to_codes(again).appearance.planes[0].bases[0].textures
     lossless = file.parent / "webp.glb"
     save(first, lossless, codec="webp")
-    assert (codes == ef.load(lossless).planes[0].bases[0].textures).all()
+    assert (codes == ef.load(lossless).appearance.planes[0].bases[0].textures).all()
 
 
 def test_a_loss_alone_comes_from_a_whole_file_of_its_own(coded):

@@ -28,7 +28,7 @@ def test_levers_are_put_back():
         fit.find_regions,
         fit.fit_weights,
         (rate.LAGRANGE, rate.OTHER_STEPS),
-        plan.slim_mesh,
+        plan.simplify_proxy_rd,
         planes.mean_precision,
         fit.fill_unseen,
         plan.fit_surface,
@@ -38,7 +38,7 @@ def test_levers_are_put_back():
             pass
     after = (
         options.PRESETS, planes.PLANE_PRESETS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
-        plan.slim_mesh, planes.mean_precision, fit.fill_unseen, plan.fit_surface,
+        plan.simplify_proxy_rd, planes.mean_precision, fit.fill_unseen, plan.fit_surface,
     )  # fmt: skip
     assert before == after
 

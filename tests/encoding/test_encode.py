@@ -11,9 +11,11 @@ import pytest
 
 import eigenfield as ef
 import reference
+from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.scene import Basis, Plane
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.encoding.projected import (
     eigen_textures,
@@ -88,15 +90,15 @@ def test_fewer_textures_are_worse_and_the_mean_is_worst(capture, scene):
 
 def test_scene_is_what_the_reference_makes_of_the_maps(folder, capture, scene):
     """Equations 1 to 6 on the very maps: mean, textures and weights at the chart texels."""
-    height, width = scene.planes[0].mean.shape[:2]
-    atlas = make_atlas(scene.mesh, width, height)
-    maps = [texture_map(atlas, c, capture.photograph(i).pixels) for i, c in enumerate(scene.cameras)]
+    height, width = scene.appearance.planes[0].mean.shape[:2]
+    atlas = make_atlas(scene.proxy.mesh, width, height)
+    maps = [texture_map(atlas, c, capture.photograph(i).pixels) for i, c in enumerate(scene.rig.cameras)]
     T, v = np.stack([m[0] for m in maps]).astype(float), np.stack([m[1] for m in maps])
     mean, textures, weights = reference.decomposition(T, v, 8)
     seen = v.any(axis=0)
-    flat = scene.planes[0].mean.reshape(-1, 3)[atlas.texel]
+    flat = scene.appearance.planes[0].mean.reshape(-1, 3)[atlas.texel]
     np.testing.assert_allclose(flat[seen], mean[seen], atol=1e-5)
-    basis = scene.planes[0].bases[0]
+    basis = scene.appearance.planes[0].bases[0]
     for index in range(4):  # later ones are nearly equal in size, their order is noise
         made = basis.textures[index].reshape(-1, 3)[atlas.texel]
         assert np.abs(made - textures[index])[seen].max() < 1e-4 * np.abs(textures[index]).max() + 1e-6
@@ -109,7 +111,7 @@ def test_scene_is_what_the_reference_makes_of_the_maps(folder, capture, scene):
 def test_saved_and_loaded_it_draws_the_same(scene, tmp_path):
     save(scene, tmp_path / "scene.glb", codec="png")
     again = ef.load(tmp_path / "scene.glb")
-    assert again.names == scene.names and again.settings["atlas"] == scene.settings["atlas"]
+    assert again.rig.names == scene.rig.names and again.settings["atlas"] == scene.settings["atlas"]
     for at in ((0, 0), (0.4, -0.7)):
         difference = np.abs(ef.render(again, at=at).image - ef.render(scene, at=at).image)
         assert difference.max() * 255 < 6 and difference.mean() * 255 < 1
@@ -147,17 +149,19 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
     plane = fit_view_plane(cameras)
     triangles = delaunay_triangles(plane.coordinates([camera.centre for camera in cameras]))
     made = ef.Scene(
-        mesh=mesh,
-        planes=(Plane(spread(mean.values), (basis,)),),
-        names=tuple(capture.names),
-        cameras=tuple(cameras),
-        held_out=np.zeros(9, bool),
-        reference=4,
-        view_plane=plane,
-        triangles=triangles,
+        proxy=Proxy(mesh=mesh),
+        rig=Rig(
+            names=tuple(capture.names),
+            cameras=tuple(cameras),
+            held_out=np.zeros(9, bool),
+            reference=4,
+            view_plane=plane,
+            triangles=triangles,
+        ),
+        appearance=Appearance(planes=(Plane(spread(mean.values), (basis,)),)),
     )
     save(made, tmp_path / "attributes.glb", codec="png")
-    again = ef.load(tmp_path / "attributes.glb").planes[0]
+    again = ef.load(tmp_path / "attributes.glb").appearance.planes[0]
     assert again.mean.shape == (64, 64, channels)
     for camera in range(9):
         whole = reference.texture(again.mean, again.bases[0].values(), again.bases[0].weights[camera])
@@ -168,18 +172,20 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
 def test_held_out_cameras_take_no_part(folder, capture, tmp_path):
     """The file is the same whatever the held-out photographs show."""
     kept = ef.encode(capture, proxy=folder / "proxy.ply", textures=2, atlas=64, hold_out="odd", fit="none")
-    assert kept.held_out.sum() == 5 and kept.planes[0].bases[0].weights.shape == (4, 2)
-    assert not kept.held_out[kept.reference]
+    assert kept.rig.held_out.sum() == 5 and kept.appearance.planes[0].bases[0].weights.shape == (4, 2)
+    assert not kept.rig.held_out[kept.rig.reference]
     alone = ef.encode(
-        capture.subset(np.flatnonzero(~kept.held_out).tolist()), proxy=folder / "proxy.ply", textures=2, atlas=64,
+        capture.subset(np.flatnonzero(~kept.rig.held_out).tolist()), proxy=folder / "proxy.ply", textures=2, atlas=64,
         fit="none",
     )  # fmt: skip
-    np.testing.assert_array_equal(alone.planes[0].mean, kept.planes[0].mean)
-    np.testing.assert_array_equal(alone.planes[0].bases[0].textures, kept.planes[0].bases[0].textures)
-    held = int(np.flatnonzero(kept.held_out)[0])
+    np.testing.assert_array_equal(alone.appearance.planes[0].mean, kept.appearance.planes[0].mean)
+    np.testing.assert_array_equal(
+        alone.appearance.planes[0].bases[0].textures, kept.appearance.planes[0].bases[0].textures
+    )
+    held = int(np.flatnonzero(kept.rig.held_out)[0])
     weights = camera_weights(kept, held)
     assert weights.shape == (4,) and weights.sum() == pytest.approx(1)
-    picture = renderer_of(kept).draw(kept.cameras[held], weights)
+    picture = renderer_of(kept).draw(kept.rig.cameras[held], weights)
     photograph = capture.photograph(held).pixels
     assert psnr(picture.image, photograph, picture.coverage > 0.5) > 20
 
@@ -189,7 +195,7 @@ def test_cameras_on_a_line_are_no_error(tmp_path):
     line = tuple(Camera(K, np.eye(3), -np.array([0.3 * i - 0.6, 0, -3.0]), 64, 56) for i in range(5))
     folder = write_capture(tmp_path / "line", line)
     made = ef.encode(ef.open_capture(folder), proxy=folder / "proxy.ply", textures=4, atlas=64)
-    assert made.view_plane.is_line and len(made.triangles) == 0
+    assert made.rig.view_plane.is_line and len(made.rig.triangles) == 0
     save(made, tmp_path / "line.glb")
     left, middle = ef.render(ef.load(tmp_path / "line.glb"), at=(-0.9, 0)), ef.render(made, at=(-0.9, 0.8))
     assert np.abs(left.image - middle.image).mean() * 255 < 3
@@ -247,7 +253,7 @@ def test_the_real_size_is_kept_where_it_is_known(capture, folder, tmp_path):
 def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
     for target in (0.9, 0.97, 0.999):
         made = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, uv_ssim=target, fit="none")
-        count = made.textures
+        count = made.appearance.textures
         assert ef.evaluate(made, capture)["uv"]["ssim"] >= target or count == 8
         if count > 1:
             fewer = ef.encode(capture, proxy=folder / "proxy.ply", atlas=64, textures=count - 1, fit="none")

@@ -13,8 +13,9 @@ from hypothesis import strategies as st
 import eigenfield as ef
 from eigenfield.cli import group
 from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
-from eigenfield.core.scene import Plane
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import Target
 from eigenfield.encoding.fitted import (
     FitData,
@@ -78,14 +79,16 @@ def world():
     model = true_model(9)
     surface = make_surface(mesh, SIDE, SIDE)
     composer = make_composer(surface, model)
-    scene = replace(tiny_scene(cameras=9), mesh=mesh, cameras=CAMERAS)
+    scene = replace(tiny_scene(cameras=9), proxy=Proxy(mesh), rig=replace(tiny_scene(cameras=9).rig, cameras=CAMERAS))
     pictures = []
     for index, camera in enumerate(CAMERAS):
         texture = np.zeros((3, SIDE, SIDE), np.float32)
         composer.grid.up(model.sums(slice(index, index + 1))[0], texture)
         texture += model.mean
-        plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
-        drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9))
+        plain = replace(scene.appearance.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
+        drawn = Renderer(replace(scene, appearance=replace(scene.appearance, planes=(plain,)))).draw(
+            camera, np.zeros(9)
+        )
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
     with open_fit_data(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as data:
         yield data, composer, model
@@ -207,7 +210,12 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
     (_, start, _), (plane, uncoded, coded) = (fit_and_code(data, rounds) for rounds in (0, 3))
     assert uncoded > start + 1
     assert coded > 38
-    scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=CAMERAS, planes=(plane,))
+    scene = replace(
+        tiny_scene(cameras=9),
+        proxy=Proxy(bumpy_square(12)),
+        rig=replace(tiny_scene(cameras=9).rig, cameras=CAMERAS),
+        appearance=replace(tiny_scene(cameras=9).appearance, planes=(plane,)),
+    )
     drawn = [Renderer(scene).draw(camera, np.eye(9)[i]) for i, camera in enumerate(CAMERAS)]
     photographs = [data.observations.codes_of(i) / np.float32(255) for i in range(9)]
     errors = [
@@ -332,7 +340,7 @@ def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     folder, output = fitted
     scene, capture = ef.load(output), ef.open_capture(folder)
     assert validate(output) == []
-    assert [plane.mean.shape[2] for plane in scene.planes] == [1, 2] and scene.to_rgb is not None
+    assert [plane.mean.shape[2] for plane in scene.appearance.planes] == [1, 2] and scene.appearance.to_rgb is not None
     assert scene.settings["fit"] == "photographs" and scene.settings["fitted"]["quality"] == 92
     paper = ef.encode(capture, proxy=folder / "proxy.ply", textures=4, fit="none")
     save(paper, output.parent / "plain.glb", quality=80)
@@ -340,7 +348,7 @@ def test_a_fitted_file_is_small_and_near_the_photographs(fitted):
     values = {"fit": [], "none": []}
     for index in range(len(capture)):
         for name, one in (("fit", scene), ("none", plain)):
-            drawn = Renderer(one).draw(one.cameras[index], camera_weights(one, index))
+            drawn = Renderer(one).draw(one.rig.cameras[index], camera_weights(one, index))
             values[name].append(
                 psnr(to_codes(drawn.image), to_codes(capture.photograph(index).pixels), drawn.coverage > 0)
             )
@@ -357,7 +365,7 @@ def test_one_plane_of_red_green_and_blue(fitted, tmp_path):
     save(scene, tmp_path / "rgb.glb")
     assert validate(tmp_path / "rgb.glb") == []
     again = ef.load(tmp_path / "rgb.glb")
-    assert [plane.mean.shape[2] for plane in again.planes] == [3] and again.to_rgb is None
+    assert [plane.mean.shape[2] for plane in again.appearance.planes] == [3] and again.appearance.to_rgb is None
     figures = evaluate(again, capture)
     assert figures["uv"] is None, "a fit's textures are of no photograph's maps, of one plane or of two"
     with pytest.raises(OptionError, match="no texture maps"):

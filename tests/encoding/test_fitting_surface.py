@@ -75,7 +75,7 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     cameras = row_grid(9, 64, 56)
     true = relief(cameras[4], 0.5, False)
     observations = photographs_of(true, cameras)
-    lattice, fine = relief_lattice(true, cameras, DEPTH_ERROR) or (None, 0)
+    lattice = relief_lattice(true, cameras, DEPTH_ERROR)
     assert lattice is not None
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
@@ -86,7 +86,7 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     right = lattice.coordinates(true.vertices)[:, 2]
     assert np.median(np.abs(now[:, 2] - right)) < 0.3 * np.median(np.abs(exact[:, 2] - right))
     again = relief_lattice(found, cameras, DEPTH_ERROR)
-    assert again is not None and again[1] == fine
+    assert again is not None and again.fine == lattice.fine
 
 
 def test_what_is_right_stays_and_what_nothing_tells_stays():
@@ -188,7 +188,7 @@ def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
     cameras = row_grid(9, 64, 56)
     true = relief(cameras[4], 0.5, False)
     folder = write_capture(tmp_path / "relief", cameras, true)
-    lattice, _ = relief_lattice(true, cameras, DEPTH_ERROR) or (None, 0)
+    lattice = relief_lattice(true, cameras, DEPTH_ERROR)
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))

@@ -73,8 +73,8 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
         monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 1e-3)
         found = ef.encode(capture, **options, target=asked)
     assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
-    assert len(found.mesh.faces) < len(once.mesh.faces)
-    meshes = [size_of(scene.payloads[mesh_key(scene.mesh)]) for scene in (found, once)]
+    assert len(found.proxy.mesh.faces) < len(once.proxy.mesh.faces)
+    meshes = [size_of(scene.payloads[mesh_key(scene.proxy.mesh)]) for scene in (found, once)]
     assert 0 < meshes[0] < meshes[1]
     sizes = [len(encode_scene(scene)) for scene in (found, once)]
     assert sizes[0] < sizes[1]

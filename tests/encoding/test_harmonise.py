@@ -25,6 +25,7 @@ from support.captures import backdrop, shaded_texture, write_capture
 from support.scenes import row_grid, tiny_scene
 
 GAINS = np.array([0.8, 0.95, 1.1, 1.05, 0.9, 1.2, 1.0, 0.85, 1.15])
+AS_THEY_ARE = np.tile(np.array([[1.0], [0.0]], np.float32), (9, 1, 3))  # gains and offsets
 OFFSETS = np.array([0.02, -0.01, 0.0, 0.03, -0.03, 0.01, -0.02, 0.015, -0.015])
 
 
@@ -73,7 +74,7 @@ def encoded(folder, **options):
 @pytest.mark.parametrize("model", ["gain", "affine"])
 def test_known_colours_are_found(still, model):
     scene = encoded(still[model], harmonise=model)
-    gains, offsets = scene.colours[:, 0], scene.colours[:, 1]
+    gains, offsets = scene.appearance.colours[:, 0], scene.appearance.colours[:, 1]
     known = GAINS / np.exp(np.log(GAINS).mean())
     np.testing.assert_allclose(gains, np.repeat(known[:, None], 3, axis=1), rtol=0.01)
     np.testing.assert_allclose(np.exp(np.log(gains.astype(float)).mean(axis=0)), 1, atol=1e-6)
@@ -88,21 +89,21 @@ def test_known_colours_are_found(still, model):
 def test_gains_are_found_beneath_a_highlight_that_wanders(folders):
     scene = encoded(folders["gain"], harmonise="gain")
     known = GAINS / np.exp(np.log(GAINS).mean())
-    np.testing.assert_allclose(scene.colours[:, 0], np.repeat(known[:, None], 3, axis=1), rtol=0.02)
+    np.testing.assert_allclose(scene.appearance.colours[:, 0], np.repeat(known[:, None], 3, axis=1), rtol=0.02)
 
 
 def test_equal_exposures_stay_as_they_are(folders):
     """A highlight that wanders is no exposure."""
     without, scene = encoded(folders["equal"]), encoded(folders["equal"], harmonise="gain")
-    np.testing.assert_allclose(scene.colours[:, 0], 1, atol=0.003)
-    np.testing.assert_allclose(scene.planes[0].mean, without.planes[0].mean, atol=0.5 / 255)
+    np.testing.assert_allclose(scene.appearance.colours[:, 0], 1, atol=0.003)
+    np.testing.assert_allclose(scene.appearance.planes[0].mean, without.appearance.planes[0].mean, atol=0.5 / 255)
 
 
 def test_captured_cameras_get_their_own_exposure_back_and_viewpoints_the_common_one(folders):
     common = encoded(folders["equal"])
     scene, capture = encoded(folders["gain"], harmonise="gain"), ef.open_capture(folders["gain"])
     level = np.exp(np.log(GAINS).mean())
-    for index, name in enumerate(scene.names):
+    for index, name in enumerate(scene.rig.names):
         picture = ef.render(scene, camera=name)
         inside = picture.coverage > 0.999
         error = (picture.image - capture.photograph(index).pixels)[inside]
@@ -110,9 +111,9 @@ def test_captured_cameras_get_their_own_exposure_back_and_viewpoints_the_common_
     for at in ((0.0, 0.0), (-0.4, 0.7)):
         seen, wanted = ef.render(scene, at=at).image, ef.render(common, at=at).image / level
         assert np.sqrt(np.mean((seen - wanted) ** 2)) < 0.004
-    here = scene.view_plane.coordinates(scene.cameras[5].centre)[0]
-    apart = ef.render(scene, at=tuple(here)).image.mean() / ef.render(scene, camera=scene.names[5]).image.mean()
-    assert apart == pytest.approx(scene.colours[5, 0].mean(), rel=0.01)
+    here = scene.rig.view_plane.coordinates(scene.rig.cameras[5].centre)[0]
+    apart = ef.render(scene, at=tuple(here)).image.mean() / ef.render(scene, camera=scene.rig.names[5]).image.mean()
+    assert apart == pytest.approx(scene.appearance.colours[5, 0].mean(), rel=0.01)
 
 
 def test_fewer_textures_do_where_exposures_differ(folders):
@@ -128,9 +129,11 @@ def test_fewer_textures_do_where_exposures_differ(folders):
 
 def test_held_out_cameras_have_no_colours(folders):
     scene = encoded(folders["gain"], harmonise="gain", hold_out="every:4")
-    held = scene.held_out
-    assert held.any() and (scene.colours[held, 0] == 1).all() and not scene.colours[held, 1].any()
-    np.testing.assert_allclose(np.exp(np.log(scene.colours[~held, 0].astype(float)).mean(axis=0)), 1, atol=1e-6)
+    held = scene.rig.held_out
+    assert held.any() and (scene.appearance.colours[held, 0] == 1).all() and not scene.appearance.colours[held, 1].any()
+    np.testing.assert_allclose(
+        np.exp(np.log(scene.appearance.colours[~held, 0].astype(float)).mean(axis=0)), 1, atol=1e-6
+    )
 
 
 def test_the_uv_measure_compares_harmonised_maps(folders):
@@ -138,7 +141,10 @@ def test_the_uv_measure_compares_harmonised_maps(folders):
     scene = encoded(folders["gain"], harmonise="gain")
     found = evaluate(scene, capture)
     assert found["uv"]["psnr"] > 40
-    strange = dataclasses.replace(scene, colours=np.tile(np.array([[1.0], [0.0]], np.float32), (9, 1, 3)))
+    strange = dataclasses.replace(
+        scene,
+        appearance=dataclasses.replace(scene.appearance, colours=AS_THEY_ARE),
+    )
     assert evaluate(strange, capture)["uv"]["psnr"] < found["uv"]["psnr"] - 10
 
 
@@ -212,7 +218,7 @@ def coloured(channels=3):
     colours[:, 0] = np.linspace(0.7, 1.4, 18).reshape(6, 3)
     colours[:, 1] = np.linspace(-0.1, 0.1, 18).reshape(6, 3)
     colours[4] = [[1], [0]]
-    return dataclasses.replace(scene, colours=colours)
+    return dataclasses.replace(scene, appearance=dataclasses.replace(scene.appearance, colours=colours))
 
 
 @pytest.mark.parametrize("codec", ["png", "webp", "avif"])
@@ -220,7 +226,7 @@ def test_colours_come_back_from_the_file(tmp_path, codec):
     scene = coloured()
     save(scene, tmp_path / "a.glb", codec=codec)
     again = ef.load(tmp_path / "a.glb")
-    assert again.colours.dtype == np.float32 and (again.colours == scene.colours).all()
+    assert again.appearance.colours.dtype == np.float32 and (again.appearance.colours == scene.appearance.colours).all()
     assert validate(tmp_path / "a.glb") == []
     gltf, _ = glb_surgery.split((tmp_path / "a.glb").read_bytes())
     assert gltf["extensions"][glb_surgery.EXTENSION]["version"] == "1.1"
@@ -231,18 +237,23 @@ def test_a_scene_without_colours_is_written_as_before(tmp_path):
     gltf, _ = glb_surgery.split((tmp_path / "a.glb").read_bytes())
     extension = gltf["extensions"][glb_surgery.EXTENSION]
     assert extension["version"] == "1.0" and "colour" not in extension["cameras"]
-    assert ef.load(tmp_path / "a.glb").colours is None
+    assert ef.load(tmp_path / "a.glb").appearance.colours is None
 
 
 def test_a_mean_beyond_white_keeps_its_colours(tmp_path):
     scene = coloured()
-    bright = np.asarray(scene.planes[0].mean * np.float32(1.3) - np.float32(0.02), np.float32)
-    scene = dataclasses.replace(scene, planes=(dataclasses.replace(scene.planes[0], mean=bright),))
+    bright = np.asarray(scene.appearance.planes[0].mean * np.float32(1.3) - np.float32(0.02), np.float32)
+    scene = dataclasses.replace(
+        scene,
+        appearance=dataclasses.replace(
+            scene.appearance, planes=(dataclasses.replace(scene.appearance.planes[0], mean=bright),)
+        ),
+    )
     save(scene, tmp_path / "a.glb", codec="png")
     again = ef.load(tmp_path / "a.glb")
-    assert np.abs(again.planes[0].mean - bright).max() < 1.4 / 255 / 2 * 1.01
+    assert np.abs(again.appearance.planes[0].mean - bright).max() < 1.4 / 255 / 2 * 1.01
     save(again, tmp_path / "b.glb", codec="png")
-    assert (ef.load(tmp_path / "b.glb").planes[0].mean == again.planes[0].mean).all()
+    assert (ef.load(tmp_path / "b.glb").appearance.planes[0].mean == again.appearance.planes[0].mean).all()
 
 
 @pytest.mark.parametrize(
@@ -287,8 +298,8 @@ def test_the_surface_alone_is_given_its_exposure_back():
     scene = coloured()
     renderer, row, colour = Renderer(scene), camera_weights(scene, 2), camera_colour(scene, 2)
     behind = (0.9, 0.1, 0.4)
-    common = renderer.draw(scene.cameras[2], row, background=behind, samples=2)
-    own = renderer.draw(scene.cameras[2], row, background=behind, samples=2, colour=colour)
+    common = renderer.draw(scene.rig.cameras[2], row, background=behind, samples=2)
+    own = renderer.draw(scene.rig.cameras[2], row, background=behind, samples=2, colour=colour)
     part = common.coverage[..., None]
     assert ((part > 0) & (part < 1)).any() and (part == 0).any()
     surface = np.divide(
@@ -296,7 +307,7 @@ def test_the_surface_alone_is_given_its_exposure_back():
     )
     wanted = part * (surface - colour[1]) / colour[0] + (1 - part) * np.float32(behind)
     np.testing.assert_allclose(own.image, wanted, atol=1e-5)
-    codes = renderer.draw_uint8(scene.cameras[2], row, background=behind, samples=2, colour=colour)
+    codes = renderer.draw_uint8(scene.rig.cameras[2], row, background=behind, samples=2, colour=colour)
     np.testing.assert_array_equal(codes, own.to_uint8())
     assert camera_colour(tiny_scene(), 2) is None
 
@@ -311,7 +322,7 @@ def test_the_command_line(folders, tmp_path):
     facts = json.loads(CliRunner().invoke(group, ["info", "--json", str(out)]).stdout)
     assert facts["settings"]["harmonise"] == "affine" and facts["cameras"]["harmonised"]["gain"]["G"][0] < 0.9
     scene = ef.load(out)
-    for name in scene.names[::4]:
+    for name in scene.rig.names[::4]:
         picture = tmp_path / name
         assert CliRunner().invoke(group, ["render", str(out), "--camera", name, "-o", str(picture)]).exit_code == 0
         np.testing.assert_array_equal(cv2.imread(str(picture))[..., ::-1], ef.render(scene, camera=name).to_uint8())
@@ -319,9 +330,9 @@ def test_the_command_line(folders, tmp_path):
 
 def test_harmonised_maps_are_the_maps_of_harmonised_photographs(folders):
     scene, capture = encoded(folders["gain"]), ef.open_capture(folders["gain"])
-    atlas = make_atlas(scene.mesh, 128, 128)
+    atlas = make_atlas(scene.proxy.mesh, 128, 128)
     pixels = capture.photograph(3).pixels
-    values, seen = texture_map(atlas, scene.cameras[3], pixels)
+    values, seen = texture_map(atlas, scene.rig.cameras[3], pixels)
     gain, offset = np.float32([1.2, 0.9, 1.1]), np.float32([0.01, -0.02, 0])
-    first, _ = texture_map(atlas, scene.cameras[3], pixels * gain + offset)
+    first, _ = texture_map(atlas, scene.rig.cameras[3], pixels * gain + offset)
     np.testing.assert_allclose(harmonised(values, seen, np.stack([gain, offset])), first, atol=1e-5)

@@ -18,6 +18,7 @@ from eigenfield import gltf as scene_format
 from eigenfield.cli import main
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OptionError
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.residual import (
     captured_pixels,
     check_residual,
@@ -105,8 +106,8 @@ def test_a_grid_is_walked_to_and_fro():
 
 def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
     for index, difference in differences(exact):
-        camera, photograph = exact.cameras[index], to_codes(capture.photograph(index).pixels)
-        drawn = ef.render(base, camera=base.names[index])
+        camera, photograph = exact.rig.cameras[index], to_codes(capture.photograph(index).pixels)
+        drawn = ef.render(base, camera=base.rig.names[index])
         made = corrected(drawn, difference)
         covered = drawn.coverage > 0.999
         assert made.image.shape == (camera.height, camera.width, 3)
@@ -126,12 +127,12 @@ def test_coarser_films_are_smaller_and_worse(base, capture):
 
 
 def test_photographs_too_large_for_the_encoder(base):
-    tall = [replace(camera, height=3000) for camera in base.cameras]
+    tall = [replace(camera, height=3000) for camera in base.rig.cameras]
     assert check_residual(tall, 89) == (3000, 64)
     with pytest.raises(OptionError, match=r"64x9000.*less than 90"):
         check_residual(tall, FINE)
     with pytest.raises(OptionError, match="scale the photographs down"):
-        check_residual([replace(camera, height=8705) for camera in base.cameras], 0)
+        check_residual([replace(camera, height=8705) for camera in base.rig.cameras], 0)
 
 
 def test_one_camera_is_any_of_them(exact):
@@ -146,13 +147,13 @@ def test_one_camera_is_any_of_them(exact):
 
 def test_a_background_shines_through_as_before(base, exact):
     """Where the proxy covers a part of a pixel, the residual is the surface's alone; where none, there is none."""
-    square = ef.Mesh(base.mesh.vertices * np.float32(0.3), base.mesh.faces, base.mesh.uv)
-    small = replace(base, mesh=square)
+    square = ef.Mesh(base.proxy.mesh.vertices * np.float32(0.3), base.proxy.mesh.faces, base.proxy.mesh.uv)
+    small = replace(base, proxy=Proxy(square))
     index = 0
-    ones = np.full((exact.cameras[0].height, exact.cameras[0].width, 3), 0.25, np.float32)
+    ones = np.full((exact.rig.cameras[0].height, exact.rig.cameras[0].width, 3), 0.25, np.float32)
     pictures = {}
     for background in ((0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
-        drawn = ef.render(small, camera=small.names[index], background=background, samples=3)
+        drawn = ef.render(small, camera=small.rig.names[index], background=background, samples=3)
         made = corrected(drawn, ones, background)
         none = drawn.coverage == 0
         assert none.any() and (drawn.coverage > 0).any()
@@ -227,7 +228,7 @@ def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplo
         found = outcome(tmp_path / "a.glb", data[:keep])
         if found is None:  # within the eigen textures: the others are drawn
             left = read_scene(data[:keep])
-            assert left.residual is None and left.textures < base.textures
+            assert left.residual is None and left.appearance.textures < base.appearance.textures
         else:
             assert found in ("not-glb", "truncated")
 
@@ -283,7 +284,7 @@ def test_a_damaged_film_harms_captured_views_alone(base, data, tmp_path):
         path = stored(bytes(broken), tmp_path)
         codes |= {(one.severity, one.code, one.where) for one in validate(path)}
         found = ef.load(path)
-        np.testing.assert_array_equal(found.planes[0].mean, base.planes[0].mean)
+        np.testing.assert_array_equal(found.appearance.planes[0].mean, base.appearance.planes[0].mean)
         try:
             assert len(list(differences(found))) == 8
         except FormatError as error:
@@ -303,9 +304,14 @@ def test_shots_that_are_drawn_otherwise_have_none(exact):
 
 def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
     """Residuals of files before 1.5; of cameras half as fine as the reference, from 2 x 2."""
-    smaller = replace(exact.mesh, vertices=exact.mesh.vertices * np.array([0.7, 0.7, 1], np.float32))
-    cameras = tuple(one.resized(32, 28) if index == 3 else one for index, one in enumerate(exact.cameras))
-    older = replace(exact, mesh=smaller, cameras=cameras, residual=replace(exact.residual, smooth=False))
+    smaller = replace(exact.proxy.mesh, vertices=exact.proxy.mesh.vertices * np.array([0.7, 0.7, 1], np.float32))
+    cameras = tuple(one.resized(32, 28) if index == 3 else one for index, one in enumerate(exact.rig.cameras))
+    older = replace(
+        exact,
+        proxy=Proxy(smaller),
+        rig=replace(exact.rig, cameras=cameras),
+        residual=replace(exact.residual, smooth=False),
+    )
     path = stored(encode_scene(older), tmp_path)
     assert [one for one in validate(path) if one.severity != "information"] == []
     found, difference = ef.load(path), difference_of(exact, 0)
@@ -321,7 +327,7 @@ def test_harmonised_scenes_have_their_own_exposure(capture):
     scene = ef.encode(capture, capture.root / "proxy.ply", textures=2, atlas=64, harmonise="gain")
     exact = with_residual(read_scene(encode_scene(scene, quality=40)), capture, FINE)
     shots = Shots(exact)
-    drawn = shots.picture(exact.cameras[2], camera_weights(exact, 2), camera_colour(exact, 2))
+    drawn = shots.picture(exact.rig.cameras[2], camera_weights(exact, 2), camera_colour(exact, 2))
     made = captured_pixels(shots, 2, difference_of(exact, 2))
     assert psnr(made, to_codes(capture.photograph(2).pixels), drawn.coverage > 0.999) >= 50
 
@@ -346,7 +352,7 @@ def test_evaluate_says_both_and_mixes_nothing(base, exact, capture, tmp_path):
         assert both["image"][part] == plain["image"][part]
     assert both["image"]["residual"]["cameras"] == 8
     assert both["image"]["residual"]["psnr"] >= 50 > both["image"]["encoded"]["psnr"]
-    assert [camera["name"] for camera in both["cameras"]] == list(exact.names)
+    assert [camera["name"] for camera in both["cameras"]] == list(exact.rig.names)
     assert [name for camera in both["cameras"] for name in camera if name == "residual"] == ["residual"] * 8
     for other in ({"textures": 1}, {"filter": "bilinear"}):
         assert evaluate(exact, capture, png_maps="none", **other)["image"]["residual"] is None

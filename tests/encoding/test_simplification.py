@@ -10,14 +10,14 @@ import pytest
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.geometry import depth_effect, slim_mesh, slim_relief
+from eigenfield.encoding.geometry import depth_effect, simplify_proxy_rd, simplify_relief_rd
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_mesh
 from eigenfield.encoding.geometry.collapse_kernels import collapse, fallen
 from eigenfield.encoding.geometry.distortion import opened
 from eigenfield.encoding.geometry.raster_kernels import STEPS, Ground, sheet_cost
 from eigenfield.encoding.geometry.simplify_relief import _fitted, _sheet
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.relief.find_lattice import relief_lattice
+from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 from support.observations import greys, repeated
 from support.scenes import bumpy_square, row_grid
 from support.surfaces import relief
@@ -238,7 +238,7 @@ def test_flat_photographs_do_not_mind():
 def test_a_mesh_that_no_camera_sees_costs_nothing_but_is_whole():
     mesh, cameras, photographs = photographed_plane()
     away = [replace(camera, t=camera.t + np.array([50.0, 0, 0])) for camera in cameras]
-    form = slim_relief(mesh, plane_lattice(cameras), 0, away, greys(photographs), 1e-3, 1.0)
+    form = simplify_relief_rd(mesh, plane_lattice(cameras), away, greys(photographs), 1e-3, 1.0)
     assert len(form.mesh.faces) > 0
 
 
@@ -249,10 +249,10 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
     mesh = relief(made_in, 0.5, virtual)
     random = np.random.default_rng(1)
     photographs = [random.random((camera.height, camera.width)).astype(np.float32) for camera in cameras]
-    plain = coded_mesh(mesh, cameras, 4)
+    plain = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
     sizes, holes = [], []
     for price in (1e-9, 0.05):
-        slim = slim_mesh(mesh, cameras, 4, greys(photographs), price, 1.0)
+        slim = simplify_proxy_rd(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4, greys(photographs), price, 1.0)
         found = slim.value
         sizes.append(slim.payloads.bytes)
         holes.append(opened(mesh, found, cameras, greys(photographs))[0])
@@ -273,7 +273,9 @@ def test_other_meshes_keep_their_triangles():
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
     assert relief_lattice(bent, cameras, DEPTH_ERROR) is None
-    found = slim_mesh(bent, cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0)
+    found = simplify_proxy_rd(
+        relief_proxy(bent, cameras, DEPTH_ERROR), cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0
+    )
     assert len(found.value.faces) == len(bent.faces) and found.payloads.bytes > 0
 
 
@@ -296,7 +298,7 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     """Two sheets over one another: of the near one alone the photographs' variance is lost."""
     cameras = row_grid(9, 64, 48)
     near = relief(cameras[4], 0.5, False)
-    lattice, fine = relief_lattice(near, cameras, DEPTH_ERROR) or (None, 0)
+    lattice = relief_lattice(near, cameras, DEPTH_ERROR)
     assert lattice is not None
     exact = lattice.coordinates(near.vertices)
     exact[:, 2] = exact[:, 2].mean() + 0.02 * (exact[:, 2] - exact[:, 2].mean())  # inverse depth
@@ -308,7 +310,7 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     uv = np.concatenate([near.uv * [0.5, 1], near.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32)
     both = Mesh(vertices, np.concatenate([patch, near.faces + len(near.vertices)]).astype(np.int32), uv)
     grey = np.tile(0.5 + 0.02 * np.sin(np.arange(64)), (48, 1)).astype(np.float32)
-    effect = depth_effect(both, lattice, 2.0**fine, cameras, greys([grey] * 9))
+    effect = depth_effect(both, lattice, 2.0**lattice.fine, cameras, greys([grey] * 9))
     ground = effect.ground
     given, middle = ground.given > 0, ground.given.shape[1] // 2
     front = given & (np.arange(given.shape[1]) < middle)

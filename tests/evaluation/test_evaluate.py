@@ -27,6 +27,12 @@ def scene():
     return tiny_scene(textures=3, cameras=9, size=48, held_out=HELD)
 
 
+def named_as_files(scene):
+    """The scene with its cameras named as the photographs that `write_capture` writes."""
+    names = tuple(f"{name}.png" for name in scene.rig.names)
+    return dataclasses.replace(scene, rig=dataclasses.replace(scene.rig, names=names))
+
+
 def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
     figures = evaluate(scene, write_capture(scene, tmp_path / "c"))
     for kind, count in (("encoded", 8), ("held_out", 1)):
@@ -49,7 +55,7 @@ def test_drawing_and_projecting_back_each_resample_once(scene, tmp_path):
     renderer = Renderer(scene)
 
     def plain(index, picture):
-        camera, row = scene.cameras[index], camera_weights(scene, index)
+        camera, row = scene.rig.cameras[index], camera_weights(scene, index)
         return renderer.draw_uint8(camera, row, samples=1)
 
     assert evaluate(scene, write_capture(scene, tmp_path / "c", plain))["uv"]["ssim"] > 0.9
@@ -60,19 +66,19 @@ def test_an_offset_of_ten_levels_is_found_where_it_is(scene, tmp_path, at, kind)
     figures = evaluate(scene, write_capture(scene, tmp_path / "c", lighter(at)))
     known = 20 * np.log10(25.5)
     part = figures["image"][kind]
-    assert part["worst"]["psnr"] == {"value": pytest.approx(known, abs=1e-5), "camera": scene.names[at]}
+    assert part["worst"]["psnr"] == {"value": pytest.approx(known, abs=1e-5), "camera": scene.rig.names[at]}
     assert part["worst"]["psnr_full"]["value"] == pytest.approx(known, abs=1e-5)
     assert part["psnr"] == pytest.approx((PSNR_CAP * (part["cameras"] - 1) + known) / part["cameras"], abs=1e-5)
     other = {"encoded": "held_out", "held_out": "encoded"}[kind]
     assert figures["image"][other]["psnr"] == PSNR_CAP
-    one = next(camera for camera in figures["cameras"] if camera["name"] == scene.names[at])
+    one = next(camera for camera in figures["cameras"] if camera["name"] == scene.rig.names[at])
     assert one["psnr"] == pytest.approx(known, abs=1e-5)
     assert one["held_out"] == (kind == "held_out")
 
 
 def test_the_background_counts_in_the_full_figures_only(scene, tmp_path):
     def framed(index, picture):
-        coverage = Renderer(scene).draw(scene.cameras[index], camera_weights(scene, index)).coverage
+        coverage = Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index)).coverage
         return np.where(coverage[..., None] > 0, picture, 200).astype(np.uint8)
 
     part = evaluate(scene, write_capture(scene, tmp_path / "c", framed))["image"]["encoded"]
@@ -83,7 +89,7 @@ def test_the_background_counts_in_the_full_figures_only(scene, tmp_path):
 
 
 def test_masks_bound_the_covered_pixels_and_the_coverage(scene, tmp_path):
-    height, width = scene.cameras[0].height, scene.cameras[0].width
+    height, width = scene.rig.cameras[0].height, scene.rig.cameras[0].width
     mask = np.zeros((height, width), np.uint8)
     mask[13:26, 19:32] = 255  # the surface covers all of it
 
@@ -104,33 +110,33 @@ def test_circles_are_left_out_of_the_outside_figures(scene, tmp_path):
         return np.where(circle.outside(*picture.shape[1::-1])[..., None], picture, 255 - picture).astype(np.uint8)
 
     capture = write_capture(scene, tmp_path / "c", spot)
-    figures = evaluate(scene, capture, circles=dict.fromkeys(scene.names, circle))
+    figures = evaluate(scene, capture, circles=dict.fromkeys(scene.rig.names, circle))
     for kind in ("encoded", "held_out"):
         assert figures["image"][kind]["psnr"] < 40
         outside = figures["image"][kind]["outside"]
         assert outside["psnr"] == outside["psnr_luma"] == PSNR_CAP
         assert outside["ssim"] == 1
         assert set(outside["worst"]) == {"psnr", "ssim", "psnr_luma"}
-    some = evaluate(scene, capture, circles={scene.names[0]: circle})["image"]["encoded"]["outside"]
-    assert some["worst"]["psnr"]["camera"] != scene.names[0]
+    some = evaluate(scene, capture, circles={scene.rig.names[0]: circle})["image"]["encoded"]["outside"]
+    assert some["worst"]["psnr"]["camera"] != scene.rig.names[0]
     assert some["worst"]["psnr"]["value"] < 40
 
 
 def test_flip_is_measured_when_asked_for(scene, tmp_path):
     capture = write_capture(scene, tmp_path / "c", lighter(2))
-    figures = evaluate(scene, capture, flip=True, circles={scene.names[2]: Circle(24, 20, 9)})
+    figures = evaluate(scene, capture, flip=True, circles={scene.rig.names[2]: Circle(24, 20, 9)})
     encoded, held = figures["image"]["encoded"], figures["image"]["held_out"]
     assert held["flip"] == held["worst"]["flip"]["value"] == 0
     worst = encoded["worst"]["flip"]  # the highest: lower is better
-    assert worst["camera"] == scene.names[2] and 0.01 < worst["value"] < 0.3
+    assert worst["camera"] == scene.rig.names[2] and 0.01 < worst["value"] < 0.3
     assert encoded["flip"] == pytest.approx(worst["value"] / 8, abs=1e-6)
     assert encoded["outside"]["flip"] != encoded["flip"]
-    assert encoded["outside"]["worst"]["flip"]["camera"] == scene.names[2]
+    assert encoded["outside"]["worst"]["flip"]["camera"] == scene.rig.names[2]
     alone = {camera["name"]: camera["flip"] for camera in figures["cameras"]}
-    assert alone[scene.names[2]] == worst["value"] and sum(value > 0 for value in alone.values()) == 1
+    assert alone[scene.rig.names[2]] == worst["value"] and sum(value > 0 for value in alone.values()) == 1
     assert stored_scores(figures)["image"]["encoded"]["flip"] == encoded["flip"]
     picture = drawn(scene, 2)
-    surface = Renderer(scene).draw(scene.cameras[2], camera_weights(scene, 2)).coverage > 0.999
+    surface = Renderer(scene).draw(scene.rig.cameras[2], camera_weights(scene, 2)).coverage > 0.999
     assert worst["value"] == pytest.approx(flip(picture, lighter(2)(2, picture), surface), abs=1e-6)
     plain = evaluate(scene, capture)
     assert "flip" not in plain["image"]["encoded"] and "flip" not in plain["cameras"][0]
@@ -152,7 +158,7 @@ def test_luma_of_the_whole_frame(scene, tmp_path):
 
 
 def test_reconstruction_is_equation_8_at_every_count(scene):
-    plane = scene.planes[0]
+    plane = scene.appearance.planes[0]
     basis = plane.bases[0]
     codes = np.random.default_rng(3).integers(0, 256, basis.textures.shape, dtype=np.uint8)
     scale = np.linspace(0.001, 0.002, basis.scale.size, dtype=np.float32).reshape(basis.scale.shape)
@@ -173,8 +179,8 @@ def test_reconstruction_is_equation_8_at_every_count(scene):
 
 
 def test_a_map_that_is_the_reconstruction_is_perfect_and_one_in_the_wrong_place_is_not(scene):
-    plane, height, width = scene.planes[0], 48, 48
-    atlas = make_atlas(scene.mesh, width, height)
+    plane, height, width = scene.appearance.planes[0], 48, 48
+    atlas = make_atlas(scene.proxy.mesh, width, height)
     (texture,) = reconstructions(plane, 3, [3])
     values = texture.reshape(-1, 3)[atlas.texel]
     seen = np.ones(atlas.count, np.uint8)
@@ -193,14 +199,14 @@ def test_a_map_that_is_the_reconstruction_is_perfect_and_one_in_the_wrong_place_
 def test_uv_figures_are_those_of_the_maps(scene, tmp_path):
     capture = write_capture(scene, tmp_path / "c", lighter(1))
     figures = evaluate(scene, capture, curve="all")
-    atlas = make_atlas(scene.mesh, 48, 48)
+    atlas = make_atlas(scene.proxy.mesh, 48, 48)
     found = []
-    for row, index in enumerate(scene.encoded):
-        values, seen = texture_map(atlas, scene.cameras[index], capture.photograph(int(index)).pixels)
-        found.append(measure_map(scene.planes[0], row, atlas, values, seen, [3]))
+    for row, index in enumerate(scene.rig.encoded):
+        values, seen = texture_map(atlas, scene.rig.cameras[index], capture.photograph(int(index)).pixels)
+        found.append(measure_map(scene.appearance.planes[0], row, atlas, values, seen, [3]))
     assert figures["uv"]["psnr"] == pytest.approx(np.mean([one.psnr[0] for one in found]), abs=1e-5)
     assert figures["uv"]["ssim"] == pytest.approx(np.mean([one.ssim[0] for one in found]), abs=1e-5)
-    assert figures["uv"]["worst"]["psnr"]["camera"] == scene.names[1]
+    assert figures["uv"]["worst"]["psnr"]["camera"] == scene.rig.names[1]
     assert [point["textures"] for point in figures["curve"]] == [0, 1, 2, 3]
     last = figures["curve"][-1]
     assert (last["uv_ssim"], last["uv_psnr"]) == (figures["uv"]["ssim"], figures["uv"]["psnr"])
@@ -216,8 +222,8 @@ def test_a_curve_of_some_cameras(scene, tmp_path, monkeypatch):
     whole, some = (evaluate(scene, capture, curve=which) for which in ("all", "sample"))
     assert some["uv"] == whole["uv"] and some["image"] == whole["image"]
     assert [point["cameras"] for point in some["curve"]] == [2] * 4
-    assert whole["curve"][0]["cameras"] == len(scene.encoded)
-    ends = [scene.names[scene.encoded[0]], scene.names[scene.encoded[-1]]]
+    assert whole["curve"][0]["cameras"] == len(scene.rig.encoded)
+    ends = [scene.rig.names[scene.rig.encoded[0]], scene.rig.names[scene.rig.encoded[-1]]]
     alone = [camera["uv_psnr"] for camera in whole["cameras"] if camera["name"] in ends]
     assert some["curve"][-1]["uv_psnr"] == pytest.approx(np.mean(alone), abs=1e-4)
     with pytest.raises(OptionError, match="use all, sample, none"):
@@ -231,10 +237,10 @@ def test_maps_of_an_aligned_scene_are_aligned_too(scene, tmp_path):
     capture = write_capture(scene, tmp_path / "c", shifted)
     plain = evaluate(scene, capture)
     aligned = evaluate(dataclasses.replace(scene, settings={"align": "dis"}), capture)
-    one, other = (next(c for c in f["cameras"] if c["name"] == scene.names[1]) for f in (plain, aligned))
+    one, other = (next(c for c in f["cameras"] if c["name"] == scene.rig.names[1]) for f in (plain, aligned))
     assert one["uv_psnr"] != other["uv_psnr"]
     assert one["psnr"] == other["psnr"]
-    reference = scene.names[0 if scene.reference in HELD else scene.reference]
+    reference = scene.rig.names[0 if scene.rig.reference in HELD else scene.rig.reference]
     assert plain["image"] == aligned["image"]
     assert reference in [camera["name"] for camera in aligned["cameras"]]
 
@@ -255,7 +261,7 @@ def test_the_number_of_threads_changes_nothing(scene, tmp_path):
 
 def test_missing_photographs_are_named_and_left_out(scene, tmp_path):
     figures = evaluate(scene, write_capture(scene, tmp_path / "c", only=(0, 1, 2, 5)))
-    assert figures["missing"] == [scene.names[i] for i in (3, 4, 6, 7, 8)]
+    assert figures["missing"] == [scene.rig.names[i] for i in (3, 4, 6, 7, 8)]
     assert figures["image"]["held_out"] is None
     assert figures["image"]["encoded"]["cameras"] == 4
     held_only = evaluate(scene, write_capture(scene, tmp_path / "d", only=HELD))
@@ -264,15 +270,15 @@ def test_missing_photographs_are_named_and_left_out(scene, tmp_path):
 
 
 def test_a_camera_that_sees_nothing_has_no_figures(scene, tmp_path):
-    away = scene.cameras[0]
+    away = scene.rig.cameras[0]
     about = np.diag([-1.0, 1.0, -1.0])
     turned = Camera(away.K, about @ away.R, about @ away.t, away.width, away.height)
-    blind = dataclasses.replace(scene, cameras=(turned, *scene.cameras[1:]))
+    blind = dataclasses.replace(scene, rig=dataclasses.replace(scene.rig, cameras=(turned, *scene.rig.cameras[1:])))
     figures = evaluate(blind, write_capture(blind, tmp_path / "c"))
     assert figures["cameras"][0]["psnr"] is figures["cameras"][0]["uv_ssim"] is None
     assert figures["cameras"][0]["coverage"] == 0
     assert figures["image"]["encoded"]["psnr"] == PSNR_CAP
-    assert figures["image"]["encoded"]["worst"]["coverage"] == {"value": 0, "camera": scene.names[0]}
+    assert figures["image"]["encoded"]["worst"]["coverage"] == {"value": 0, "camera": scene.rig.names[0]}
     json.dumps(figures, allow_nan=False)
 
 
@@ -286,7 +292,9 @@ def test_a_capture_of_something_else(scene, tmp_path):
 
 
 def test_photographs_of_another_size(scene, tmp_path):
-    small = dataclasses.replace(scene, cameras=tuple(camera.resized(24, 20) for camera in scene.cameras))
+    small = dataclasses.replace(
+        scene, rig=dataclasses.replace(scene.rig, cameras=tuple(camera.resized(24, 20) for camera in scene.rig.cameras))
+    )
     with pytest.raises(CaptureError) as caught:
         evaluate(scene, write_capture(small, tmp_path / "c"))
     assert caught.value.code == "photograph-size"
@@ -332,7 +340,7 @@ def test_bytes_ratios_and_sampled_maps(tmp_path):
     whole, sample, none = (evaluate(load(path), capture, path=path, png_maps=how) for how in ("all", "sample", "none"))
     sizes = whole["bytes"]
     assert sizes["total"] == path.stat().st_size == sum(size for part, size in sizes.items() if part != "total")
-    photographs = sum((tmp_path / "c" / f"{name}.png").stat().st_size for name in scene.names)
+    photographs = sum((tmp_path / "c" / f"{name}.png").stat().st_size for name in scene.rig.names)
     assert whole["ratio"]["photographs"] == pytest.approx(photographs / sizes["total"], abs=1e-6)
     assert whole["ratio"]["raw"] == pytest.approx(20 * 48 * 40 * 3 / sizes["total"], abs=1e-6)
     assert whole["ratio"]["texture_maps_png"] == pytest.approx(whole["png_maps"]["bytes"] / sizes["total"], abs=1e-6)
@@ -351,7 +359,9 @@ def run(*arguments):
 def test_the_verb_from_end_to_end(scene, tmp_path):
     write_capture(scene, tmp_path / "a capture", lighter(2))
     path, plots = tmp_path / "scene.glb", tmp_path / "some" / "plots"
-    named = dataclasses.replace(scene, names=tuple(f"{name}.png" for name in scene.names))
+    named = dataclasses.replace(
+        scene, rig=dataclasses.replace(scene.rig, names=tuple(f"{name}.png" for name in scene.rig.names))
+    )
     save(named, path, codec="png")
     result = run(path, tmp_path / "a capture", "--json", "--curve", "--plots", plots, "--store", "--quiet")
     assert result.exit_code == 0, result.output
@@ -380,7 +390,11 @@ def test_the_verb_from_end_to_end(scene, tmp_path):
 def test_the_table_of_the_verb_shows_flip(scene, tmp_path):
     write_capture(scene, tmp_path / "c", lighter(2))
     save(
-        dataclasses.replace(scene, names=tuple(f"{name}.png" for name in scene.names)), tmp_path / "s.glb", codec="png"
+        dataclasses.replace(
+            scene, rig=dataclasses.replace(scene.rig, names=tuple(f"{name}.png" for name in scene.rig.names))
+        ),
+        tmp_path / "s.glb",
+        codec="png",
     )
     shown = run(tmp_path / "s.glb", tmp_path / "c", "--flip", "--png-maps", "none", "--quiet").stdout.splitlines()
     end = next(line for line in shown if "PSNR" in line).index("FLIP") + 4

@@ -73,19 +73,22 @@ def test_a_gltf_viewer_opens_on_what_the_reference_camera_saw(tmp_path):
     scene = tiny_scene()
     R = turned([0.1, -0.2, 0.05, np.sqrt(1 - 0.0525)], np.eye(3)).T
     camera = Camera(np.array([[55.0, 0, 24], [0, 50, 20], [0, 0, 1]]), R, np.array([0.1, -0.2, 3]), 48, 40)
-    others = scene.cameras[1:]
-    scene = replace(scene, cameras=(camera, *others), reference=0, view_plane=fit_view_plane([camera, *others]))
+    others = scene.rig.cameras[1:]
+    scene = replace(
+        scene,
+        rig=replace(scene.rig, cameras=(camera, *others), reference=0, view_plane=fit_view_plane([camera, *others])),
+    )
     save(scene, tmp_path / "scene.glb")
     gltf, _ = glb_surgery.split((tmp_path / "scene.glb").read_bytes())
     proxy, eye = gltf["nodes"]
     assert (proxy["mesh"], eye["camera"]) == (0, 0)
-    world = turned(proxy["rotation"], scene.mesh.vertices.astype(np.float64))
+    world = turned(proxy["rotation"], scene.proxy.mesh.vertices.astype(np.float64))
     x, y, z, w = eye["rotation"]
     seen = turned([-x, -y, -z, w], world - eye["translation"])
     perspective = gltf["cameras"][0]["perspective"]
     half = np.tan(perspective["yfov"] / 2)
     clip = seen[:, :2] / (-seen[:, 2:] * half * np.array([perspective["aspectRatio"], 1]))
-    pixels, depth = camera.project(scene.mesh.vertices)
+    pixels, depth = camera.project(scene.proxy.mesh.vertices)
     assert depth.min() > perspective["znear"]
     np.testing.assert_allclose((clip * (1, -1) + 1) / 2 * (48, 40), pixels, atol=1e-6)
 
@@ -94,8 +97,11 @@ def test_a_scene_that_stands_as_gltf_has_it_needs_no_rotation(tmp_path):
     K, upright = np.array([[50.0, 0, 24], [0, 50, 20], [0, 0, 1]]), np.diag([1.0, -1, -1])  # y up, looking along -z
     places = [(x, y, 3.0) for y in (-0.1, 0.1) for x in (-0.1, 0.1)]
     cameras = tuple(Camera(K, upright, -upright @ np.array(place), 48, 40) for place in places)
-    scene = replace(tiny_scene(cameras=4), cameras=cameras, view_plane=fit_view_plane(cameras))
+    scene = replace(
+        tiny_scene(cameras=4),
+        rig=replace(tiny_scene(cameras=4).rig, cameras=cameras, view_plane=fit_view_plane(cameras)),
+    )
     save(scene, tmp_path / "scene.glb")
     gltf, _ = glb_surgery.split((tmp_path / "scene.glb").read_bytes())
     assert not any("rotation" in node for node in gltf["nodes"])
-    np.testing.assert_allclose(gltf["nodes"][1]["translation"], places[scene.reference], atol=1e-7)
+    np.testing.assert_allclose(gltf["nodes"][1]["translation"], places[scene.rig.reference], atol=1e-7)

@@ -36,7 +36,7 @@ def test_every_length_is_refused_or_drawn_of_the_textures_that_are_there(tmp_pat
         elif kept >= first:
             assert found is None
             path.write_bytes(data[:length])
-            assert scene_format.load(path).textures == sum(end <= kept for end in ends)
+            assert scene_format.load(path).appearance.textures == sum(end <= kept for end in ends)
             assert [finding.code for finding in scene_format.validate(path)] == ["truncated"]
 
 

@@ -16,6 +16,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads, cameras_key, mesh_key
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.code_planes import coded_plane
 from eigenfield.encoding.geometry.coded import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
@@ -26,7 +27,7 @@ from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout
 from eigenfield.proxy.atlas.unwrap import unwrapped
-from eigenfield.proxy.relief.find_lattice import _spacing, relief_lattice
+from eigenfield.proxy.relief.find_lattice import _spacing, relief_lattice, relief_proxy
 from support.coded_scenes import coded
 from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
@@ -35,12 +36,12 @@ from support.surfaces import ball, relief
 
 def coded_scene() -> EncodedScene:
     """Nine cameras on a grid before a bumpy square."""
-    return coded(replace(tiny_scene(3, 4, 9, 64), mesh=bumpy_square(40)), np.arange(9).reshape(3, 3))
+    return coded(replace(tiny_scene(3, 4, 9, 64), proxy=Proxy(bumpy_square(40))), np.arange(9).reshape(3, 3))
 
 
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
-    made = coded_mesh(mesh, cameras, 4)
+    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
     found = made.value
     assert len(found.faces) == len(mesh.faces) and made.payloads.bytes < mesh.vertices.nbytes / 4
     most = PIXEL_STEP / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
@@ -56,7 +57,7 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     made_in = cameras[5] if not virtual else replace(cameras[4], t=cameras[4].t + np.array([0.07, -0.03, 0.01]))
     mesh = relief(made_in, 0.5, virtual)
     assert relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
-    made = coded_mesh(mesh, cameras, 4)
+    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
     found = made.value
     assert made.payloads.bytes < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
@@ -119,7 +120,7 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    found = coded_mesh(mesh, inside, 0).value
+    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR), inside, 0).value
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
 
@@ -140,11 +141,13 @@ def test_a_coded_scene_through_a_file(tmp_path):
     save(scene, path)
     assert validate(path) == []
     back = ef.load(path)
-    np.testing.assert_array_equal(back.mesh.vertices, scene.mesh.vertices)
-    np.testing.assert_array_equal(back.mesh.faces, scene.mesh.faces)
-    np.testing.assert_array_equal(back.mesh.uv, scene.mesh.uv)
-    np.testing.assert_array_equal(back.planes[0].bases[0].weights, scene.planes[0].bases[0].weights)
-    for one, two in zip(back.cameras, scene.cameras, strict=True):
+    np.testing.assert_array_equal(back.proxy.mesh.vertices, scene.proxy.mesh.vertices)
+    np.testing.assert_array_equal(back.proxy.mesh.faces, scene.proxy.mesh.faces)
+    np.testing.assert_array_equal(back.proxy.mesh.uv, scene.proxy.mesh.uv)
+    np.testing.assert_array_equal(
+        back.appearance.planes[0].bases[0].weights, scene.appearance.planes[0].bases[0].weights
+    )
+    for one, two in zip(back.rig.cameras, scene.rig.cameras, strict=True):
         np.testing.assert_array_equal(one.matrix, two.matrix)
         assert (one.width, one.height) == (two.width, two.height)
     save(back, tmp_path / "again.glb")
@@ -155,15 +158,19 @@ def test_a_coded_scene_through_a_file(tmp_path):
 
 def test_streams_of_another_mesh_or_other_cameras_are_not_written(tmp_path):
     scene = coded_scene()
-    assert cameras_key(scene.cameras) in scene.payloads and mesh_key(scene.mesh) in scene.payloads
-    turned = (*scene.cameras[1:], scene.cameras[0])
-    for cameras in (turned, scene.cameras[:-1], (replace(scene.cameras[0], t=np.ones(3)), *scene.cameras[1:])):
+    assert cameras_key(scene.rig.cameras) in scene.payloads and mesh_key(scene.proxy.mesh) in scene.payloads
+    turned = (*scene.rig.cameras[1:], scene.rig.cameras[0])
+    for cameras in (
+        turned,
+        scene.rig.cameras[:-1],
+        (replace(scene.rig.cameras[0], t=np.ones(3)), *scene.rig.cameras[1:]),
+    ):
         assert cameras_key(cameras) not in scene.payloads
     path = tmp_path / "other.glb"
-    save(replace(scene, mesh=bumpy_square(12), cameras=turned), path)
+    save(replace(scene, proxy=Proxy(bumpy_square(12)), rig=replace(scene.rig, cameras=turned)), path)
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
     assert extension["needs"] == ["bits", "codedWeights", "stacks"] and "mesh" not in extension
-    assert len(ef.load(path).mesh.faces) == len(bumpy_square(12).faces)
+    assert len(ef.load(path).proxy.mesh.faces) == len(bumpy_square(12).faces)
 
 
 def test_the_mesh_for_other_viewers_is_coarse_and_textured():
@@ -188,7 +195,10 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
         shown = 0.5 + contrast * (mean - 0.5)
         planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3)]
         values = tuple(plane.value for plane in planes)
-        scene = replace(tiny_scene(cameras=4), planes=values, to_rgb=np.eye(3, dtype=np.float32))
+        scene = replace(
+            tiny_scene(cameras=4),
+            appearance=replace(tiny_scene(cameras=4).appearance, planes=values, to_rgb=np.eye(3, dtype=np.float32)),
+        )
         save(encoded(scene, Payloads.joined(plane.payloads for plane in planes)), path, overwrite=True)
         (mesh,) = trimesh.load(path).geometry.values()
         assert mesh.visual.material.baseColorTexture.size == (side, side)
@@ -198,7 +208,9 @@ def measured_scene() -> EncodedScene:
     """Names with measured positions, as Stanford's have, of which no pattern is short."""
     scene = coded_scene()
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)
-    return replace(scene, names=tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places))
+    return replace(
+        scene, rig=replace(scene.rig, names=tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places))
+    )
 
 
 def test_names_with_measured_positions_are_coded(tmp_path):
@@ -207,7 +219,7 @@ def test_names_with_measured_positions_are_coded(tmp_path):
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
     assert extension["version"] == "1.6" and "codedNames" in extension["needs"]
     assert "names" not in extension["cameras"] and "pattern" not in extension["cameras"]
-    assert ef.load(path).names == measured_scene().names
+    assert ef.load(path).rig.names == measured_scene().rig.names
     assert not [finding for finding in validate(path) if finding.severity == "error"]
     save(coded_scene(), path, overwrite=True)
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
@@ -285,12 +297,12 @@ def test_the_coarse_mesh_of_many_pieces_is_coarse_and_lies_where_they_lie():
 
 
 def test_what_pictures_of_several_textures_share_is_said_once(tmp_path):
-    scene = coded(replace(tiny_scene(3, 24, 9, 64), mesh=bumpy_square(40)), np.arange(9).reshape(3, 3))
+    scene = coded(replace(tiny_scene(3, 24, 9, 64), proxy=Proxy(bumpy_square(40))), np.arange(9).reshape(3, 3))
     path = tmp_path / "shared.glb"
     save(scene, path)
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
     (basis,) = extension["planes"][0]["bases"]
     assert "sharedPicture" in extension["needs"] and validate(path) == []
     assert len(basis["textures"]) > 1 and all("mimeType" not in entry for entry in basis["textures"])
-    back = ef.load(path).planes[0].bases[0]
-    np.testing.assert_array_equal(back.values(), scene.planes[0].bases[0].values())
+    back = ef.load(path).appearance.planes[0].bases[0]
+    np.testing.assert_array_equal(back.values(), scene.appearance.planes[0].bases[0].values())

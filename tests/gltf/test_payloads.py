@@ -13,6 +13,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.payloads import Payloads, cameras_key, mean_key, mesh_key, size_of, textures_key, weights_key
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf import encode_scene, read_scene, save, store_scores
 from eigenfield.gltf.kept import kept_payloads
@@ -24,7 +25,9 @@ from support.scenes import bumpy_square, tiny_scene
 @pytest.fixture(scope="module")
 def data():
     """A file of which everything is coded: mesh, cameras, mean, eigen textures and weights."""
-    return encode_scene(coded(replace(tiny_scene(3, 4, 9, 64), mesh=bumpy_square(40)), np.arange(9).reshape(3, 3)))
+    return encode_scene(
+        coded(replace(tiny_scene(3, 4, 9, 64), proxy=Proxy(bumpy_square(40))), np.arange(9).reshape(3, 3))
+    )
 
 
 @pytest.fixture
@@ -35,13 +38,18 @@ def scene(data):
 def of_the_same_arrays(scene):
     """Every object of it is another, and every array is a copy."""
     planes = []
-    for plane in scene.planes:
+    for plane in scene.appearance.planes:
         bases = tuple(
             replace(basis, textures=basis.textures.copy(), weights=basis.weights.copy()) for basis in plane.bases
         )
         planes.append(replace(plane, mean=plane.mean.copy(), bases=bases))
-    cameras = tuple(replace(camera, K=camera.K.copy()) for camera in scene.cameras)
-    return replace(scene, mesh=replace(scene.mesh, uv=scene.mesh.uv.copy()), cameras=cameras, planes=tuple(planes))
+    cameras = tuple(replace(camera, K=camera.K.copy()) for camera in scene.rig.cameras)
+    return replace(
+        scene,
+        proxy=Proxy(replace(scene.proxy.mesh, uv=scene.proxy.mesh.uv.copy())),
+        rig=replace(scene.rig, cameras=cameras),
+        appearance=replace(scene.appearance, planes=tuple(planes)),
+    )
 
 
 @pytest.mark.parametrize(
@@ -52,7 +60,7 @@ def of_the_same_arrays(scene):
         copy.deepcopy,
         lambda scene: pickle.loads(pickle.dumps(scene)),
         lambda scene: replace(scene, scores=dict(scene.scores)),
-        lambda scene: replace(scene, mesh=replace(scene.mesh)),
+        lambda scene: replace(scene, proxy=Proxy(replace(scene.proxy.mesh))),
         of_the_same_arrays,
     ],
     ids=["itself", "copy", "deepcopy", "pickle", "replace", "replace-mesh", "same-arrays"],
@@ -74,11 +82,11 @@ def test_another_process_keeps_the_bytes(scene, data):
 
 def keys(scene):
     """The keys of the parts of a scene of one plane and basis, by their names."""
-    (plane,) = scene.planes
+    (plane,) = scene.appearance.planes
     (basis,) = plane.bases
     return {
-        "mesh": mesh_key(scene.mesh),
-        "cameras": cameras_key(scene.cameras),
+        "mesh": mesh_key(scene.proxy.mesh),
+        "cameras": cameras_key(scene.rig.cameras),
         "planes[0].mean": mean_key(plane.mean),
         "planes[0].bases[0].textures": textures_key(basis.textures, basis.scale, basis.zero),
         "planes[0].bases[0].weights": weights_key(basis.weights),
@@ -86,19 +94,19 @@ def keys(scene):
 
 
 def basis_of(scene):
-    return scene.planes[0].bases[0]
+    return scene.appearance.planes[0].bases[0]
 
 
 def edit_mesh(scene):
-    scene.mesh.vertices[0, 0] += 0.25
+    scene.proxy.mesh.vertices[0, 0] += 0.25
 
 
 def edit_cameras(scene):
-    scene.cameras[2].t[1] += 0.25
+    scene.rig.cameras[2].t[1] += 0.25
 
 
 def edit_mean(scene):
-    scene.planes[0].mean[3, 4] += 0.25
+    scene.appearance.planes[0].mean[3, 4] += 0.25
 
 
 def edit_textures(scene):
@@ -112,7 +120,7 @@ def edit_weights(scene):
 @pytest.mark.parametrize(
     ("part", "edit", "plain"),
     [
-        ("mesh", edit_mesh, lambda scene: 4 * 5 * len(scene.mesh.vertices) + 2 * 3 * len(scene.mesh.faces)),
+        ("mesh", edit_mesh, lambda scene: 4 * 5 * len(scene.proxy.mesh.vertices) + 2 * 3 * len(scene.proxy.mesh.faces)),
         ("cameras", edit_cameras, lambda scene: 4 * 17 * 9),
         ("planes[0].mean", edit_mean, None),
         ("planes[0].bases[0].textures", edit_textures, None),
@@ -146,22 +154,24 @@ def test_plain_numbers_are_those_that_were_edited(scene, tmp_path):
     edit_weights(scene)
     save(scene, tmp_path / "scene.glb")
     back = ef.load(tmp_path / "scene.glb")
-    np.testing.assert_array_equal(back.mesh.vertices, scene.mesh.vertices)
+    np.testing.assert_array_equal(back.proxy.mesh.vertices, scene.proxy.mesh.vertices)
     np.testing.assert_array_equal(basis_of(back).weights, basis_of(scene).weights)
 
 
 def test_an_edit_that_is_undone_costs_nothing(scene, data):
-    whole = scene.mesh.vertices.copy()
+    whole = scene.proxy.mesh.vertices.copy()
     edit_mesh(scene)
     assert encode_scene(scene) != data
-    scene.mesh.vertices[:] = whole
+    scene.proxy.mesh.vertices[:] = whole
     assert encode_scene(scene) == data
 
 
 def test_one_plane_of_two_is_replaced(tmp_path, caplog):
     scene = read_scene(encode_scene(precise_scene()))
-    first, second = scene.planes
-    changed = replace(scene, planes=(first, replace(second, mean=second.mean * np.float32(0.5))))
+    first, second = scene.appearance.planes
+    changed = replace(
+        scene, appearance=replace(scene.appearance, planes=(first, replace(second, mean=second.mean * np.float32(0.5))))
+    )
     with caplog.at_level(logging.INFO, "eigenfield.format"):
         save(changed, tmp_path / "scene.glb")
     assert caplog.text.count("planes[") == 1 and "coded anew: planes[1].mean (" in caplog.text
@@ -169,17 +179,21 @@ def test_one_plane_of_two_is_replaced(tmp_path, caplog):
     assert kept.lost == {"planes[1].mean": size_of(scene.payloads[mean_key(second.mean)])}
     assert kept.one("planes[0].mean") is scene.payloads[mean_key(first.mean)][0]
     assert len(kept.pictures("planes[1].bases[0].textures")) == 2
-    other = replace(scene, planes=(second, first))  # in another order all are found
+    other = replace(
+        scene, appearance=replace(scene.appearance, planes=(second, first))
+    )  # in another order all are found
     assert not kept_payloads(other).lost
 
 
 def test_fewer_textures_are_coded_anew_and_the_rest_is_kept(scene):
-    (plane,) = scene.planes
-    fewer = replace(scene, planes=(replace(plane, bases=(basis_of(scene).truncated(2),)),))
+    (plane,) = scene.appearance.planes
+    fewer = replace(
+        scene, appearance=replace(scene.appearance, planes=(replace(plane, bases=(basis_of(scene).truncated(2),)),))
+    )
     kept = kept_payloads(fewer)
     assert kept.lost.keys() == {"planes[0].bases[0].textures", "planes[0].bases[0].weights"}
     assert kept.payloads.keys() == {"mesh", "cameras", "planes[0].mean", "preview"}
-    assert read_scene(encode_scene(fewer)).textures == 2
+    assert read_scene(encode_scene(fewer)).appearance.textures == 2
 
 
 def test_a_codec_that_is_asked_for_is_no_edit(scene, tmp_path, caplog):
@@ -187,7 +201,10 @@ def test_a_codec_that_is_asked_for_is_no_edit(scene, tmp_path, caplog):
         save(scene, tmp_path / "scene.glb", codec="png")
     assert "coded anew" not in caplog.text
     back = ef.load(tmp_path / "scene.glb")
-    assert mesh_key(back.mesh) in scene.payloads and back.payloads[mean_key(back.planes[0].mean)][0].codec == "png"
+    assert (
+        mesh_key(back.proxy.mesh) in scene.payloads
+        and back.payloads[mean_key(back.appearance.planes[0].mean)][0].codec == "png"
+    )
 
 
 def test_a_scene_that_was_never_coded_says_nothing(tmp_path, caplog):
@@ -195,7 +212,7 @@ def test_a_scene_that_was_never_coded_says_nothing(tmp_path, caplog):
     assert type(scene) is Scene
     with caplog.at_level(logging.INFO, "eigenfield.format"):
         save(scene, tmp_path / "scene.glb")
-        save(replace(ef.load(tmp_path / "scene.glb"), mesh=bumpy_square(5)), tmp_path / "other.glb")
+        save(replace(ef.load(tmp_path / "scene.glb"), proxy=Proxy(bumpy_square(5))), tmp_path / "other.glb")
     assert "coded anew" not in caplog.text  # the file held the mesh as plain numbers
 
 

@@ -111,7 +111,10 @@ def scene_of_planes():
     local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, svt(8))
     chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, svt(8))
     matrix = np.array([[1, 0.5, 0.25], [1, -0.5, 0.5], [1, 0.125, -1]], np.float32)
-    return encoded(replace(scene, planes=(luma.value, chroma.value), to_rgb=matrix), luma.payloads | chroma.payloads)
+    return encoded(
+        replace(scene, appearance=replace(scene.appearance, planes=(luma.value, chroma.value), to_rgb=matrix)),
+        luma.payloads | chroma.payloads,
+    )
 
 
 def test_a_file_of_planes_regions_and_stacks(tmp_path):
@@ -119,8 +122,8 @@ def test_a_file_of_planes_regions_and_stacks(tmp_path):
     save(scene, path)
     assert validate(path) == []
     back = ef.load(path)
-    np.testing.assert_array_equal(back.to_rgb, scene.to_rgb)
-    for one, two in zip(scene.planes, back.planes, strict=True):
+    np.testing.assert_array_equal(back.appearance.to_rgb, scene.appearance.to_rgb)
+    for one, two in zip(scene.appearance.planes, back.appearance.planes, strict=True):
         np.testing.assert_allclose(one.mean, two.mean, atol=1e-6)
         for a, b in zip(one.bases, two.bases, strict=True):
             assert (a.grid, a.corner) == (b.grid, b.corner)
@@ -179,4 +182,4 @@ def test_a_plane_without_payloads_is_coded_when_it_is_saved(tmp_path):
     scene = scene_of_planes()
     save(replace(scene, payloads=Payloads()), tmp_path / "a.glb")
     back = ef.load(tmp_path / "a.glb")
-    assert np.abs(back.planes[0].mean - scene.planes[0].mean).mean() < 0.01
+    assert np.abs(back.appearance.planes[0].mean - scene.appearance.planes[0].mean).mean() < 0.01

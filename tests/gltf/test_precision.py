@@ -61,7 +61,7 @@ def saved(tmp_path_factory):
 def test_a_file_gives_the_means_back(saved, tmp_path):
     scene, path = saved
     back = ef.load(path)
-    for plane, other in zip(scene.planes, back.planes, strict=True):
+    for plane, other in zip(scene.appearance.planes, back.appearance.planes, strict=True):
         assert np.array_equal(plane.mean, other.mean)
     save(back, tmp_path / "again.glb")
     assert (tmp_path / "again.glb").read_bytes() == path.read_bytes()
@@ -76,7 +76,7 @@ def test_both_planes_name_the_same_bytes(saved):
     entries = [plane["mean"]["precision"] for plane in extension["planes"]]
     assert len(entries) > 1 and all(entry == entries[0] for entry in entries)
     assert entries[0]["size"] == [5, 3]
-    means = [scene.payloads[mean_key(plane.mean)][0] for plane in scene.planes]
+    means = [scene.payloads[mean_key(plane.mean)][0] for plane in scene.appearance.planes]
     preview = gltf["bufferViews"][gltf["images"][0]["bufferView"]]["byteLength"]
     assert parts(path)["mean"] == preview + sum(len(mean.data) for mean in means) + len(means[0].precision.data)
 
@@ -89,7 +89,7 @@ def test_another_codec_has_no_precision(saved, tmp_path):
         "precision" not in plane.get("mean", {}) for plane in gltf["extensions"]["EIGENFIELD_eigen_textures"]["planes"]
     )
     back = ef.load(tmp_path / "plain.glb")
-    assert np.abs(back.planes[0].mean - scene.planes[0].mean).max() < 0.01
+    assert np.abs(back.appearance.planes[0].mean - scene.appearance.planes[0].mean).max() < 0.01
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,9 @@ def test_a_mean_of_eight_bits_has_none(saved, tmp_path):
 
 def test_a_damaged_picture_is_named(saved, tmp_path):
     data = bytearray(saved[1].read_bytes())
-    at = data.index(b"IDAT", data.index(saved[0].payloads[mean_key(saved[0].planes[0].mean)][0].precision.data[:16]))
+    at = data.index(
+        b"IDAT", data.index(saved[0].payloads[mean_key(saved[0].appearance.planes[0].mean)][0].precision.data[:16])
+    )
     data[at + 6] ^= 0xFF
     (tmp_path / "bad.glb").write_bytes(data)
     with pytest.raises(FormatError) as caught:
@@ -138,7 +140,7 @@ def test_a_damaged_picture_is_named(saved, tmp_path):
 
 def test_a_changed_mean_has_no_precision(saved, tmp_path):
     scene, _ = saved
-    planes = tuple(replace(plane, mean=plane.mean + np.float32(1e-3)) for plane in scene.planes)
-    save(replace(scene, planes=planes), tmp_path / "changed.glb")
+    planes = tuple(replace(plane, mean=plane.mean + np.float32(1e-3)) for plane in scene.appearance.planes)
+    save(replace(scene, appearance=replace(scene.appearance, planes=planes)), tmp_path / "changed.glb")
     gltf, _ = split((tmp_path / "changed.glb").read_bytes())
     assert "precision" not in gltf["extensions"]["EIGENFIELD_eigen_textures"]["needs"]

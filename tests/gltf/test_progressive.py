@@ -30,7 +30,7 @@ def quality(scene, capture):
     """dB over covered pixels, the mean of all cameras."""
     values = []
     for index in range(len(capture)):
-        drawn = Renderer(scene).draw(scene.cameras[index], camera_weights(scene, index))
+        drawn = Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index))
         values.append(psnr(to_codes(drawn.image), to_codes(capture.photograph(index).pixels), drawn.covered))
     return float(np.mean(values))
 
@@ -50,7 +50,7 @@ def test_every_picture_that_arrives_makes_it_better(data, capture, tmp_path, cap
         path.write_bytes(data[:length])
         with caplog.at_level(logging.WARNING):
             scene = ef.load(path)
-        assert f"views are drawn of {sum(b.count for p in scene.planes for b in p.bases)} of" in caplog.text
+        assert f"views are drawn of {sum(b.count for p in scene.appearance.planes for b in p.bases)} of" in caplog.text
         reached.append(quality(scene, capture))
         caplog.clear()
     reached.append(quality(read_scene(data), capture))

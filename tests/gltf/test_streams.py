@@ -11,6 +11,7 @@ from jsonschema import Draft202012Validator
 from eigenfield.coding.codecs import CODECS, Codec
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Payload, weights_key
+from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, parts, read_scene, streams, validate
 from eigenfield.gltf.streams import PLACES
 from eigenfield.gltf.strict_json import Value
@@ -23,10 +24,10 @@ from support.scenes import bumpy_square, tiny_scene
 @pytest.fixture(scope="module")
 def data():
     """A file with a stream at every place but the residual's, names with measured positions among them."""
-    plain = replace(tiny_scene(3, 4, 9, 64), mesh=bumpy_square(40))
+    plain = replace(tiny_scene(3, 4, 9, 64), proxy=Proxy(bumpy_square(40)))
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)
     names = tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places)
-    return encode_scene(coded(replace(plain, names=names), np.arange(9).reshape(3, 3)))
+    return encode_scene(coded(replace(plain, rig=replace(plain.rig, names=names)), np.arange(9).reshape(3, 3)))
 
 
 def entries(extension, path):
@@ -104,7 +105,7 @@ def raw_weights(data, where):
 def test_a_new_codec_is_an_entry_in_the_table(data, tmp_path, monkeypatch):
     """It is named in the file, with a need of its own, counted, read and written again; readers before refuse it."""
     scene, path = read_scene(data), tmp_path / "scene.glb"
-    weights = scene.planes[0].bases[0].weights
+    weights = scene.appearance.planes[0].bases[0].weights
     stream = weights.shape[1].to_bytes(4, "little") + weights.astype("<f4").tobytes()
     changed = replace(scene, payloads=scene.payloads | {weights_key(weights): [Payload("weights-raw", stream)]})
     with monkeypatch.context() as patch:
@@ -119,7 +120,7 @@ def test_a_new_codec_is_an_entry_in_the_table(data, tmp_path, monkeypatch):
         assert "weights-raw" in extension["needs"]
         assert validate(path) == [] and parts(path)["weights"] == len(stream)
         back = read_scene(path.read_bytes())
-        np.testing.assert_array_equal(back.planes[0].bases[0].weights, weights)
+        np.testing.assert_array_equal(back.appearance.planes[0].bases[0].weights, weights)
         assert encode_scene(back) == path.read_bytes()
     with pytest.raises(FormatError, match="weights-raw") as caught:
         read_scene(path.read_bytes())

@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.appearance import Basis, Plane
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.scene import Scene
 from eigenfield.rendering import Renderer, draw_texture
 from eigenfield.rendering.software.resample import make_taps, tiles_read
 from eigenfield.rendering.software.tiles import tile_shape
@@ -33,13 +35,15 @@ def split_scene(matrix: bool = True) -> Scene:
     local = replace(coded(float_basis(rows, 3, 21, 18, 1, seed=3), 127.3), grid=(40, 44), corner=(7, 19))
     luma = Plane(0.5 + 0.2 * smooth_pictures(1, 90, 70, 1)[0], (coded(float_basis(rows, 6, 33, 35, 1, seed=1)), local))
     chroma = Plane(0.1 * smooth_pictures(1, 20, 26, 2, seed=5)[0], (float_basis(rows, 2, 17, 17, 2, seed=2),))
-    return replace(scene, planes=(luma, chroma), to_rgb=TO_RGB if matrix else None)
+    return replace(
+        scene, appearance=replace(scene.appearance, planes=(luma, chroma), to_rgb=TO_RGB if matrix else None)
+    )
 
 
 @pytest.mark.parametrize("matrix", [True, False])
 def test_planes_of_several_densities_are_composed_as_the_reference_does(matrix):
     scene = split_scene(matrix)
-    assert scene.atlas == (90, 70) and scene.channels == 3
+    assert scene.appearance.atlas == (90, 70) and scene.appearance.channels == 3
     renderer = Renderer(scene)
     for row in range(3):
         mix = np.eye(5)[row] * 0.7 + 0.06
@@ -49,9 +53,9 @@ def test_planes_of_several_densities_are_composed_as_the_reference_does(matrix):
 def test_a_drawn_view_is_the_composed_texture_on_the_mesh():
     scene = split_scene()
     mix = np.full(5, 0.2)
-    camera = scene.cameras[0]
+    camera = scene.rig.cameras[0]
     drawn = Renderer(scene).draw(camera, mix, samples=1)
-    expected = draw_texture(scene.mesh, composite(scene, mix).astype(np.float32), camera, samples=1)
+    expected = draw_texture(scene.proxy.mesh, composite(scene, mix).astype(np.float32), camera, samples=1)
     np.testing.assert_allclose(drawn.image, expected.image, atol=2e-5)
     np.testing.assert_array_equal(drawn.coverage, expected.coverage)
 
@@ -59,30 +63,36 @@ def test_a_drawn_view_is_the_composed_texture_on_the_mesh():
 def test_buffers_used_again_hold_nothing_of_the_last_picture():
     scene = split_scene()
     renderer = Renderer(scene)
-    first = renderer.draw(scene.cameras[0], np.eye(5)[0]).image
-    renderer.draw(scene.cameras[4], np.eye(5)[4])
-    np.testing.assert_array_equal(renderer.draw(scene.cameras[0], np.eye(5)[0]).image, first)
+    first = renderer.draw(scene.rig.cameras[0], np.eye(5)[0]).image
+    renderer.draw(scene.rig.cameras[4], np.eye(5)[4])
+    np.testing.assert_array_equal(renderer.draw(scene.rig.cameras[0], np.eye(5)[0]).image, first)
 
 
 def test_a_count_limits_every_basis():
     scene = split_scene()
-    cut = tuple(replace(p, bases=tuple(basis.truncated(1) for basis in p.bases)) for p in scene.planes)
+    cut = tuple(replace(p, bases=tuple(basis.truncated(1) for basis in p.bases)) for p in scene.appearance.planes)
     mix = np.eye(5)[2]
-    np.testing.assert_allclose(Renderer(scene).texture(mix, 1), composite(replace(scene, planes=cut), mix), atol=2e-5)
-    none = replace(scene, planes=tuple(replace(p, bases=()) for p in scene.planes))
+    np.testing.assert_allclose(
+        Renderer(scene).texture(mix, 1),
+        composite(replace(scene, appearance=replace(scene.appearance, planes=cut)), mix),
+        atol=2e-5,
+    )
+    none = replace(
+        scene, appearance=replace(scene.appearance, planes=tuple(replace(p, bases=()) for p in scene.appearance.planes))
+    )
     np.testing.assert_allclose(Renderer(scene).texture(mix, 0), Renderer(none).texture(mix), atol=1e-6)
 
 
 def test_a_coarse_mean_alone_is_drawn_as_it_is():
     mean = smooth_pictures(1, 24, 30, 3)[0]
-    scene = replace(tiny_scene(3, 0), planes=(Plane(mean, ()),))
+    scene = replace(tiny_scene(3, 0), appearance=replace(tiny_scene(3, 0).appearance, planes=(Plane(mean, ()),)))
     np.testing.assert_allclose(Renderer(scene).texture(np.zeros(5)), mean, atol=1e-6)
 
 
 def test_an_attribute_of_other_channels_needs_no_matrix():
     planes = (Plane(smooth_pictures(1, 32, 32, 4)[0], ()), Plane(smooth_pictures(1, 16, 20, 1)[0], ()))
-    scene = replace(tiny_scene(3, 0), planes=planes)
-    assert scene.channels == 5
+    scene = replace(tiny_scene(3, 0), appearance=replace(tiny_scene(3, 0).appearance, planes=planes))
+    assert scene.appearance.channels == 5
     np.testing.assert_allclose(Renderer(scene).texture(np.zeros(5)), composite(scene, np.zeros(5)), atol=1e-5)
 
 
@@ -116,16 +126,22 @@ def test_every_coarse_texel_that_a_needed_tile_reads_is_in_a_tile_that_is_summed
 
 def test_bases_of_sixteen_bits():
     scene = tiny_scene()
-    (plane,) = scene.planes
+    (plane,) = scene.appearance.planes
     basis = plane.bases[0]
     values = basis.values()
     scale = np.float32(np.abs(values).max() / 30000)
     codes = (np.rint(values / scale) + 32768).astype(np.uint16)
     fine = Basis(codes, np.full_like(basis.scale, scale), np.full_like(basis.zero, 32768), basis.weights)
     mix = np.eye(5)[1]
-    expected = composite(replace(scene, planes=(Plane(plane.mean, (fine,)),)), mix)
+    expected = composite(
+        replace(scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (fine,)),))), mix
+    )
     np.testing.assert_allclose(
-        Renderer(replace(scene, planes=(Plane(plane.mean, (fine,)),))).texture(mix), expected, atol=1e-4
+        Renderer(replace(scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (fine,)),)))).texture(
+            mix
+        ),
+        expected,
+        atol=1e-4,
     )
 
 
@@ -133,7 +149,7 @@ def test_texels_that_the_mesh_does_not_use_are_left_out():
     mesh = bumpy_square()
     assert mesh.uv is not None
     mesh = replace(mesh, uv=(mesh.uv * np.float32(0.3)))
-    scene = replace(split_scene(), mesh=mesh)
+    scene = replace(split_scene(), proxy=Proxy(mesh))
     found, expected = Renderer(scene).texture(np.full(5, 0.2)), composite(scene, np.full(5, 0.2))
     used = found.any(axis=2)
     assert 0.05 < used.mean() < 0.8

@@ -12,8 +12,9 @@ import pytest
 
 import eigenfield as ef
 import reference
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.errors import EigenfieldError, FormatError, OptionError
-from eigenfield.core.scene import Basis, Plane
+from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, save
 from eigenfield.rendering import OpenGLRenderer, camera_colour, view_weights, viewpoint, weight_map
 from support.scenes import tiny_scene
@@ -66,11 +67,13 @@ def test_scenes_of_any_number_of_textures(context, textures, tmp_path):
     """Codes of several bases, the last texels not full."""
     save(scene(textures=textures), tmp_path / "scene.glb", codec="png")
     coded = ef.load(tmp_path / "scene.glb")
-    plane = coded.planes[0]
+    plane = coded.appearance.planes[0]
     (basis,) = plane.bases
     cut = textures // 2
     rest = Basis(basis.textures[cut:], basis.scale[cut:], basis.zero[cut:], basis.weights[:, cut:])
-    split = replace(coded, planes=(Plane(plane.mean, (basis.truncated(cut), rest)),))
+    split = replace(
+        coded, appearance=replace(coded.appearance, planes=(Plane(plane.mean, (basis.truncated(cut), rest)),))
+    )
     expected = ef.render(coded, at=(0.4, 0.3), samples=1)
     camera, weights = viewpoint(coded, at=(0.4, 0.3))
     for drawn in (coded, split):
@@ -80,12 +83,14 @@ def test_scenes_of_any_number_of_textures(context, textures, tmp_path):
 def test_each_texture_has_its_own_weight(context, loaded):
     """Of each component of a texel and of each group: one texture alone is what the software renderer draws of it."""
     camera, weights = viewpoint(loaded, at=(0.4, 0.3))
-    plane = loaded.planes[0]
+    plane = loaded.appearance.planes[0]
     (basis,) = plane.bases
     for j in range(basis.count):
         alone = np.zeros_like(basis.weights)
         alone[:, j] = basis.weights[:, j]
-        one = replace(loaded, planes=(Plane(plane.mean, (replace(basis, weights=alone),)),))
+        one = replace(
+            loaded, appearance=replace(loaded.appearance, planes=(Plane(plane.mean, (replace(basis, weights=alone),)),))
+        )
         drawn = OpenGLRenderer(one, context=context).draw(camera, weights)
         agree(drawn, ef.render(one, at=(0.4, 0.3), samples=1))
 
@@ -119,7 +124,7 @@ def test_off_the_plane_every_point_has_its_own_weights(context, loaded, eye):
     away = np.abs(levels(drawn) - expected)[inner]
     assert inner.sum() > 10_000 and away.max() <= LARGEST and away.mean() <= MEAN
     flat = OpenGLRenderer(loaded, filter="bilinear", context=context).draw(
-        camera, view_weights(loaded, tuple(loaded.view_plane.coordinates([camera.centre])[0]))
+        camera, view_weights(loaded, tuple(loaded.rig.view_plane.coordinates([camera.centre])[0]))
     )
     assert np.abs(levels(flat) - expected)[inner].mean() > 5 * MEAN  # one set of weights for all is not the same
 
@@ -127,10 +132,14 @@ def test_off_the_plane_every_point_has_its_own_weights(context, loaded, eye):
 def test_far_from_the_worlds_origin(context, loaded):
     """Float32 keeps a third of a unit at 3e6: what is drawn must not depend on where the origin lies."""
     move = np.array([40_000.0, -25_000.0, 8_000.0])
-    vertices = (loaded.mesh.vertices + move).astype(np.float32)
-    cameras = tuple(replace(camera, t=camera.t - camera.R @ move) for camera in loaded.cameras)
-    plane = replace(loaded.view_plane, origin=loaded.view_plane.origin + move)
-    moved = replace(loaded, mesh=replace(loaded.mesh, vertices=vertices), cameras=cameras, view_plane=plane)
+    vertices = (loaded.proxy.mesh.vertices + move).astype(np.float32)
+    cameras = tuple(replace(camera, t=camera.t - camera.R @ move) for camera in loaded.rig.cameras)
+    plane = replace(loaded.rig.view_plane, origin=loaded.rig.view_plane.origin + move)
+    moved = replace(
+        loaded,
+        proxy=Proxy(replace(loaded.proxy.mesh, vertices=vertices)),
+        rig=replace(loaded.rig, cameras=cameras, view_plane=plane),
+    )
     camera, weights = viewpoint(moved, at=(0.3, 0.1))
     agree(OpenGLRenderer(moved, context=context).draw(camera, weights), ef.render(moved, at=(0.3, 0.1), samples=1))
 
@@ -142,7 +151,7 @@ def test_background_edges_and_exposure(context, loaded):
     partly = (drawn.coverage > 0) & (drawn.coverage < 1)
     assert 50 < partly.sum() < 5000
     colours = np.tile(np.array([[[1.1, 0.9, 1.2], [0.02, -0.03, 0.05]]], np.float32), (25, 1, 1))
-    harmonised = replace(loaded, colours=colours)
+    harmonised = replace(loaded, appearance=replace(loaded.appearance, colours=colours))
     camera, weights = viewpoint(harmonised, camera="view_1_1")
     drawn = OpenGLRenderer(harmonised, context=context).draw(camera, weights, colour=camera_colour(harmonised, 6))
     expected = ef.render(harmonised, camera="view_1_1", samples=1)
@@ -175,7 +184,7 @@ def test_the_weight_map_holds_the_weights(columns, rows, held_out, mode):
     made = scene(columns, rows, held_out=held_out)
     nodes = 33
     found, steps = weight_map(made, mode, nodes), np.linspace(-1, 1, nodes)
-    omega = made.planes[0].bases[0].weights.astype(float)
+    omega = made.appearance.planes[0].bases[0].weights.astype(float)
     expected = [[view_weights(made, (x, y), mode) @ omega for x in steps] for y in steps]
     assert found.shape == (nodes, nodes, 6)
     np.testing.assert_allclose(found, expected, atol=1e-5)
@@ -183,12 +192,14 @@ def test_the_weight_map_holds_the_weights(columns, rows, held_out, mode):
 
 def test_scenes_that_it_cannot_draw_are_refused(context):
     two = tiny_scene()
-    plane = two.planes[0]
+    plane = two.appearance.planes[0]
     with pytest.raises(FormatError, match="one plane") as caught:
-        OpenGLRenderer(replace(two, planes=(plane, plane)), context=context)
+        OpenGLRenderer(replace(two, appearance=replace(two.appearance, planes=(plane, plane))), context=context)
     assert caught.value.code == "unsupported-layout"
     with pytest.raises(FormatError):
-        OpenGLRenderer(replace(two, planes=(Plane(plane.mean[..., :2], ()),)), context=context)
+        OpenGLRenderer(
+            replace(two, appearance=replace(two.appearance, planes=(Plane(plane.mean[..., :2], ()),))), context=context
+        )
 
 
 def test_unknown_filters_are_refused(context, loaded):

@@ -110,7 +110,7 @@ def test_the_verb_draws_what_the_library_draws(glb, tmp_path):
     picture = np.asarray(Image.open(tmp_path / "a.png"))
     np.testing.assert_array_equal(picture, ef.render(scene, at=(0.3, -0.2), resolution=(64, 50)).to_uint8())
     invoke(glb, "-o", tmp_path / "b.png", "-q")
-    reference = ef.render(scene, camera=scene.names[scene.reference])
+    reference = ef.render(scene, camera=scene.rig.names[scene.rig.reference])
     np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "b.png")), reference.to_uint8())
 
 

@@ -12,10 +12,10 @@ import pytest
 
 import eigenfield as ef
 import reference
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Basis, Plane
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import Renderer, draw_texture, path_points, view_weights
 from eigenfield.rendering.software.drawing import (
@@ -84,16 +84,20 @@ def test_texel_for_pixel_the_texture_comes_back(filter):
 @pytest.mark.parametrize("channels", [1, 3, 6])
 def test_composition_is_equation_8(stored, channels):
     scene = tiny_scene(channels=channels, textures=7)
-    basis = scene.planes[0].bases[0]
+    basis = scene.appearance.planes[0].bases[0]
     if stored == "codes":
         codes = np.random.default_rng(2).integers(0, 256, basis.textures.shape, dtype=np.uint8)
         ones = np.ones_like(basis.scale)
         basis = Basis(codes, 0.002 * ones, 128 * ones, basis.weights)
-        scene = replace(scene, planes=(Plane(scene.planes[0].mean, (basis,)),))
+        scene = replace(
+            scene, appearance=replace(scene.appearance, planes=(Plane(scene.appearance.planes[0].mean, (basis,)),))
+        )
     weights = view_weights(scene, (0.2, -0.4))
     for count in (None, 0, 3):
         part = basis.truncated(basis.count if count is None else count)
-        expected = reference.texture(scene.planes[0].mean.astype(float), part.values(), weights @ part.weights)
+        expected = reference.texture(
+            scene.appearance.planes[0].mean.astype(float), part.values(), weights @ part.weights
+        )
         made = Renderer(scene).texture(weights, count)
         assert np.abs(made - expected).max() <= 1e-4 * np.abs(expected).max()
 
@@ -118,8 +122,8 @@ def test_samples_average_within_a_pixel():
 def test_eight_bit_pictures_are_the_rounded_ones():
     scene = tiny_scene()
     renderer, weights = Renderer(scene), view_weights(scene, (0.1, 0.2))
-    picture = renderer.draw(scene.cameras[0], weights)
-    direct = renderer.draw_uint8(scene.cameras[0], weights)
+    picture = renderer.draw(scene.rig.cameras[0], weights)
+    direct = renderer.draw_uint8(scene.rig.cameras[0], weights)
     assert np.abs(picture.to_uint8().astype(int) - direct).max() <= 1
     assert (picture.to_uint8() != direct).mean() < 0.01
 
@@ -192,12 +196,14 @@ def test_atlases_of_any_size_are_sampled_right(filter, height, width):
 
 def test_bases_of_a_plane_are_summed_and_planes_are_joined():
     scene = tiny_scene(textures=6)
-    (plane,) = scene.planes
+    (plane,) = scene.appearance.planes
     (basis,) = plane.bases
-    whole = Renderer(scene).draw(scene.cameras[1], np.eye(5)[1]).image
+    whole = Renderer(scene).draw(scene.rig.cameras[1], np.eye(5)[1]).image
     rest = Basis(basis.textures[2:], basis.scale[2:], basis.zero[2:], basis.weights[:, 2:])
-    halves = replace(scene, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
-    np.testing.assert_allclose(Renderer(halves).draw(scene.cameras[1], np.eye(5)[1]).image, whole, atol=1e-6)
+    halves = replace(
+        scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
+    )
+    np.testing.assert_allclose(Renderer(halves).draw(scene.rig.cameras[1], np.eye(5)[1]).image, whole, atol=1e-6)
 
     def channels(part):
         textures = np.ascontiguousarray(basis.textures[..., part])
@@ -205,9 +211,9 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
             plane.mean[..., part], (Basis(textures, basis.scale[:, part], basis.zero[:, part], basis.weights),)
         )
 
-    apart = replace(scene, planes=(channels(slice(0, 1)), channels(slice(1, 3))))
-    drawn = Renderer(apart).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
-    expected = Renderer(scene).draw(scene.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
+    apart = replace(scene, appearance=replace(scene.appearance, planes=(channels(slice(0, 1)), channels(slice(1, 3)))))
+    drawn = Renderer(apart).draw(scene.rig.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
+    expected = Renderer(scene).draw(scene.rig.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
     np.testing.assert_allclose(drawn.image, expected.image, atol=1e-6)
 
 
@@ -215,7 +221,7 @@ def test_tiles_out_of_sight_are_not_needed():
     """A close-up composes only what it shows, and shows what the whole picture shows there."""
     scene = tiny_scene(textures=4, size=128)
     renderer, weights = Renderer(scene), np.eye(5)[2]
-    camera = scene.cameras[2]
+    camera = scene.rig.cameras[2]
     near = replace(
         camera, K=np.diag([6.0, 6, 1]) @ camera.K - np.array([[0, 0, 5.0 * 24], [0, 0, 5.0 * 20], [0, 0, 0]])
     )
@@ -223,7 +229,7 @@ def test_tiles_out_of_sight_are_not_needed():
     frame = Frame(renderer._surface, near.height, near.width, sampling)
     cover(renderer._surface, near, sampling, frame)
     assert 0 < frame.needed.sum() < 0.4 * frame.needed.size
-    whole = draw_texture(scene.mesh, renderer.texture(weights), near, samples=1)
+    whole = draw_texture(scene.proxy.mesh, renderer.texture(weights), near, samples=1)
     np.testing.assert_allclose(renderer.draw(near, weights, samples=1).image, whole.image, atol=1e-6)
 
 

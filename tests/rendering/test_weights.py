@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 import reference
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
+from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.rendering import camera_weights, delaunay_triangles, novel_camera, view_weights
 from support.scenes import tiny_scene
@@ -28,8 +29,13 @@ def scene_at(centres, held_out=()):
     places = plane.coordinates([camera.centre for camera in cameras])
     triangles = delaunay_triangles(places[~held])
     names = tuple(str(index) for index in range(len(cameras)))
-    scene = replace(tiny_scene(), names=names, cameras=cameras, held_out=held, view_plane=plane, triangles=triangles)
-    return replace(scene, reference=int(np.flatnonzero(~held)[0])), places
+    scene = replace(
+        tiny_scene(),
+        rig=replace(
+            tiny_scene().rig, names=names, cameras=cameras, held_out=held, view_plane=plane, triangles=triangles
+        ),
+    )
+    return replace(scene, rig=replace(scene.rig, reference=int(np.flatnonzero(~held)[0]))), places
 
 
 def jittered(rows, columns, seed=0, amount=0.15):
@@ -114,7 +120,7 @@ def test_held_out_cameras_take_the_weights_of_where_they_stand():
     scene, places = scene_at(jittered(3, 3, amount=0), held_out=[4])
     weights = camera_weights(scene, 4)
     assert weights.shape == (8,)
-    np.testing.assert_allclose(weights @ places[scene.encoded], places[4], atol=1e-9)
+    np.testing.assert_allclose(weights @ places[scene.rig.encoded], places[4], atol=1e-9)
 
 
 def test_impossible_requests_are_refused():
@@ -136,10 +142,8 @@ def test_a_novel_camera_of_a_rectified_array_keeps_the_plane_of_zero_parallax():
     )
     plane = fit_view_plane(cameras)
     places = plane.coordinates([camera.centre for camera in cameras])
-    scene = replace(
-        tiny_scene(), names=tuple("abcdefghi"), cameras=cameras, held_out=np.zeros(9, bool), view_plane=plane,
-        triangles=delaunay_triangles(places), reference=4,
-    )  # fmt: skip
+    rig = Rig(tuple("abcdefghi"), cameras, np.zeros(9, bool), 4, plane, delaunay_triangles(places))
+    scene = replace(tiny_scene(), rig=rig)
     point = np.array([[0.3, 0.4, 2.0]])
     still = cameras[0].project(point)[0]
     for at in ((0, 0), (0.3, -0.8), (-1, 1)):
@@ -154,7 +158,7 @@ def test_weights_on_an_edge_are_those_of_its_ends(mode):
     random = np.random.default_rng(3)
     scene, places = scene_at(jittered(5, 5))
     rows = [(5 * row + column, 5 * row + column + 1) for row, column in np.ndindex(5, 4)]
-    edges = rows if mode == "bilinear" else scene.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
+    edges = rows if mode == "bilinear" else scene.rig.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
     for first, second in edges:
         for part in random.uniform(0.05, 0.95, 40):
             weights = view_weights(scene, tuple((1 - part) * places[first] + part * places[second]), mode)

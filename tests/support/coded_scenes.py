@@ -15,10 +15,12 @@ from eigenfield.coding.arrays.weights import code_weights
 from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
-from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
 from eigenfield.gltf import save
+from eigenfield.proxy.relief.find_lattice import relief_proxy
 from support.captures import write_capture
 from support.composed import encoded, kept_as_png, layered_scene
 from support.scenes import bumpy_square
@@ -35,14 +37,19 @@ def coded_scene() -> EncodedScene:
 
 def coded(plain: Scene, grid: np.ndarray) -> EncodedScene:
     """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
-    views = coded_cameras(plain.cameras, plain.mesh, grid)
-    (plane,) = plain.planes
+    views = coded_cameras(plain.rig.cameras, plain.proxy.mesh, grid)
+    (plane,) = plain.appearance.planes
     (basis,) = plane.bases
     stream, weights = code_weights(basis.weights, 0.01, grid)
     textures = with_weights(code_basis(basis, STEP, svt(8)), weights, stream)
-    mesh = coded_mesh(plain.mesh, views.value, plain.reference)
+    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR), views.value, plain.rig.reference)
     made = coded_plane(plane.mean, (textures,), STEP, svt(8))
-    scene = replace(plain, mesh=mesh.value, cameras=views.value, planes=(made.value,))
+    scene = replace(
+        plain,
+        proxy=Proxy(mesh.value),
+        rig=replace(plain.rig, cameras=views.value),
+        appearance=replace(plain.appearance, planes=(made.value,)),
+    )
     return encoded(scene, mesh.payloads | views.payloads | made.payloads)
 
 
@@ -59,14 +66,19 @@ def precise_scene() -> EncodedScene:
     layered = kept_as_png(layered_scene())  # its textures
     precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
     precision[0, 0] = 1
-    means = [coded_plane(plane.mean, (), STEP, svt(8), precision) for plane in layered.planes]
-    planes = tuple(replace(plane, mean=mean.value.mean) for plane, mean in zip(layered.planes, means, strict=True))
-    return encoded(replace(layered, planes=planes), Payloads.joined(mean.payloads for mean in means))
+    means = [coded_plane(plane.mean, (), STEP, svt(8), precision) for plane in layered.appearance.planes]
+    planes = tuple(
+        replace(plane, mean=mean.value.mean) for plane, mean in zip(layered.appearance.planes, means, strict=True)
+    )
+    return encoded(
+        replace(layered, appearance=replace(layered.appearance, planes=planes)),
+        Payloads.joined(mean.payloads for mean in means),
+    )
 
 
 def shallow(made: EncodedScene) -> EncodedScene:
     """The scene with a mean of 8 bits that is said to have 10."""
-    (plane,) = made.planes
+    (plane,) = made.appearance.planes
     height, width, channels = plane.mean.shape
     data = encode(np.zeros((channels * height, width, 1), np.uint8), "avif", 70)
     affine = Affine(np.ones(channels), np.zeros(channels))

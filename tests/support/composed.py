@@ -12,10 +12,12 @@ from PIL import Image
 
 from eigenfield.coding.pictures.quantise import mean_codes, mean_values
 from eigenfield.coding.pictures.stacking import encode, stacked
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key, textures_key
-from eigenfield.core.scene import Basis, EncodedScene, Plane, Scene
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf import save
 from eigenfield.rendering import draw_texture, view_weights, viewpoint
 from support.scenes import smooth_pictures
@@ -28,8 +30,8 @@ def layered_scene() -> Scene:
     """Luma of the whole 128 x 128 atlas with textures of a region of it and of half its density, two channels of
     chroma at odd sizes; textures are codes. Geometry and weights as `viewer_scenes.scene`."""
     plain = scene()
-    weights = plain.planes[0].bases[0].weights
-    luma, chroma = plain.planes[0].mean[..., :1], 0.1 * smooth_pictures(1, 40, 48, 2, seed=4)[0]
+    weights = plain.appearance.planes[0].bases[0].weights
+    luma, chroma = plain.appearance.planes[0].mean[..., :1], 0.1 * smooth_pictures(1, 40, 48, 2, seed=4)[0]
     luma, chroma = (mean_values(*mean_codes(mean)) for mean in (luma, chroma))  # as a file keeps them
     planes = (
         Plane(
@@ -44,7 +46,7 @@ def layered_scene() -> Scene:
             (coded(weights, 5, (32, 64), 2), coded(weights, 2, (20, 11), 2, grid=(40, 48), corner=(20, 37))),
         ),
     )
-    return replace(plain, planes=planes, to_rgb=TO_RGB)
+    return replace(plain, appearance=replace(plain.appearance, planes=planes, to_rgb=TO_RGB))
 
 
 def coded(
@@ -66,8 +68,8 @@ def coded(
 def composed(scene: Scene, weights: np.ndarray, count: int | None = None) -> np.ndarray:
     """(H, W, 3): the texture that is drawn. weights: (Ne,), or (h, w, Ne) for each size in a dict."""
     channels = []
-    for plane in scene.planes:
-        total = np.zeros((*scene.atlas, plane.mean.shape[2]))
+    for plane in scene.appearance.planes:
+        total = np.zeros((*scene.appearance.atlas, plane.mean.shape[2]))
         for size in set(plane.sizes):
             part = np.zeros((*size, plane.mean.shape[2]))
             if plane.mean.shape[:2] == size:
@@ -80,10 +82,13 @@ def composed(scene: Scene, weights: np.ndarray, count: int | None = None) -> np.
                         own = np.broadcast_to(omega[..., j, None], (*size, 1))
                         place = slice(top, top + rows), slice(left, left + columns)
                         part[place] += own[place] * texture
-            total += part if size == scene.atlas else finer(part, *scene.atlas)
+            total += part if size == scene.appearance.atlas else finer(part, *scene.appearance.atlas)
         channels.append(total)
     together = np.concatenate(channels, axis=2)
-    return np.broadcast_to(together if scene.to_rgb is None else together @ scene.to_rgb.T, (*scene.atlas, 3))
+    return np.broadcast_to(
+        together if scene.appearance.to_rgb is None else together @ scene.appearance.to_rgb.T,
+        (*scene.appearance.atlas, 3),
+    )
 
 
 def finer(grid: np.ndarray, rows: int, columns: int) -> np.ndarray:
@@ -107,12 +112,12 @@ def flat(made: Scene, low: float, high: float) -> Scene:
     """The scene with a level square for a mesh, laid out from `low` to `high` of the atlas along both axes."""
     corners = np.array([[-1, -1, 0], [1, -1, 0], [-1, 1, 0], [1, 1, 0]], np.float32)
     uv = low + (high - low) * (corners[:, :2] + 1) / 2
-    return replace(made, mesh=Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]], np.int32), uv.astype(np.float32)))
+    return replace(made, proxy=Proxy(Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]], np.int32), uv.astype(np.float32))))
 
 
 def ray_weights(made: Scene, eye: np.ndarray, size: tuple[int, int], low: float, high: float) -> np.ndarray:
     """(h, w, Ne): the definition for each texel of a flat scene, continued beyond the square."""
-    plane, weights = made.view_plane, np.zeros((*size, len(made.encoded)))
+    plane, weights = made.rig.view_plane, np.zeros((*size, len(made.rig.encoded)))
     normal = np.cross(plane.right, plane.up)
     for row, column in np.ndindex(*size):
         u, v = (column + 0.5) / size[1], (row + 0.5) / size[0]
@@ -129,7 +134,7 @@ def write(folder: Path) -> None:
 
     def keep(name: str, made: Scene, texture: np.ndarray, camera: Camera, filter: str, **what: object) -> None:
         texels = np.ascontiguousarray(texture, dtype=np.float32)
-        picture = draw_texture(made.mesh, texels, camera, filter=filter, samples=1).to_uint8()
+        picture = draw_texture(made.proxy.mesh, texels, camera, filter=filter, samples=1).to_uint8()
         file = f"{name}-{len(pictures)}.png"
         Image.fromarray(picture).save(folder / file)
         size = {"width": camera.width, "height": camera.height}
@@ -144,7 +149,7 @@ def write(folder: Path) -> None:
         for count, at in ((None, PLACES[1]), (None, PLACES[2]), (0, PLACES[1]), (2, PLACES[1]), (4, PLACES[1])):
             camera, weights = viewpoint(layered, at=at)
             keep("layered", layered, composed(layered, weights, count), camera, filter, at=at, count=count)
-    sizes = {size for plane in level.planes for size in plane.sizes}
+    sizes = {size for plane in level.appearance.planes for size in plane.sizes}
     for eye in FREE:
         view = free_camera(np.array(eye))
         weights = {size: ray_weights(level, np.array(eye), size, 0.0, 1.0) for size in sizes}
@@ -156,7 +161,7 @@ def write(folder: Path) -> None:
 def kept_as_png(made: Scene) -> EncodedScene:
     """The scene of 8-bit codes with PNG pictures: of each basis the first texture alone, the rest in one picture."""
     payloads = Payloads()
-    for plane in made.planes:
+    for plane in made.appearance.planes:
         codes, affine = mean_codes(plane.mean)
         payloads |= {mean_key(plane.mean): [PicturePayload("png", encode(codes, "png", 0), 1, affine)]}
         for basis in plane.bases:

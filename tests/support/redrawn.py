@@ -16,14 +16,14 @@ HELD = (4,)
 
 def drawn(scene, index):
     """What the scene shows of one of its cameras, with 8 bits."""
-    return Renderer(scene).draw(scene.cameras[index], camera_weights(scene, index)).to_uint8()
+    return Renderer(scene).draw(scene.rig.cameras[index], camera_weights(scene, index)).to_uint8()
 
 
 def write_capture(scene, folder, change=None, masks=None, only=None):
     """Photographs as the scene draws them, `change`d, with their transforms.json; a LightField of them."""
     folder.mkdir(exist_ok=True)
     views, frames = [], []
-    for index, (name, camera) in enumerate(zip(scene.names, scene.cameras, strict=True)):
+    for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True)):
         if only is not None and index not in only:
             continue
         picture = drawn(scene, index)

@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError
 
+from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import fit_view_plane
 
 
@@ -84,14 +87,16 @@ def tiny_scene(
     mean = (0.5 + 0.45 * smooth_pictures(1, size, size, channels)[0]).astype(np.float32)
     basis = float_basis(int((~held).sum()), textures, size, size, channels)
     return Scene(
-        mesh=bumpy_square(),
-        planes=(Plane(mean, (basis,)),),
-        names=tuple(f"view_{index:02d}" for index in range(cameras)),
-        cameras=views,
-        held_out=held,
-        reference=int(np.argmin(np.square(coordinates).sum(axis=1))),
-        view_plane=plane,
-        triangles=encoded_triangles(coordinates[~held]),
+        proxy=Proxy(mesh=bumpy_square()),
+        rig=Rig(
+            names=tuple(f"view_{index:02d}" for index in range(cameras)),
+            cameras=views,
+            held_out=held,
+            reference=int(np.argmin(np.square(coordinates).sum(axis=1))),
+            view_plane=plane,
+            triangles=encoded_triangles(coordinates[~held]),
+        ),
+        appearance=Appearance(planes=(Plane(mean, (basis,)),)),
         settings={"textures": textures, "density": 1.5},
         scores={"uv": {"psnr": 30.5}},
         generator="eigenfield test",

@@ -40,9 +40,12 @@ from PIL import Image
 
 import eigenfield as ef
 import reference
+from eigenfield.core.appearance import Appearance, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Plane, Scene
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.rendering import novel_camera, renderer_of, view_weights, viewpoint
@@ -84,14 +87,16 @@ def scene(columns: int = 5, rows: int = 5, textures: int = 6, held_out: int = 0)
     spread = waves.std(axis=0)
     waves = (waves - waves.mean(axis=0)) / np.where(spread > 0, spread, 1)
     return Scene(
-        mesh=bumpy_square(24),
-        planes=(Plane(mean, (replace(basis, weights=waves.astype(np.float32)),)),),
-        names=tuple(f"view_{row}_{column}" for row in range(rows) for column in range(columns)),
-        cameras=views,
-        held_out=held,
-        reference=len(views) // 2,
-        view_plane=plane,
-        triangles=encoded_triangles(places[~held]),
+        proxy=Proxy(mesh=bumpy_square(24)),
+        rig=Rig(
+            names=tuple(f"view_{row}_{column}" for row in range(rows) for column in range(columns)),
+            cameras=views,
+            held_out=held,
+            reference=len(views) // 2,
+            view_plane=plane,
+            triangles=encoded_triangles(places[~held]),
+        ),
+        appearance=Appearance(planes=(Plane(mean, (replace(basis, weights=waves.astype(np.float32)),)),)),
         settings={"textures": textures, "metresPerUnit": 0.5},
         scores={
             "uv": {"ssim": 0.91, "psnr": 30.5},
@@ -105,10 +110,13 @@ def scene(columns: int = 5, rows: int = 5, textures: int = 6, held_out: int = 0)
 def grey_scene() -> Scene:
     """The first channel of a scene of 5 textures."""
     coloured = scene(textures=5)
-    plane = coloured.planes[0]
+    plane = coloured.appearance.planes[0]
     (basis,) = plane.bases
     alone = replace(basis, textures=basis.textures[..., :1], scale=basis.scale[:, :1], zero=basis.zero[:, :1])
-    return replace(coloured, planes=(Plane(np.ascontiguousarray(plane.mean[..., :1]), (alone,)),))
+    return replace(
+        coloured,
+        appearance=replace(coloured.appearance, planes=(Plane(np.ascontiguousarray(plane.mean[..., :1]), (alone,)),)),
+    )
 
 
 def around(count: int = 12) -> Scene:
@@ -125,17 +133,20 @@ def around(count: int = 12) -> Scene:
     plane = fit_view_plane(views)
     encoded = count - int(held.sum())
     plain = scene(textures=4)
-    mean, basis = plain.planes[0].mean, float_basis(encoded, 4, SIDE, SIDE, 3)
+    mean, basis = plain.appearance.planes[0].mean, float_basis(encoded, 4, SIDE, SIDE, 3)
     return replace(
         plain,
-        mesh=_column(),
-        planes=(Plane(mean, (basis,)),),
-        names=tuple(f"round{number}.png" for number in range(1, count + 1)),
-        cameras=tuple(views),
-        held_out=held,
-        reference=0,
-        view_plane=plane,
-        triangles=encoded_triangles(plane.coordinates([view.centre for view in views])[~held]),
+        proxy=Proxy(_column()),
+        rig=replace(
+            plain.rig,
+            names=tuple(f"round{number}.png" for number in range(1, count + 1)),
+            cameras=tuple(views),
+            held_out=held,
+            reference=0,
+            view_plane=plane,
+            triangles=encoded_triangles(plane.coordinates([view.centre for view in views])[~held]),
+        ),
+        appearance=replace(plain.appearance, planes=(Plane(mean, (basis,)),)),
     )
 
 
@@ -159,15 +170,30 @@ def write(folder: Path) -> None:
     save(plain, folder / "avif.glb", overwrite=True)
     save(scene(columns=5, rows=1), folder / "line.glb", codec="png", overwrite=True)
     save(scene(held_out=3), folder / "held-out.glb", codec="png", overwrite=True)
-    save(replace(plain, colours=_colours(25)), folder / "harmonised.glb", codec="png", overwrite=True)
+    save(
+        replace(plain, appearance=replace(plain.appearance, colours=_colours(25))),
+        folder / "harmonised.glb",
+        codec="png",
+        overwrite=True,
+    )
     for name, textures in (("one", 1), ("four", 4)):
         save(scene(textures=textures), folder / f"{name}.glb", codec="png", overwrite=True)
     save(grey_scene(), folder / "grey.glb", codec="png", overwrite=True)
-    photographed = tuple(f"{name}.png" for name in plain.names)
-    save(replace(plain, names=photographed), folder / "photographed.glb", codec="png", overwrite=True)
+    photographed = tuple(f"{name}.png" for name in plain.rig.names)
+    save(
+        replace(plain, rig=replace(plain.rig, names=photographed)),
+        folder / "photographed.glb",
+        codec="png",
+        overwrite=True,
+    )
     save(around(), folder / "around.glb", codec="png", overwrite=True)
     hostile = ("</script><img src=x onerror=alert(1)>", '"><svg onload=alert(2)>', "a&b<c>'d'", "é中 x")
-    save(replace(plain, names=hostile + plain.names[4:]), folder / "names.glb", codec="png", overwrite=True)
+    save(
+        replace(plain, rig=replace(plain.rig, names=hostile + plain.rig.names[4:])),
+        folder / "names.glb",
+        codec="png",
+        overwrite=True,
+    )
     _bad_files(folder)
     _capture(folder / "capture", ef.load(folder / "scene.glb"))
     pictures = [*references(folder, "scene.glb"), *references(folder, "line.glb", PLACES[:2])]
@@ -181,7 +207,7 @@ def write(folder: Path) -> None:
 
 def _weights(path: Path) -> list[dict]:
     loaded = ef.load(path)
-    grid = find_grid(loaded.view_plane.coordinates([loaded.cameras[i].centre for i in loaded.encoded]))
+    grid = find_grid(loaded.rig.view_plane.coordinates([loaded.rig.cameras[i].centre for i in loaded.rig.encoded]))
     modes = ("delaunay", "nearest3", "bilinear") if grid is not None else ("delaunay", "nearest3")
     listed = []
     for x, y in np.random.default_rng(11).uniform(-1.2, 1.2, (40, 2)):
@@ -203,7 +229,9 @@ def references(
 ) -> list[dict]:
     """snapped: see `snapped_scene`."""
     loaded, listed = ef.load(folder / name), []
-    views = [(str(number), {"at": at}) for number, at in enumerate(places)] + [("camera", {"camera": loaded.names[0]})]
+    views = [(str(number), {"at": at}) for number, at in enumerate(places)] + [
+        ("camera", {"camera": loaded.rig.names[0]})
+    ]
     for filter in ("bilinear", "bicubic"):
         for label, view in views:
             drawn = snapped_scene(loaded, viewpoint(loaded, **view)[0]) if snapped else loaded
@@ -215,11 +243,11 @@ def references(
 
 def snapped_scene(made: Scene, camera: Camera) -> Scene:
     """The scene with its vertices where a rasteriser that keeps SUBPIXELS of a pixel draws them from a camera."""
-    flat, depth = camera.project(made.mesh.vertices)
+    flat, depth = camera.project(made.proxy.mesh.vertices)
     flat = np.rint(flat * SUBPIXELS) / SUBPIXELS
     rays = np.concatenate([flat, np.ones((len(flat), 1))], axis=1) @ np.linalg.inv(camera.K).T
     vertices = (rays * depth[:, None] - camera.t) @ camera.R
-    return replace(made, mesh=replace(made.mesh, vertices=vertices.astype(np.float32)))
+    return replace(made, proxy=Proxy(replace(made.proxy.mesh, vertices=vertices.astype(np.float32))))
 
 
 def _counted_references(folder: Path, name: str) -> list[dict]:
@@ -264,8 +292,8 @@ def _capture(folder: Path, loaded: Scene) -> None:
     """Photographs as the software renderer draws them, each a little brighter at its left: an error to see."""
     folder.mkdir(exist_ok=True)
     frames = []
-    for index, (name, camera) in enumerate(zip(loaded.names, loaded.cameras, strict=True)):
-        weights = np.eye(len(loaded.names))[index]
+    for index, (name, camera) in enumerate(zip(loaded.rig.names, loaded.rig.cameras, strict=True)):
+        weights = np.eye(len(loaded.rig.names))[index]
         picture = renderer_of(loaded).draw_uint8(camera, weights, samples=1).astype(int)
         picture[:, : WIDTH // 4] += 10
         Image.fromarray(np.clip(picture, 0, 255).astype(np.uint8)).save(folder / f"{name}.png")

@@ -271,7 +271,7 @@ def test_harmless_names_stay_as_they_are():
 def test_hostile_cameras_are_written_inside(tmp_path):
     names = tuple(HOSTILE[:25])
     scene = tiny_scene(cameras=25)
-    scene = replace(scene, names=names)
+    scene = replace(scene, rig=replace(scene.rig, names=names))
     (tmp_path / "in").mkdir()
     exports.write_maps(scene, tmp_path / "in" / "maps")
     exports.write_colmap(Shots(scene), tmp_path / "in" / "colmap")

@@ -15,6 +15,7 @@ from PIL import Image
 import eigenfield as ef
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, save
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.proxy import read_mesh
@@ -39,9 +40,11 @@ def turned_away(scene):
     from eigenfield.core.viewplane import fit_view_plane
 
     R = Rotation.from_euler("xyz", [70, -40, 25], degrees=True).as_matrix()
-    cameras = tuple(replace(camera, R=camera.R @ R.T) for camera in scene.cameras)
-    mesh = Mesh((scene.mesh.vertices @ R.T).astype(np.float32), scene.mesh.faces, scene.mesh.uv)
-    return replace(scene, mesh=mesh, cameras=cameras, view_plane=fit_view_plane(cameras))
+    cameras = tuple(replace(camera, R=camera.R @ R.T) for camera in scene.rig.cameras)
+    mesh = Mesh((scene.proxy.mesh.vertices @ R.T).astype(np.float32), scene.proxy.mesh.faces, scene.proxy.mesh.uv)
+    return replace(
+        scene, proxy=Proxy(mesh), rig=replace(scene.rig, cameras=cameras, view_plane=fit_view_plane(cameras))
+    )
 
 
 @pytest.fixture(scope="module")
@@ -65,11 +68,11 @@ def test_the_glb_opens_upright_in_trimesh(scene, tmp_path):
     proxy = next(name for name in opened.graph.nodes_geometry)
     turn, name = opened.graph[proxy]
     mesh = opened.geometry[name]
-    np.testing.assert_allclose(mesh.visual.uv * [1, -1] + [0, 1], scene.mesh.uv, atol=1e-6)
+    np.testing.assert_allclose(mesh.visual.uv * [1, -1] + [0, 1], scene.proxy.mesh.uv, atol=1e-6)
     picture = np.asarray(mesh.visual.material.baseColorTexture).astype(np.float32) / 255
-    np.testing.assert_allclose(picture, scene.planes[0].mean, atol=1e-6)
-    up = np.mean([-camera.R[1] for camera in scene.cameras], axis=0)
-    forward = np.mean([camera.R[2] for camera in scene.cameras], axis=0)
+    np.testing.assert_allclose(picture, scene.appearance.planes[0].mean, atol=1e-6)
+    up = np.mean([-camera.R[1] for camera in scene.rig.cameras], axis=0)
+    forward = np.mean([camera.R[2] for camera in scene.rig.cameras], axis=0)
     np.testing.assert_allclose(turn[:3, :3] @ up, [0, 1, 0], atol=1e-5)
     np.testing.assert_allclose(turn[:3, :3] @ forward, [0, 0, -1], atol=1e-5)
 
@@ -84,28 +87,28 @@ def test_the_obj_opens_in_trimesh_and_draws_the_mean(scene, tmp_path, folder):
         exports.write_obj(scene, path)
         assert {p.name for p in tmp_path.iterdir()} == {"a name #1.obj", "a_name__1.mtl", "a_name__1.png"}
     opened = trimesh.load(path, process=False)
-    assert opened.faces.shape == scene.mesh.faces.shape
-    turn = capture_to_gltf(scene.view_plane)
+    assert opened.faces.shape == scene.proxy.mesh.faces.shape
+    turn = capture_to_gltf(scene.rig.view_plane)
     texture = np.asarray(opened.visual.material.image).astype(np.float32) / 255
-    np.testing.assert_allclose(texture, scene.planes[0].mean, atol=0.5 / 255 + 1e-6)
+    np.testing.assert_allclose(texture, scene.appearance.planes[0].mean, atol=0.5 / 255 + 1e-6)
     uv = np.column_stack([opened.visual.uv[:, 0], 1 - opened.visual.uv[:, 1]]).astype(np.float32)
     mesh = Mesh((opened.vertices @ turn).astype(np.float32), opened.faces.astype(np.int32), uv)
-    camera = scene.cameras[0]
-    expected = draw_texture(scene.mesh, scene.planes[0].mean, camera)
+    camera = scene.rig.cameras[0]
+    expected = draw_texture(scene.proxy.mesh, scene.appearance.planes[0].mean, camera)
     drawn = draw_texture(mesh, texture, camera)
     np.testing.assert_allclose(drawn.image, expected.image, atol=0.01)
     np.testing.assert_array_equal(drawn.coverage, expected.coverage)
-    up = np.mean([-camera.R[1] for camera in scene.cameras], axis=0)
+    up = np.mean([-camera.R[1] for camera in scene.rig.cameras], axis=0)
     np.testing.assert_allclose(turn @ up, [0, 1, 0], atol=1e-5)
     again = read_mesh(path)  # our own reader of OBJ
-    np.testing.assert_allclose(again.vertices @ turn, scene.mesh.vertices, atol=1e-5)
+    np.testing.assert_allclose(again.vertices @ turn, scene.proxy.mesh.vertices, atol=1e-5)
 
 
 def test_eigen_textures_beside_the_obj_make_every_camera_s_map(scene, tmp_path):
     exports.write_obj_folder(scene, tmp_path / "it")
     listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
     mean = pixels(tmp_path / "it" / listing["mean"])
-    assert list(listing["weights"]) == [scene.names[i] for i in scene.encoded]
+    assert list(listing["weights"]) == [scene.rig.names[i] for i in scene.rig.encoded]
     for row, weights in enumerate(listing["weights"].values()):
         texture = mean.astype(float)
         for weight, entry in zip(weights, listing["textures"], strict=True):
@@ -124,9 +127,9 @@ def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitte
     exports.write_obj_folder(made, tmp_path / "it")
     listing = json.loads((tmp_path / "it" / "eigenfield.json").read_text(encoding="utf-8"))
     mean = pixels(tmp_path / "it" / listing["mean"])
-    assert mean.shape == (*made.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
+    assert mean.shape == (*made.appearance.atlas, 3) and (pixels(tmp_path / "alone.png") == mean).all()
     np.testing.assert_allclose(mean, mean_map(made).clip(0, 1), atol=0.51 / 255)
-    bases = [basis for plane in made.planes for basis in plane.bases]
+    bases = [basis for plane in made.appearance.planes for basis in plane.bases]
     assert len(listing["textures"]) == sum(basis.count for basis in bases)
     maps = camera_maps(made)
     for row, weights in enumerate(listing["weights"].values()):
@@ -152,16 +155,16 @@ def test_a_fitted_scene_makes_a_colmap_model_of_its_colours(fitted, tmp_path):
 
 def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):
     """Also on tiles that the mesh does not use: here it lies on half of the atlas."""
-    half = Mesh(scene.mesh.vertices, scene.mesh.faces, scene.mesh.uv * np.array([0.4, 1], np.float32))
-    scene = replace(scene, mesh=half)
+    half = Mesh(scene.proxy.mesh.vertices, scene.proxy.mesh.faces, scene.proxy.mesh.uv * np.array([0.4, 1], np.float32))
+    scene = replace(scene, proxy=Proxy(half))
     for count in (None, 0, 2):
         folder = tmp_path / str(count)
         exports.write_maps(scene, folder, textures=count)
         listing = json.loads((folder / "eigenfield.json").read_text(encoding="utf-8"))["maps"]
-        assert list(listing) == [scene.names[i] for i in scene.encoded]
-        basis = scene.planes[0].bases[0].truncated(scene.textures if count is None else count)
+        assert list(listing) == [scene.rig.names[i] for i in scene.rig.encoded]
+        basis = scene.appearance.planes[0].bases[0].truncated(scene.appearance.textures if count is None else count)
         for row, file in enumerate(listing.values()):
-            expected = scene.planes[0].mean + np.tensordot(basis.weights[row], basis.values(), 1)
+            expected = scene.appearance.planes[0].mean + np.tensordot(basis.weights[row], basis.values(), 1)
             np.testing.assert_allclose(pixels(folder / file), expected.clip(0, 1), atol=0.51 / 255)
 
 
@@ -173,7 +176,7 @@ def test_a_quilt_begins_at_the_bottom_left_with_the_leftmost_view(scene, tmp_pat
     whole = pixels(path)
     assert whole.shape == (120, 120, 3)
     views = quilt_views(shots, quilt)
-    places = scene.view_plane.coordinates([camera.centre for camera, _ in views])
+    places = scene.rig.view_plane.coordinates([camera.centre for camera, _ in views])
     np.testing.assert_allclose(places, np.column_stack([np.linspace(-0.8, 0.8, 12), np.zeros(12)]), atol=1e-9)
     for number, (camera, mix) in enumerate(views):
         row, column = 2 - number // 4, number % 4  # from the top
@@ -187,7 +190,7 @@ def test_a_quilt_converges_on_the_scene_and_moves_sideways_only(scene):
     nothing moves up or down."""
     views = quilt_views(Shots(scene), exports.quilt_of(scene, (5, 1)))
     axes = views[0][0].R
-    middle = scene.mesh.vertices.astype(float).mean(axis=0)
+    middle = scene.proxy.mesh.vertices.astype(float).mean(axis=0)
     nearer, farther = middle - axes[2], middle + axes[2]
     for point, sign in ((nearer, -1), (farther, 1)):
         at = np.array([camera.project(point[None])[0][0] for camera, _ in views])
@@ -198,7 +201,9 @@ def test_a_quilt_converges_on_the_scene_and_moves_sideways_only(scene):
 
 
 def test_quilts_fit_players_and_say_what_cannot_be(scene):
-    large = replace(scene, cameras=tuple(camera.resized(4000, 3000) for camera in scene.cameras))
+    large = replace(
+        scene, rig=replace(scene.rig, cameras=tuple(camera.resized(4000, 3000) for camera in scene.rig.cameras))
+    )
     quilt = exports.quilt_of(large)
     assert (quilt.columns, quilt.rows) == (8, 6) and 8 * quilt.width == 4096 and 6 * quilt.height <= 4096
     assert quilt.suffix == "_qs8x6a1.333"
@@ -206,17 +211,17 @@ def test_quilts_fit_players_and_say_what_cannot_be(scene):
     assert len({tuple(camera.centre) for camera, _ in same}) == 1
     tall = tiny_scene(cameras=3)  # a row of cameras, turned by a quarter: one above the other
     quarter = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
-    turned = tuple(replace(c, R=quarter @ c.R, t=quarter @ c.t) for c in tall.cameras)
+    turned = tuple(replace(c, R=quarter @ c.R, t=quarter @ c.t) for c in tall.rig.cameras)
     with pytest.raises(OptionError, match="side by side"):
-        quilt_views(Shots(replace(tall, cameras=turned)), exports.quilt_of(tall))
+        quilt_views(Shots(replace(tall, rig=replace(tall.rig, cameras=turned))), exports.quilt_of(tall))
 
 
 def test_a_colmap_folder_is_read_back_and_shows_what_is_drawn(scene, tmp_path):
     exports.write_colmap(Shots(scene), tmp_path / "capture")
     capture = ef.open_capture(tmp_path / "capture")
     assert capture.format == "colmap" and capture.problems == ()
-    assert capture.names == tuple(f"{name}.png" for name in scene.names)
-    for index, (name, camera) in enumerate(zip(scene.names, scene.cameras, strict=True)):
+    assert capture.names == tuple(f"{name}.png" for name in scene.rig.names)
+    for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True)):
         found = capture.cameras[index]
         np.testing.assert_allclose(found.matrix, camera.matrix, atol=1e-6)
         expected = ef.render(scene, camera=name).to_uint8()
@@ -248,18 +253,18 @@ def test_other_sizes_viewpoints_and_backgrounds_of_a_colmap_folder(scene, tmp_pa
     assert (capture.cameras[0].width, capture.cameras[0].height) == (30, 20)
     with Image.open(tmp_path / "path" / "images" / "path_0000.png") as picture:
         assert picture.mode == "RGBA"
-    skewed = tuple(replace(c, K=c.K + np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 0]])) for c in scene.cameras)
-    exports.write_colmap(Shots(replace(scene, cameras=skewed)), tmp_path / "skew")
+    skewed = tuple(replace(c, K=c.K + np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 0]])) for c in scene.rig.cameras)
+    exports.write_colmap(Shots(replace(scene, rig=replace(scene.rig, cameras=skewed))), tmp_path / "skew")
     assert len(ef.open_capture(tmp_path / "skew")) == 9
 
 
 def test_captured_cameras_have_their_own_exposure(scene, tmp_path):
     colours = np.tile(np.array([[1.0] * 3, [0.0] * 3], np.float32), (9, 1, 1))
     colours[0] = [[1.3, 1.2, 1.1], [0.02, 0, -0.02]]
-    harmonised = replace(scene, colours=colours)
+    harmonised = replace(scene, appearance=replace(scene.appearance, colours=colours))
     exports.write_colmap(Shots(harmonised), tmp_path / "capture")
-    expected = ef.render(harmonised, camera=scene.names[0]).to_uint8()
-    drawn = pixels(tmp_path / "capture" / "images" / f"{scene.names[0]}.png")
+    expected = ef.render(harmonised, camera=scene.rig.names[0]).to_uint8()
+    drawn = pixels(tmp_path / "capture" / "images" / f"{scene.rig.names[0]}.png")
     np.testing.assert_array_equal(np.round(drawn * 255), expected)
 
 
@@ -289,7 +294,7 @@ def test_the_page_has_the_file_inside_and_no_title_escapes(scene, tmp_path):
     assert "<script>alert" not in page and '"metresPerUnit":2.5' in page
     start = page.index('id="eigenfield-scene">') + len('id="eigenfield-scene">')
     (tmp_path / "again.glb").write_bytes(base64.b64decode(page[start : page.index("<", start)]))
-    assert ef.load(tmp_path / "again.glb").names == scene.names
+    assert ef.load(tmp_path / "again.glb").rig.names == scene.rig.names
     loose = tiny_scene()
     exports.write_page(loose, tmp_path / "b.html")
     assert base64.b64encode(encode_scene(loose)).decode() in (tmp_path / "b.html").read_text(encoding="utf-8")

@@ -244,6 +244,6 @@ def test_an_outline_is_the_scene_without_its_planes(tmp_path):
     path = tmp_path / "scene.glb"
     save(tiny_scene(), path)
     whole, (part, data) = load(path), outline(path)
-    assert part.planes == () and part.names == whole.names and part.settings == whole.settings
-    assert np.array_equal(part.mesh.vertices, whole.mesh.vertices)
+    assert part.appearance.planes == () and part.rig.names == whole.rig.names and part.settings == whole.settings
+    assert np.array_equal(part.proxy.mesh.vertices, whole.proxy.mesh.vertices)
     assert data == path.read_bytes()

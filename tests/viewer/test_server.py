@@ -50,7 +50,7 @@ def test_a_photograph_is_the_capture_s_own(client, scene, capture):
     for index in (0, 4, 8):
         answer = client.request(f"/photographs/{index}")
         picture = np.asarray(Image.open(io.BytesIO(answer.body)))
-        truth = opened.photograph(opened.names.index(loaded.names[index])).pixels
+        truth = opened.photograph(opened.names.index(loaded.rig.names[index])).pixels
         assert picture.shape == (56, 64, 3)
         assert np.abs(picture / 255 - truth).max() <= 0.5 / 255 + 1e-6
 

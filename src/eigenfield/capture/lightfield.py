@@ -110,6 +110,22 @@ class LightField:
         """All views are of one instant."""
         return 0
 
+    @property
+    def times(self) -> tuple[float, ...]:
+        """The one instant of a still capture."""
+        return (0.0,)
+
+    @property
+    def lenses(self) -> tuple[tuple[str, tuple[float, ...]] | None, ...]:
+        """Model and coefficients of the lens that is removed from each photograph; None where there is none."""
+        lenses = (view.lens for view in self.views)
+        return tuple(None if lens is None else (lens.model, tuple(lens.coefficients)) for lens in lenses)
+
+    @property
+    def metres_per_unit(self) -> float | None:
+        """1 where the capture's parameters were in metres; None where nothing says."""
+        return 1.0 if self.format == "hci" and self.layout is not None and self.layout.measured else None
+
     def photograph(self, index: int) -> Photograph:
         """Decode one photograph now; nothing is kept. May be called from any thread.
 

@@ -100,7 +100,7 @@ def _measure(path: Path, capture: LightField, output: Path, progress: Progress |
 def _summary(path: Path, scene: Scene, figures: dict[str, Any], seconds: float) -> str:
     encoded, held_out = figures["image"]["encoded"], figures["image"]["held_out"]
     return (
-        f"{path}: {path.stat().st_size / 1e6:.2f} MB, {scene.textures} eigen textures, "
+        f"{path}: {path.stat().st_size / 1e6:.2f} MB, {scene.appearance.textures} eigen textures, "
         f"{figures['ratio']['photographs']:.0f} times smaller than the photographs\n"
         f"re-drawn photographs {encoded['psnr']:.1f} dB, SSIM {encoded['ssim']:.3f}; "
         f"held out, between the cameras {held_out['psnr']:.1f} dB, SSIM {held_out['ssim']:.3f}\n"

@@ -138,9 +138,9 @@ def command(
     width, height = scene.settings["atlas"]
     photographs = scene.settings["photographs"]
     click.echo(
-        f"{output}: {sizes['total'] / 1e6:.2f} MB, {scene.textures} eigen textures, atlas {width}x{height}, for "
-        f"{photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
-        f"{len(scene.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
+        f"{output}: {sizes['total'] / 1e6:.2f} MB, {scene.appearance.textures} eigen textures, "
+        f"atlas {width}x{height}, for {photographs['count']} photographs ({photographs['bytes'] / 1e6:.1f} MB), "
+        f"{len(scene.proxy.mesh.faces)} triangles, {time.monotonic() - started:.0f} s"
     )
 
 

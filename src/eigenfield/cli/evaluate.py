@@ -124,7 +124,7 @@ def command(
         refuse_existing(scene, overwrite=True)  # says now, not after the work, that the folder cannot be written to
     opened = open_any(capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame)
     light_field = with_scene_cameras(loaded, opened)
-    circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.names)
+    circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.rig.names)
     with progress_bars(quiet) as progress:
         figures = evaluate(
             loaded, light_field, path=scene, curve=curve, textures=textures, filter=drawing_filter, weights=weights,
@@ -138,7 +138,7 @@ def command(
     if as_json:
         echo_json(figures)
     else:
-        click.echo("\n".join(table(scene.name, figures, fitted=loaded.to_rgb is not None)))
+        click.echo("\n".join(table(scene.name, figures, fitted=loaded.appearance.to_rgb is not None)))
     if store:
         store_scores(scene, stored_scores(figures))
 

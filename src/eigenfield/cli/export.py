@@ -163,13 +163,13 @@ def _write(
         return f"{output}: mesh, mean and eigen textures"
     if kind == "maps":
         exports.write_maps(scene, output, textures=options["textures"], progress=progress, **how)
-        return f"{output}: {len(scene.encoded)} texture maps"
+        return f"{output}: {len(scene.rig.encoded)} texture maps"
     if kind == "quilt":
         quilt = exports.quilt_of(scene, options["quilt"], options["resolution"], options["spread"])
         path = exports.write_quilt(shots, quilt, output, progress=progress, **how)
         return f"{path}: {quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
     exports.write_colmap(shots, output, points=points, residual=options["residual"], progress=progress, **how)
-    return f"{output}: {len(scene.names) if points is None else len(points)} pictures and a COLMAP model"
+    return f"{output}: {len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
 
 
 def _is_obj(output: Path) -> bool:

@@ -77,7 +77,7 @@ def command(
         refuse_flight(output, count, overwrite)
     shots = Shots(load(scene), resolution, background, weights, filter, textures, samples, renderer)
     if residual:
-        index = shots.scene.reference if camera is None else camera_index(shots.scene, camera)
+        index = shots.scene.rig.reference if camera is None else camera_index(shots.scene, camera)
         data = png(captured_pixels(shots, index, difference_of(shots.scene, index)))
         write_bytes(output, data, overwrite=overwrite)
         note(f"wrote {output}", quiet)

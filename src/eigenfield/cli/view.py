@@ -102,9 +102,9 @@ def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any],
 
     light_field = with_scene_cameras(scene, open_any(capture, **options))
     photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
-    missing = len(scene.names) - len(photographs.names)
+    missing = len(scene.rig.names) - len(photographs.names)
     if missing:
-        note(f"{missing} of {len(scene.names)} cameras have no photograph in {capture}", quiet)
+        note(f"{missing} of {len(scene.rig.names)} cameras have no photograph in {capture}", quiet)
     return photographs
 
 

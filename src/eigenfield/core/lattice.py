@@ -14,10 +14,12 @@ class Lattice:
 
     matrix: (4, 4) float64, invertible, from (i, j, k, 1) to homogeneous world coordinates.
     flat: (i, j) are pixels of a camera that sees the mesh from one side and k is inverse depth: it is coded over them.
+    fine: how many of the last binary digits of i and j are mostly zero.
     """
 
     matrix: NDArray[np.float64]
     flat: bool
+    fine: int = 0
 
     def points(self, steps: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
         """(n, 3) lattice coordinates, and places between, to world positions. The order of the sums is part of the

@@ -9,6 +9,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.camera import Camera
+
 
 @dataclass(frozen=True, eq=False)
 class Photograph:
@@ -46,6 +48,33 @@ class Observations(Protocol):
 
     def photograph(self, index: int) -> Photograph:
         """Decode one observation now, pixels and mask at once. May be called from any thread."""
+
+
+class CalibratedObservations(Observations, Protocol):
+    """Observations whose cameras are known: a `LightField`, or photographs of a rig at several instants."""
+
+    @property
+    def names(self) -> Sequence[str]:
+        """(Nc,) of the cameras."""
+
+    @property
+    def cameras(self) -> Sequence[Camera]:
+        """(Nc,) the pinhole cameras of the photographs as they are decoded."""
+
+    @property
+    def times(self) -> Sequence[float]:
+        """(Nt,) the instants, in seconds."""
+
+    @property
+    def lenses(self) -> Sequence[tuple[str, Sequence[float]] | None]:
+        """(Nc,) model and coefficients of the lens that was removed; None where there was none."""
+
+    @property
+    def metres_per_unit(self) -> float | None:
+        """Metres in one unit of the cameras' world; None where nothing says."""
+
+    def bytes(self, index: int) -> int:
+        """The size of an observation's file."""
 
 
 @dataclass(frozen=True, eq=False)

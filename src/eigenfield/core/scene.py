@@ -9,77 +9,18 @@ from dataclasses import dataclass, field
 from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from eigenfield.core import notebook
-from eigenfield.core.camera import Camera
+from eigenfield.core.appearance import Appearance
 from eigenfield.core.errors import OptionError
-from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payloads
-from eigenfield.core.viewplane import ViewPlane
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
 
 T = TypeVar("T")
 
 _lock = threading.RLock()  # of what is derived from any scene
-
-
-@dataclass(frozen=True, eq=False)
-class Basis:
-    """N eigen textures and what each encoded camera takes of them.
-
-    Attributes:
-        textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
-        scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
-        weights: (Ne, N) float32, the paper's ω(c, j), a row for each encoded camera in the order of `Scene.names`.
-        grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
-        corner: Row and column of the grid at which the textures begin; they are zero elsewhere.
-    """
-
-    textures: NDArray[Any]
-    scale: NDArray[np.float32]
-    zero: NDArray[np.float32]
-    weights: NDArray[np.float32]
-    grid: tuple[int, int] | None = None
-    corner: tuple[int, int] = (0, 0)
-
-    @property
-    def count(self) -> int:
-        return int(self.textures.shape[0])
-
-    @property
-    def size(self) -> tuple[int, int]:
-        """(rows, columns) of the whole atlas at this basis's density."""
-        rows, columns = self.textures.shape[1:3]
-        return self.grid or (int(rows), int(columns))
-
-    def values(self, first: int = 0, last: int | None = None) -> NDArray[np.float32]:
-        """(n, H, W, C) float32: the textures [first, last) as numbers."""
-        part = slice(first, last)
-        stored = self.textures[part].astype(np.float32)
-        return (stored - self.zero[part, None, None]) * self.scale[part, None, None]
-
-    def truncated(self, count: int) -> Basis:
-        """The first `count` components."""
-        parts = (self.textures[:count], self.scale[:count], self.zero[:count], self.weights[:, :count])
-        return Basis(*parts, self.grid, self.corner)
-
-
-@dataclass(frozen=True, eq=False)
-class Plane:
-    """Channels that share a mean and bases, which may have densities of their own.
-
-    Attributes:
-        mean: (H, W, C) float32 in 0..1 (of other attributes than colours: any range).
-        bases: Summed onto the mean one after the other.
-    """
-
-    mean: NDArray[np.float32]
-    bases: tuple[Basis, ...]
-
-    @property
-    def sizes(self) -> list[tuple[int, int]]:
-        """(rows, columns) of the mean's atlas, then of each basis's."""
-        return [(int(self.mean.shape[0]), int(self.mean.shape[1])), *(basis.size for basis in self.bases)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,59 +56,51 @@ class Residual:
 class Scene:
     """Everything needed to draw any viewpoint on the view plane.
 
+    An observation is a photograph by an encoded camera at one instant. Weights have a row for each.
+
     Attributes:
-        mesh: The proxy, with UVs.
-        planes: One plane of three channels (R, G, B), or planes that `to_rgb` joins; any channels of other attributes.
-        names, cameras: Every capture camera, encoded or held out.
-        held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
-        reference: Index into `cameras` of the one nearest the centre, or the one asked for.
-        view_plane: The plane through the cameras.
-        triangles: (T, 3) int32 Delaunay triangles on it over the *encoded* cameras.
-        settings, scores: JSON objects: how it was made, and what `evaluate --store` measured.
+        proxy: The surface.
+        rig: The cameras.
+        appearance: What is drawn on the surface.
+        settings: JSON object: how it was made.
+        scores: JSON object: what `evaluate --store` measured.
         generator: Name and version of the program that made it.
-        colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset,
-            so its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
-        to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what
-            is drawn.
         residual: What is missing from captured views, or None. No other view has anything of it.
+        times: The instants of its observations, in seconds; one for a still scene.
     """
 
-    mesh: Mesh
-    planes: tuple[Plane, ...]
-    names: tuple[str, ...]
-    cameras: tuple[Camera, ...]
-    held_out: NDArray[np.bool_]
-    reference: int
-    view_plane: ViewPlane
-    triangles: NDArray[np.int32]
+    proxy: Proxy
+    rig: Rig
+    appearance: Appearance
     settings: Mapping[str, Any] = field(default_factory=dict)
     scores: Mapping[str, Any] = field(default_factory=dict)
     generator: str = ""
-    colours: NDArray[np.float32] | None = None
-    to_rgb: NDArray[np.float32] | None = None
     residual: Residual | None = None
+    times: tuple[float, ...] = (0.0,)
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
-    @property
-    def atlas(self) -> tuple[int, int]:
-        """(rows, columns) of the texture that is composed and drawn: the most that any mean or basis has."""
-        sizes = [size for plane in self.planes for size in plane.sizes]
-        return max(rows for rows, _ in sizes), max(columns for _, columns in sizes)
+    def rows(self, cameras: ArrayLike | None = None, time: int = 0) -> NDArray[np.int64]:
+        """Which rows of the weights are the observations of some cameras at one instant.
+
+        Rows are in the order of instants, and at each in that of the encoded cameras. This is the only place that
+        knows.
+
+        Args:
+            cameras: (n,) or () indices into `rig.cameras`; None: all encoded ones.
+            time: Index into `times`.
+
+        Returns:
+            The rows, in the shape of `cameras`; -1 for held-out cameras, which have none.
+        """
+        encoded = ~self.rig.held_out
+        among = np.where(encoded, np.cumsum(encoded) - 1, -1)
+        found = among[self.rig.encoded if cameras is None else np.asarray(cameras, np.int64)]
+        return np.where(found < 0, -1, found + time * int(encoded.sum()))
 
     @property
-    def channels(self) -> int:
-        """Channels of a drawn picture."""
-        return 3 if self.to_rgb is not None else sum(int(plane.mean.shape[2]) for plane in self.planes)
-
-    @property
-    def encoded(self) -> NDArray[np.int64]:
-        """(Ne,) indices into `cameras` of the encoded ones: the rows of the weights."""
-        return np.flatnonzero(~self.held_out)
-
-    @property
-    def textures(self) -> int:
-        """Number of eigen textures of the largest plane."""
-        return max((sum(basis.count for basis in plane.bases) for plane in self.planes), default=0)
+    def observations(self) -> int:
+        """How many rows the weights have."""
+        return len(self.times) * int((~self.rig.held_out).sum())
 
     def derived(self, name: str, make: Callable[[], T]) -> T:
         """What `make` returns, called once and kept as long as this object. Copies, pickles and `replace` have none of

@@ -12,8 +12,8 @@ from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.target import Target
 
 if TYPE_CHECKING:
-    from eigenfield.capture import LightField
     from eigenfield.core.mesh import Mesh
+    from eigenfield.core.observations import CalibratedObservations
     from eigenfield.core.progress import Progress
     from eigenfield.core.scene import EncodedScene
 
@@ -23,7 +23,7 @@ log = logging.getLogger("eigenfield.encode")
 
 
 def encode(
-    capture: LightField,
+    capture: CalibratedObservations,
     proxy: str | os.PathLike[str] | Mesh,
     options: EncodeOptions | None = None,
     *,

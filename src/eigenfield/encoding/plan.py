@@ -13,22 +13,24 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import LightField
+from eigenfield.core.appearance import Appearance, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations, cameras_of
 from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import EncodedScene, Plane
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
 from eigenfield.encoding.fitted import byte_price, fit_surface
-from eigenfield.encoding.geometry import slim_mesh, triangles_worth
+from eigenfield.encoding.geometry import simplify_proxy_rd, triangles_worth
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
 from eigenfield.encoding.options import EncodeOptions, known
 from eigenfield.encoding.projected import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views
 from eigenfield.proxy import prepare_proxy
-from eigenfield.proxy.relief.find_lattice import relief_lattice
-from eigenfield.rendering import delaunay_triangles
+from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 
 log = logging.getLogger("eigenfield.encode")
 
@@ -42,13 +44,13 @@ class PreparedProxy:
 
     Attributes:
         given: The file or mesh that it was made from.
-        mesh: With UVs; for a fit its vertices are where the photographs agree on the surface.
+        proxy: With UVs and, if it is a relief, its lattice; for a fit its vertices are where the photographs agree.
         views: The cameras that it was prepared for.
         by_quality: Whether another quality needs it prepared anew, with other triangles and charts.
     """
 
     given: str | os.PathLike[str] | Mesh
-    mesh: Mesh
+    proxy: Proxy
     views: CaptureViews
     by_quality: bool
 
@@ -60,7 +62,7 @@ class EncodePlan:
     Attributes:
         asked: The options as they were given.
         options: What they mean (`EncodeOptions.resolved`), for one quality: a target is left out.
-        proxy: The proxy from which the same plan at another quality is made.
+        prepared: What the same plan at another quality is made from.
         views: The cameras as the file keeps them, and which of them are encoded.
         mesh: The proxy as the file keeps it.
         payloads: What mesh and cameras were coded to; without a fit they are not.
@@ -69,7 +71,7 @@ class EncodePlan:
 
     asked: EncodeOptions
     options: EncodeOptions
-    proxy: PreparedProxy
+    prepared: PreparedProxy
     views: CaptureViews
     mesh: Mesh
     payloads: Payloads
@@ -83,15 +85,15 @@ class EncodePlan:
     @cached_property
     def density(self) -> float:
         """The atlas's texels per pixel of the reference photograph, along one axis."""
-        camera = self.views.cameras[self.views.reference]
+        camera = self.views.rig.cameras[self.views.rig.reference]
         return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, camera)
 
     def at_quality(self, quality: int, work: Path | None = None, progress: Progress | None = None) -> EncodePlan:
         """The same plan with the mesh and the atlas that it has at another quality of the fit, 0 to 100."""
         asked = replace(self.asked, quality=quality, target=None)
-        if self.proxy.by_quality:
-            return plan_encoding(self.views.capture, self.proxy.given, asked, work, progress)
-        return _at_its_quality(self.proxy, asked)
+        if self.prepared.by_quality:
+            return plan_encoding(self.views.capture, self.prepared.given, asked, work, progress)
+        return _at_its_quality(self.prepared, asked)
 
     def scene(
         self,
@@ -112,6 +114,7 @@ class EncodePlan:
             to_rgb: As in `Scene`.
         """
         views = self.views
+        used = np.flatnonzero(np.isin(cameras_of(views.capture), views.rig.encoded)).tolist()
         settings = {
             "textures": max(sum(basis.count for basis in one.bases) for one in planes),
             "atlas": list(self.atlas),
@@ -121,30 +124,26 @@ class EncodePlan:
             **_scale(views.capture, self.options.metres_per_unit),
             **_lenses(views.capture),
             "photographs": {
-                "count": len(views.encoded),
-                "bytes": sum(views.capture.bytes(int(index)) for index in views.encoded),
-                "pixels": sum(camera.width * camera.height for camera in views.encoded_cameras),
+                "count": len(views.observations),
+                "bytes": sum(views.capture.bytes(index) for index in used),
+                "pixels": sum(
+                    views.rig.cameras[index].width * views.rig.cameras[index].height for index in views.taken_by
+                ),
             },
         }
         return EncodedScene(
-            mesh=self.mesh,
-            planes=planes,
-            names=tuple(views.capture.names),
-            cameras=views.cameras,
-            held_out=views.held_out,
-            reference=views.reference,
-            view_plane=views.view_plane,
-            triangles=delaunay_triangles(views.coordinates[views.encoded]),
+            proxy=Proxy(self.mesh),
+            rig=views.rig,
+            appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
             settings=settings,
             generator=f"eigenfield {__version__}",
-            colours=colours,
-            to_rgb=to_rgb,
             payloads=self.payloads | (payloads or {}),
+            times=tuple(views.capture.times),
         )
 
 
 def plan_encoding(
-    capture: LightField,
+    capture: CalibratedObservations,
     proxy: str | os.PathLike[str] | Mesh,
     asked: EncodeOptions,
     work: Path | None = None,
@@ -184,16 +183,18 @@ def _prepare(
     progress: Progress | None,
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
-    cameras = views.cameras
+    cameras = views.rig.cameras
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
-    _warn_of_rounding([view.camera for view in views.capture.views], cameras, mesh)
+    _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if options.fit == "none":
-        return PreparedProxy(proxy, mesh, views, by_quality=False)
-    relief = relief_lattice(mesh, cameras, DEPTH_ERROR)
-    lattice, side = relief and relief[0], atlas_side(mesh, cameras[views.reference], 1.0)
-    mesh = fit_surface(mesh, lattice, views.encoded_cameras, views.observations, side, work, progress)
-    return PreparedProxy(proxy, mesh, views, by_quality=_simplifies(options) and relief is None)  # it keeps its atlas
+        return PreparedProxy(proxy, Proxy(mesh), views, by_quality=False)
+    lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[views.rig.reference], 1.0)
+    mesh = fit_surface(mesh, lattice, views.rig.encoded_cameras, views.observations, side, work, progress)
+    measured = views.rig.encoded_cameras if _simplifies(options) else cameras
+    fitted = relief_proxy(mesh, measured, DEPTH_ERROR)
+    by_quality = _simplifies(options) and lattice is None  # a relief keeps its atlas
+    return PreparedProxy(proxy, fitted, views, by_quality)
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
@@ -203,60 +204,60 @@ def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Calla
     """
 
     def triangles(mesh: Mesh) -> int | None:
-        if mesh.uv is not None and relief_lattice(mesh, views.cameras, DEPTH_ERROR) is not None:
+        if mesh.uv is not None and relief_lattice(mesh, views.rig.cameras, DEPTH_ERROR) is not None:
             return None
         price = byte_price(known(options.quality)) / known(options.density) ** 2
-        return triangles_worth(mesh, views.encoded_cameras, views.observations, price)
+        return triangles_worth(mesh, views.rig.encoded_cameras, views.observations, price)
 
     return triangles
 
 
-def _at_its_quality(proxy: PreparedProxy, asked: EncodeOptions) -> EncodePlan:
+def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan:
     """The plan with a prepared proxy: the atlas's size and, for a fit, mesh and cameras as they are coded."""
-    options, views = _for_one_quality(asked), proxy.views
-    atlas = _atlas_size(options, proxy.mesh, views)
+    options, views, proxy = _for_one_quality(asked), prepared.views, prepared.proxy
+    atlas = _atlas_size(options, proxy.mesh, views.rig)
     if options.fit == "none":
-        return EncodePlan(asked, options, proxy, views, proxy.mesh, Payloads(), atlas)
-    mesh = _coded_mesh(proxy.mesh, views, options, atlas)
-    cameras = coded_cameras(views.cameras, mesh.value, grid_of(views.coordinates))
-    views = replace(views, cameras=cameras.value)
-    return EncodePlan(asked, options, proxy, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
+        return EncodePlan(asked, options, prepared, views, proxy.mesh, Payloads(), atlas)
+    mesh = _coded_mesh(proxy, views, options, atlas)
+    cameras = coded_cameras(views.rig.cameras, mesh.value, grid_of(views.coordinates))
+    views = views.with_cameras(cameras.value)
+    return EncodePlan(asked, options, prepared, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
 
 
-def _atlas_size(options: EncodeOptions, mesh: Mesh, views: CaptureViews) -> tuple[int, int]:
+def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]:
     """(width, height): as asked for, or a square of the options' density in the reference camera."""
     if options.atlas is not None:
         return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
-    camera, density = views.cameras[views.reference], known(options.density)
-    side = atlas_side(mesh, camera, density, sum(one.width * one.height for one in views.encoded_cameras))
+    camera, density = rig.cameras[rig.reference], known(options.density)
+    side = atlas_side(mesh, camera, density, sum(one.width * one.height for one in rig.encoded_cameras))
     reached = side * texels_per_pixel(mesh, camera)
     if reached < CAPPED * density:
         log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, density)
     return side, side
 
 
-def _coded_mesh(mesh: Mesh, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
+def _coded_mesh(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
     """The mesh as a fitted file keeps it.
 
     A relief is simplified to what its pictures are worth, unless a number of triangles was asked for.
     """
     if not _simplifies(options):
-        return coded_mesh(mesh, views.cameras, views.reference)
-    texels = float(np.prod(atlas)) * texels_per_pixel(mesh, views.cameras[views.reference]) ** 2
+        return coded_mesh(proxy, views.rig.cameras, views.rig.reference)
+    rig = views.rig
+    texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
     price = byte_price(known(options.quality))
-    return slim_mesh(mesh, views.encoded_cameras, views.encoded_reference, views.observations, price, texels)
+    return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, price, texels)
 
 
-def _scale(capture: LightField, asked: float | None) -> dict[str, float]:
-    """What the settings say of the real size: as asked, or metres where the capture's parameters were in metres."""
-    in_metres = capture.format == "hci" and capture.layout is not None and capture.layout.measured
-    scale = 1.0 if asked is None and in_metres else asked
+def _scale(capture: CalibratedObservations, asked: float | None) -> dict[str, float]:
+    """What the settings say of the real size: as asked, or as the capture says."""
+    scale = capture.metres_per_unit if asked is None else asked
     return {} if scale is None else {"metresPerUnit": scale}
 
 
-def _lenses(capture: LightField) -> dict[str, Any]:
+def _lenses(capture: CalibratedObservations) -> dict[str, Any]:
     """The lenses that were removed, so that the photographs alone are enough to measure the scene by."""
-    lenses = [None if v.lens is None else [v.lens.model, list(v.lens.coefficients)] for v in capture.views]
+    lenses = [None if lens is None else [lens[0], list(lens[1])] for lens in capture.lenses]
     return {"lenses": lenses} if any(lenses) else {}
 
 

@@ -9,85 +9,78 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import Capture, LightField
+from eigenfield.capture import Capture
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.observations import Observations, cameras_of, of_cameras
-from eigenfield.core.viewplane import ViewPlane, find_grid, fit_view_plane
+from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, of_cameras
+from eigenfield.core.rig import Rig
+from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
+from eigenfield.rendering import delaunay_triangles
 
 
 @dataclass(frozen=True, eq=False)
 class CaptureViews:
-    """A capture's cameras as a file keeps them, and which of them are encoded.
+    """A capture, and its cameras as a file keeps them.
 
     Attributes:
         capture: The photographs, held-out ones too.
-        cameras: All Nc, in the capture's order.
-        held_out: (Nc,) bool.
-        reference: Index of the reference camera, which is an encoded one.
+        rig: The cameras.
     """
 
-    capture: LightField
-    cameras: tuple[Camera, ...]
-    held_out: NDArray[np.bool_]
-    reference: int
+    capture: CalibratedObservations
+    rig: Rig
 
-    @cached_property
-    def view_plane(self) -> ViewPlane:
-        return fit_view_plane(self.cameras)
+    def with_cameras(self, cameras: Sequence[Camera]) -> CaptureViews:
+        """The same with other numbers for the same cameras."""
+        rig = self.rig
+        return CaptureViews(self.capture, make_rig(rig.names, cameras, rig.held_out, rig.reference))
 
     @cached_property
     def coordinates(self) -> NDArray[np.float64]:
         """(Nc, 2) of the cameras on the view plane."""
-        return self.view_plane.coordinates([camera.centre for camera in self.cameras])
-
-    @cached_property
-    def encoded(self) -> NDArray[np.int64]:
-        """(Ne,) indices of the cameras whose photographs count."""
-        return np.flatnonzero(~self.held_out)
-
-    @property
-    def encoded_cameras(self) -> list[Camera]:
-        return [self.cameras[index] for index in self.encoded]
-
-    @property
-    def encoded_reference(self) -> int:
-        """The reference camera, counted among the encoded ones."""
-        return int(np.searchsorted(self.encoded, self.reference))
+        return self.rig.view_plane.coordinates([camera.centre for camera in self.rig.cameras])
 
     @property
     def grid(self) -> NDArray[np.int64] | None:
         """(rows, columns) of the encoded cameras, counted among themselves, where they stand on a grid; else None."""
-        return grid_of(self.coordinates[self.encoded])
+        return grid_of(self.coordinates[self.rig.encoded])
 
     @cached_property
     def observations(self) -> Observations:
         """Those of the encoded cameras, which are counted among themselves."""
-        return of_cameras(self.capture, self.encoded.tolist())
+        return of_cameras(self.capture, self.rig.encoded.tolist())
 
     @cached_property
     def taken_by(self) -> NDArray[np.int64]:
         """(No,) the camera of each of `observations`, whose rows of texture maps and weights these are."""
-        return self.encoded[cameras_of(self.observations)]
+        return self.rig.encoded[cameras_of(self.observations)]
 
     @property
     def observation_names(self) -> list[str]:
         """Of the cameras that took `observations`."""
-        return [self.capture.names[index] for index in self.taken_by]
+        return [self.rig.names[index] for index in self.taken_by]
 
 
-def select_views(capture: LightField, options: EncodeOptions) -> CaptureViews:
+def make_rig(names: Sequence[str], cameras: Sequence[Camera], held_out: NDArray[np.bool_], reference: int) -> Rig:
+    """The rig of these cameras, with the plane through them and the encoded ones' triangles on it."""
+    plane = fit_view_plane(cameras)
+    places = plane.coordinates([camera.centre for camera in cameras])
+    return Rig(tuple(names), tuple(cameras), held_out, reference, plane, delaunay_triangles(places[~held_out]))
+
+
+def select_views(capture: CalibratedObservations, options: EncodeOptions) -> CaptureViews:
     """The capture's cameras in float32, with those that the options hold out and their reference camera.
 
     Raises:
         OptionError: `hold-out` or `reference` for a rule or a name that does not fit the capture.
     """
-    cameras = tuple(view.camera.rounded() for view in capture.views)
+    cameras = tuple(camera.rounded() for camera in capture.cameras)
     places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
     held = held_out_cameras(options.hold_out, capture.names, places)
-    return CaptureViews(capture, cameras, held, _reference(options.reference, capture.names, places, held))
+    reference = _reference(options.reference, capture.names, places, held)
+    return CaptureViews(capture, make_rig(capture.names, cameras, held, reference))
 
 
 def check_selection(capture: Capture, options: EncodeOptions) -> None:

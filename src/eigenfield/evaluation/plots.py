@@ -218,7 +218,7 @@ def _sheet(cameras: Sequence[Mapping[str, Any]], session: Session) -> list[Row]:
     rows = []
     for kind, at in chosen.items():
         camera = order[at]
-        index = session.scene.names.index(camera["name"])
+        index = session.scene.rig.names.index(camera["name"])
         photograph = session.photograph(index).pixels
         drawn, surface = session.draw(index)
         error = np.abs(drawn - photograph) * ERROR_GAIN * surface[..., None]
@@ -229,8 +229,8 @@ def _sheet(cameras: Sequence[Mapping[str, Any]], session: Session) -> list[Row]:
 
 def _coordinates(cameras: Sequence[Mapping[str, Any]], session: Session) -> NDArray[np.float64]:
     scene = session.scene
-    centre = {name: camera.centre for name, camera in zip(scene.names, scene.cameras, strict=True)}
-    return scene.view_plane.coordinates([centre[camera["name"]] for camera in cameras])
+    centre = {name: camera.centre for name, camera in zip(scene.rig.names, scene.rig.cameras, strict=True)}
+    return scene.rig.view_plane.coordinates([centre[camera["name"]] for camera in cameras])
 
 
 def _figure(width: float, height: float) -> Figure:

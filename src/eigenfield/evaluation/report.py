@@ -70,7 +70,7 @@ def evaluate(
         "bytes": None if path is None else dict(parts(Path(path))),
         "ratio": None if path is None else _ratios(session, results, parts(Path(path))["total"]),
         "png_maps": _png_maps(session, results, png_maps),
-        "missing": [name for index, name in enumerate(scene.names) if index not in session.photographs],
+        "missing": [name for index, name in enumerate(scene.rig.names) if index not in session.photographs],
         "cameras": [_camera(session, index, result) for index, result in results.items()],
     }
     if curve != "none":
@@ -97,17 +97,17 @@ def stored_scores(figures: Mapping[str, Any]) -> dict[str, Any]:
 
 def _uv(session: Session, results: Mapping[int, Measured], at: int) -> dict[str, Any] | None:
     """Mean and worst of the UV measure at position `at` of the session's counts."""
-    taken = [(session.scene.names[i], r.texture) for i, r in results.items() if r.texture is not None]
+    taken = [(session.scene.rig.names[i], r.texture) for i, r in results.items() if r.texture is not None]
     if not taken:
         return None
     return summary([{"ssim": t.ssim[at], "psnr": t.psnr[at]} for _, t in taken], [name for name, _ in taken])
 
 
 def _image(session: Session, results: Mapping[int, Measured], held_out: bool) -> dict[str, Any] | None:
-    indices = [index for index in results if bool(session.scene.held_out[index]) == held_out]
+    indices = [index for index in results if bool(session.scene.rig.held_out[index]) == held_out]
     if not indices:
         return None
-    names = [session.scene.names[index] for index in indices]
+    names = [session.scene.rig.names[index] for index in indices]
     figures = {"cameras": len(indices), **summary([results[index].image for index in indices], names)}
     outside = [result for index in indices if (result := results[index].outside) is not None]
     if outside:
@@ -120,7 +120,7 @@ def _residual(session: Session, results: Mapping[int, Measured]) -> dict[str, An
     found = {index: result.residual for index, result in results.items() if result.residual is not None}
     if not found:
         return None
-    names = [session.scene.names[index] for index in found]
+    names = [session.scene.rig.names[index] for index in found]
     figures = {"cameras": len(found), **summary([image for image, _ in found.values()], names)}
     outside = [part for _, part in found.values() if part is not None]
     if outside:
@@ -131,8 +131,8 @@ def _residual(session: Session, results: Mapping[int, Measured]) -> dict[str, An
 def _camera(session: Session, index: int, result: Measured) -> dict[str, Any]:
     texture = result.texture
     figures: dict[str, Any] = {
-        "name": session.scene.names[index],
-        "held_out": bool(session.scene.held_out[index]),
+        "name": session.scene.rig.names[index],
+        "held_out": bool(session.scene.rig.held_out[index]),
         "psnr": result.image["psnr"],
         "ssim": result.image["ssim"],
         "coverage": result.image["coverage"],
@@ -149,7 +149,7 @@ def _png_maps(session: Session, results: Mapping[int, Measured], mode: str) -> d
     sizes = [r.texture.png for r in results.values() if r.texture is not None and r.texture.png is not None]
     if not sizes:
         return None
-    total = len(session.scene.encoded)
+    total = len(session.scene.rig.encoded)
     return {"mode": mode, "packed": len(sizes), "of": total, "bytes": round(sum(sizes) * total / len(sizes))}
 
 
@@ -161,13 +161,14 @@ def _ratios(session: Session, results: Mapping[int, Measured], size: int) -> dic
     return {
         "photographs": None if photographs is None else photographs / size,
         "texture_maps_png": None if maps is None else maps["bytes"] / size,
-        "raw": sum(3 * scene.cameras[index].width * scene.cameras[index].height for index in scene.encoded) / size,
+        "raw": sum(3 * scene.rig.cameras[index].width * scene.rig.cameras[index].height for index in scene.rig.encoded)
+        / size,
     }
 
 
 def _photograph_bytes(session: Session) -> int | None:
     """Size of the encoded photographs' files; where some are missing, what the encoder recorded."""
-    encoded = [int(index) for index in session.scene.encoded]
+    encoded = [int(index) for index in session.scene.rig.encoded]
     if all(index in session.photographs for index in encoded):
         return sum(session.capture.bytes(session.photographs[index]) for index in encoded)
     recorded = session.scene.settings.get("photographs")

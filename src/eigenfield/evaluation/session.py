@@ -69,7 +69,7 @@ class Session:
 
     def photograph(self, index: int) -> Photograph:
         """Camera `index`'s photograph; raises CaptureError `photograph-size` when it is not the camera's size."""
-        view, camera = self.capture.views[self.photographs[index]], self.scene.cameras[index]
+        view, camera = self.capture.views[self.photographs[index]], self.scene.rig.cameras[index]
         picture = self.capture.photograph(self.photographs[index])
         height, width = picture.pixels.shape[:2]
         if (width, height) != (camera.width, camera.height):
@@ -92,19 +92,24 @@ class Session:
         row = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         return self.renderer.draw(
-            self.scene.cameras[index], row, filter=self.filter, textures=self.counts[-1], samples=samples, colour=colour
+            self.scene.rig.cameras[index],
+            row,
+            filter=self.filter,
+            textures=self.counts[-1],
+            samples=samples,
+            colour=colour,
         )
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
         """Camera `index`'s texture map as `encode` made it: (n, 3) values and (n,) visibility."""
         assert self.atlas is not None
         values, seen = texture_map(
-            self.atlas, self.scene.cameras[index], photograph.pixels, photograph.mask, self.resampling
+            self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.resampling
         )
         colour = camera_colour(self.scene, index)
         if colour is not None:
             values = harmonised(values, seen, colour)
-        if self.align is None or self.reference is None or index == self.scene.reference:
+        if self.align is None or self.reference is None or index == self.scene.rig.reference:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference, self.align)
 
@@ -112,7 +117,7 @@ class Session:
     def measures_residual(self) -> bool:
         """Whether captured views are measured with their residual too: it is what the whole scene, drawn as it is
         meant to be, leaves of them."""
-        whole = self.counts[-1] == self.scene.textures and self.filter == "bicubic"
+        whole = self.counts[-1] == self.scene.appearance.textures and self.filter == "bicubic"
         return whole and self.scene.residual is not None
 
     def measure(self, index: int, difference: NDArray[np.float32] | None = None) -> Measured:
@@ -126,11 +131,13 @@ class Session:
             belongs = drawn if samples is None else self.picture(index, samples)
             residual = self._figures(index, corrected(belongs, difference), photograph)
         texture = None
-        if self.atlas is not None and not self.scene.held_out[index]:
+        if self.atlas is not None and not self.scene.rig.held_out[index]:
             values, seen = self.texture(index, photograph)
-            row = int(np.searchsorted(self.scene.encoded, index))
+            row = int(np.searchsorted(self.scene.rig.encoded, index))
             counts = self.counts if index in self.curved else self.counts[-1:]
-            texture = measure_map(self.scene.planes[0], row, self.atlas, values, seen, counts, index in self.packed)
+            texture = measure_map(
+                self.scene.appearance.planes[0], row, self.atlas, values, seen, counts, index in self.packed
+            )
         return Measured(figures, outside, texture, residual)
 
     def _figures(self, index: int, drawn: Picture, photograph: Photograph) -> tuple[Figures, Figures | None]:
@@ -139,7 +146,7 @@ class Session:
         figures = measure_picture(*given, self.flip)
         if self.circles is None:
             return figures, None
-        return figures, measure_outside(*given, self.circles.get(self.scene.names[index]), self.flip)
+        return figures, measure_outside(*given, self.circles.get(self.scene.rig.names[index]), self.flip)
 
 
 def start_session(
@@ -159,26 +166,30 @@ def start_session(
         raise OptionError("png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAPS)}")
     if curve not in CURVES:
         raise OptionError("curve", f"no cameras of a curve are called {curve}", remedy=f"use {', '.join(CURVES)}")
-    if scene.channels != 3:
+    if scene.appearance.channels != 3:
         raise OptionError(
             "not-photographs",
-            f"the scene is not of photographs: it has {scene.channels} channels, not R, G, B",
+            f"the scene is not of photographs: it has {scene.appearance.channels} channels, not R, G, B",
             remedy="evaluate those that are",
         )
     photographs = match_photographs(scene, capture)
     resampling, align = _recorded(scene)
-    maps = len(scene.planes) == 1 and scene.to_rgb is None and "fitted" not in scene.settings  # a fit makes none
+    maps = (
+        len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None and "fitted" not in scene.settings
+    )  # a fit makes none
     if curve != "none" and not maps:
         raise OptionError(
             "curve",
             "the scene was fitted to pictures and has no texture maps to measure",
             remedy="leave --curve out, or encode with --fit none",
         )
-    encoded = [int(index) for index in scene.encoded if int(index) in photographs] if maps else []
-    if align is not None and scene.reference not in photographs:
-        log.warning("%s, the reference of the alignment, is missing: no UV measure", scene.names[scene.reference])
+    encoded = [int(index) for index in scene.rig.encoded if int(index) in photographs] if maps else []
+    if align is not None and scene.rig.reference not in photographs:
+        log.warning(
+            "%s, the reference of the alignment, is missing: no UV measure", scene.rig.names[scene.rig.reference]
+        )
         encoded = []
-    height, width = scene.atlas
+    height, width = scene.appearance.atlas
     some = {"all": encoded, "sample": evenly(encoded, SAMPLE), "none": []}
     count = _count(scene, textures)
     session = Session(
@@ -192,7 +203,7 @@ def start_session(
         weights=weights,
         resampling=resampling,
         align=align,
-        atlas=make_atlas(scene.mesh, width, height) if encoded else None,
+        atlas=make_atlas(scene.proxy.mesh, width, height) if encoded else None,
         reference=None,
         circles=circles,
         packed=frozenset(some[png_maps]),
@@ -200,7 +211,7 @@ def start_session(
     )
     if align is None or not encoded:
         return session
-    reference = session.texture(scene.reference, session.photograph(scene.reference))
+    reference = session.texture(scene.rig.reference, session.photograph(scene.rig.reference))
     return replace(session, reference=reference)
 
 
@@ -212,20 +223,20 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
     """
     if photographs.light_field is not None:
         return photographs
-    index = {name: i for i, name in enumerate(scene.names)}
+    index = {name: i for i, name in enumerate(scene.rig.names)}
     chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
     if not len(chosen):
         raise _no_photographs(scene, photographs.root, photographs.names)
     lenses = _recorded_lenses(scene)
     return chosen.calibrated(
-        [scene.cameras[index[name]] for name in chosen.names], [lenses[index[name]] for name in chosen.names]
+        [scene.rig.cameras[index[name]] for name in chosen.names], [lenses[index[name]] for name in chosen.names]
     )
 
 
 def _recorded_lenses(scene: Scene) -> list[Lens | None]:
     recorded = scene.settings.get("lenses")
     if recorded is None:
-        return [None] * len(scene.names)
+        return [None] * len(scene.rig.names)
     try:
         lenses = [
             None if lens is None else Lens(lens[0], tuple(float(value) for value in lens[1])) for lens in recorded
@@ -235,7 +246,7 @@ def _recorded_lenses(scene: Scene) -> list[Lens | None]:
         raise OptionError(
             "settings-unknown", "the scene's record of its lenses cannot be read", remedy="name the --calibration"
         ) from error
-    if len(lenses) != len(scene.names) or not known:
+    if len(lenses) != len(scene.rig.names) or not known:
         raise OptionError(
             "settings-unknown", "the scene records lenses that do not fit its cameras", remedy="name the --calibration"
         )
@@ -246,7 +257,7 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
     return CaptureError(
         "no-photographs",
         f"no photograph has the name of a camera of the scene (here {names[0] if names else 'none'}, there "
-        f"{scene.names[0]})",
+        f"{scene.rig.names[0]})",
         path=root,
         remedy="evaluate with the capture that was encoded",
     )
@@ -255,15 +266,15 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
 def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     """Scene camera to view of the capture, by name; CaptureError `no-photographs` where no name fits."""
     views = {view.name: index for index, view in enumerate(capture.views)}
-    photographs = {index: views[name] for index, name in enumerate(scene.names) if name in views}
+    photographs = {index: views[name] for index, name in enumerate(scene.rig.names) if name in views}
     if not photographs:
         raise _no_photographs(scene, capture.root, capture.names)
     for index, view in photographs.items():
-        K, other = scene.cameras[index].K, capture.views[view].camera.K
+        K, other = scene.rig.cameras[index].K, capture.views[view].camera.K
         if np.abs(K - other).max() > SAME_CAMERA:
             log.warning(
                 "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
-                scene.names[index],
+                scene.rig.names[index],
             )
             break
     return photographs
@@ -283,12 +294,12 @@ def _recorded(scene: Scene) -> tuple[str, str | None]:
 
 def _count(scene: Scene, textures: int | None) -> int:
     if textures is None:
-        return scene.textures
-    if not 0 <= textures <= scene.textures:
+        return scene.appearance.textures
+    if not 0 <= textures <= scene.appearance.textures:
         raise OptionError(
             "textures",
-            f"{textures} textures were asked for, the scene has {scene.textures}",
-            remedy=f"ask for 0 to {scene.textures}",
+            f"{textures} textures were asked for, the scene has {scene.appearance.textures}",
+            remedy=f"ask for 0 to {scene.appearance.textures}",
         )
     return textures
 

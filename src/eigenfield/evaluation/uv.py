@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.scene import Plane
+from eigenfield.core.appearance import Plane
 from eigenfield.encoding.projected import Atlas
 from eigenfield.encoding.projected import measure_map as measure_pictures
 from eigenfield.evaluation.kernels import add_textures

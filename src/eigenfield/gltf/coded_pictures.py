@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from eigenfield.coding.pictures import quantise
 from eigenfield.coding.pictures.pictures_8bit import encode_preview
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.gltf.coarse import affordable
 from eigenfield.gltf.kept import Kept
 from eigenfield.runtime.parallel import parallel_stream
@@ -72,8 +73,8 @@ def code_pictures(
     the threads."""
     fine = round(100 - MEAN_SHARE * (100 - quality))
     planned = []
-    for p, plane in enumerate(scene.planes):
-        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.to_rgb is not None
+    for p, plane in enumerate(scene.appearance.planes):
+        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.appearance.to_rgb is not None
         parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
         ways = [partial(_mean, scene, plane, codec or DEFAULT_CODEC, fine)]
         ways += [partial(_textures, basis, codec or DEFAULT_CODEC, quality, one_unit) for basis in plane.bases]
@@ -88,7 +89,7 @@ def code_pictures(
         files = [[next(done) for _ in some] for some in plan]
         planes.append(PlanePictures(files[0][0], files[1:]))
     first, made = planes[0].mean, ScenePictures(None, planes)
-    plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
+    plain = scene.appearance.to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
     if plain and first.codec == "png" and first.affine is None:
         return made  # the mean itself serves
     preview = kept.one("preview") if codec is None else None
@@ -111,7 +112,7 @@ def _itself(picture: PicturePayload) -> PicturePayload:
 
 def _harmonised(scene: Scene, plane: Plane) -> bool:
     """Whether a plane holds colours brought together by gains, which may lie beyond 0..1 and yet are photographs'."""
-    return scene.colours is not None and plane is scene.planes[0]
+    return scene.appearance.colours is not None and plane is scene.appearance.planes[0]
 
 
 def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: Affine | None) -> PicturePayload:
@@ -128,15 +129,17 @@ def _code_texture(
 def _preview(scene: Scene, coded: int) -> bytes:
     """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
     coded: bytes of the planes."""
-    mean = scene.planes[0].mean if scene.to_rgb is None else _joined(scene, scene.to_rgb)
-    if scene.colours is not None:
+    mean = (
+        scene.appearance.planes[0].mean if scene.appearance.to_rgb is None else _joined(scene, scene.appearance.to_rgb)
+    )
+    if scene.appearance.colours is not None:
         mean = mean.clip(0, 1)
     shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
     if not quantise.photographic(mean) and not quantise.unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
-    if scene.to_rgb is None:
+    if scene.appearance.to_rgb is None:
         return encode_preview(stacked(codes))
     return affordable((encode_preview(stacked(codes), *small) for small in SMALL_PREVIEWS), len, coded)
 
@@ -145,8 +148,10 @@ def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     """(H, W, 3): the means of all planes as R, G, B, at the size of the first; near enough for a preview."""
     import cv2
 
-    height, width = scene.planes[0].mean.shape[:2]
-    resized = [cv2.resize(plane.mean, (width, height), interpolation=cv2.INTER_LINEAR) for plane in scene.planes]
+    height, width = scene.appearance.planes[0].mean.shape[:2]
+    resized = [
+        cv2.resize(plane.mean, (width, height), interpolation=cv2.INTER_LINEAR) for plane in scene.appearance.planes
+    ]
     stacked = np.concatenate([np.atleast_3d(np.asarray(one)) for one in resized], axis=2)
     return np.asarray(stacked @ to_rgb.T, np.float32).clip(0, 1)
 

@@ -63,17 +63,17 @@ def kept_payloads(scene: Scene) -> Kept:
             found[part] = scene.payloads[key]
         elif left[key[0]]:
             lost[part] = size_of(scene.payloads[left[key[0]].popleft()])
-    means = [keys[f"planes[{p}].mean"] for p in range(len(scene.planes))]
-    preview = scene.payloads.get(preview_key(means, scene.to_rgb, scene.colours is not None))
+    means = [keys[f"planes[{p}].mean"] for p in range(len(scene.appearance.planes))]
+    preview = scene.payloads.get(preview_key(means, scene.appearance.to_rgb, scene.appearance.colours is not None))
     return Kept(found if preview is None else {**found, "preview": preview}, lost)
 
 
 def _parts(scene: Scene) -> dict[str, Callable[[], Key]]:
     """The key of each part that may be coded, to be computed."""
     found: dict[str, Callable[[], Key]] = {
-        "mesh": partial(mesh_key, scene.mesh), "cameras": partial(cameras_key, scene.cameras)
+        "mesh": partial(mesh_key, scene.proxy.mesh), "cameras": partial(cameras_key, scene.rig.cameras)
     }  # fmt: skip
-    for p, plane in enumerate(scene.planes):
+    for p, plane in enumerate(scene.appearance.planes):
         found[f"planes[{p}].mean"] = partial(mean_key, plane.mean)
         for b, basis in enumerate(plane.bases):
             found[f"planes[{p}].bases[{b}].textures"] = partial(textures_key, basis.textures, basis.scale, basis.zero)

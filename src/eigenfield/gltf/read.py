@@ -14,6 +14,7 @@ import numpy as np
 from eigenfield.coding import limits
 from eigenfield.coding.pictures.precision import spread_precision
 from eigenfield.coding.pictures.quantise import mean_values
+from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import (
     Coded,
@@ -26,7 +27,9 @@ from eigenfield.core.payloads import (
     textures_key,
     weights_key,
 )
-from eigenfield.core.scene import Basis, EncodedScene, Plane, Scene
+from eigenfield.core.proxy import Proxy
+from eigenfield.core.rig import Rig
+from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
@@ -125,19 +128,21 @@ def _scene(layout: Layout, planes: Sequence[Coded[Plane]], preview: Payload | No
         means = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
         payloads |= {preview_key(means, layout.to_rgb, layout.cameras.colours is not None): [preview]}
     return EncodedScene(
-        mesh=layout.mesh,
-        planes=tuple(plane.value for plane in planes),
-        names=layout.cameras.names,
-        cameras=layout.cameras.cameras,
-        held_out=layout.cameras.held_out,
-        reference=layout.reference,
-        view_plane=layout.view_plane,
-        triangles=layout.triangles,
+        proxy=Proxy(mesh=layout.mesh),
+        rig=Rig(
+            names=layout.cameras.names,
+            cameras=layout.cameras.cameras,
+            held_out=layout.cameras.held_out,
+            reference=layout.reference,
+            view_plane=layout.view_plane,
+            triangles=layout.triangles,
+        ),
+        appearance=Appearance(
+            planes=tuple(plane.value for plane in planes), colours=layout.cameras.colours, to_rgb=layout.to_rgb
+        ),
         settings=layout.settings,
         scores=layout.scores,
         generator=layout.generator,
-        colours=layout.cameras.colours,
-        to_rgb=layout.to_rgb,
         residual=layout.residual,
         payloads=payloads,
     )

@@ -19,7 +19,7 @@ def check_writable(scene: Scene, path: Path | None) -> None:
     def refuse(what: str) -> None:
         raise OutputError("scene-limit", f"a file cannot hold {what}", path=path, remedy="make the scene smaller")
 
-    for plane in scene.planes:
+    for plane in scene.appearance.planes:
         channels = plane.mean.shape[2]
         if channels > limits.MAX_CHANNELS:
             refuse(f"{channels} channels")
@@ -27,24 +27,25 @@ def check_writable(scene: Scene, path: Path | None) -> None:
             w, h = picture_size(width, height, channels)
             if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
                 refuse(f"a picture of {w}x{h}")
-    bases = [basis for plane in scene.planes for basis in plane.bases]
+    bases = [basis for plane in scene.appearance.planes for basis in plane.bases]
     decoded = sum(
-        4 * plane.mean.size + sum(math.prod(basis.textures.shape) for basis in plane.bases) for plane in scene.planes
+        4 * plane.mean.size + sum(math.prod(basis.textures.shape) for basis in plane.bases)
+        for plane in scene.appearance.planes
     )
     counts: Iterable[tuple[int, int, str]] = [
-        (len(scene.cameras), limits.MAX_CAMERAS, "cameras"),
+        (len(scene.rig.cameras), limits.MAX_CAMERAS, "cameras"),
         (sum(basis.count for basis in bases), limits.MAX_COMPONENTS, "eigen textures"),
-        (len(scene.planes), limits.MAX_PLANES, "planes"),
-        (max(len(plane.bases) for plane in scene.planes), limits.MAX_BASES, "bases"),
+        (len(scene.appearance.planes), limits.MAX_PLANES, "planes"),
+        (max(len(plane.bases) for plane in scene.appearance.planes), limits.MAX_BASES, "bases"),
         (decoded, limits.MAX_DECODED, "decoded bytes"),
-        (len(scene.mesh.vertices), limits.MAX_VERTICES, "vertices"),
-        (len(scene.mesh.faces), limits.MAX_TRIANGLES, "triangles"),
+        (len(scene.proxy.mesh.vertices), limits.MAX_VERTICES, "vertices"),
+        (len(scene.proxy.mesh.faces), limits.MAX_TRIANGLES, "triangles"),
         (max((basis.weights.size for basis in bases), default=0), limits.MAX_WEIGHTS, "weights"),
     ]
     for count, most, name in counts:
         if count > most:
             refuse(f"{count} {name}")
-    for name in scene.names:
+    for name in scene.rig.names:
         if len(name) > limits.MAX_NAME or not printable(name):
             raise OutputError(
                 "camera-name", f"the name {name!r} cannot be kept", path=path, remedy="rename the photograph"

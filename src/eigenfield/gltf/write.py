@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS, encoder
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
+from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Plane, Residual, Scene
+from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
@@ -117,15 +118,15 @@ def check_readable(text: bytes, binary: bytes) -> None:
 
 def _plain_sizes(scene: Scene) -> dict[str, int]:
     """Bytes of the parts that are not pictures, as plain numbers."""
-    mesh = scene.mesh
+    mesh = scene.proxy.mesh
     assert mesh.uv is not None
     corner = 2 if _index_type(mesh, False) == UINT16 else 4
     return {
         "mesh": 4 * (mesh.vertices.size + mesh.uv.size) + corner * mesh.faces.size,
-        "cameras": 4 * (5 + 12) * len(scene.cameras),
+        "cameras": 4 * (5 + 12) * len(scene.rig.cameras),
         **{
             f"planes[{p}].bases[{b}].weights": 4 * basis.weights.size
-            for p, plane in enumerate(scene.planes)
+            for p, plane in enumerate(scene.appearance.planes)
             for b, basis in enumerate(plane.bases)
         },
     }
@@ -134,7 +135,7 @@ def _plain_sizes(scene: Scene) -> dict[str, int]:
 def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
     mesh, poses = kept.one("mesh"), kept.one("cameras")
-    shown = scene.mesh if mesh is None else shown_mesh(scene.mesh, coded.bytes + len(mesh.data))
+    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy.mesh, coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
     proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
     if coded.preview is None:
@@ -142,7 +143,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
     else:
         image = {"bufferView": buffer.view(coded.preview.data), "mimeType": PICTURES[coded.preview.codec].mime}
     planes = []
-    for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True)):
+    for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
         weights = [kept.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
         planes.append(_plane(plane, made, weights, buffer, inline=index > 0 or coded.preview is not None))
     cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
@@ -154,10 +155,10 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
         "needs": needs,
         **proxy,
         "planes": planes,
-        **({} if scene.to_rgb is None else {"toRGB": shortest(scene.to_rgb.ravel())}),
+        **({} if scene.appearance.to_rgb is None else {"toRGB": shortest(scene.appearance.to_rgb.ravel())}),
         "cameras": cameras,
         "viewPlane": view_plane,
-        "reference": int(scene.reference),
+        "reference": int(scene.rig.reference),
         "settings": dict(scene.settings),
         "scores": dict(scene.scores),
         "generator": scene.generator or f"eigenfield {__version__}",
@@ -203,9 +204,9 @@ def _by_worth(
     B for its bytes comes first; those of one basis in their order."""
     queues = []
     first = 0
-    for plane, made, shown in zip(scene.planes, coded.planes, planes, strict=True):
+    for plane, made, shown in zip(scene.appearance.planes, coded.planes, planes, strict=True):
         depth = plane.mean.shape[2]
-        matrix = np.eye(depth) if scene.to_rgb is None else scene.to_rgb[:, first : first + depth]
+        matrix = np.eye(depth) if scene.appearance.to_rgb is None else scene.appearance.to_rgb[:, first : first + depth]
         first += depth
         share = np.square(matrix, dtype=np.float64).sum(axis=0)
         for basis, files, entry in zip(plane.bases, made.bases, shown["bases"], strict=True):
@@ -227,7 +228,7 @@ def _by_worth(
 def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
     """The first version that has all that the file uses. named: whether a stream names its codec."""
     found = {FEATURES[need] for need in needs} | {"1.7" if named else "1.0"}
-    if scene.colours is not None:
+    if scene.appearance.colours is not None:
         found.add("1.1")
     if scene.residual is not None:
         found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth else "1.0"}
@@ -346,23 +347,23 @@ def _needs(
     found = {
         "namePattern": "pattern" in cameras,
         "precision": any(plane.mean.precision is not None for plane in coded.planes),
-        "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
+        "regions": any(basis.grid is not None for plane in scene.appearance.planes for basis in plane.bases),
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
         "stacks": any(picture.count != 1 for picture in pictures),
-        "toRGB": scene.to_rgb is not None,
+        "toRGB": scene.appearance.to_rgb is not None,
     }
     own = {CODECS[codec].needs for codec in codecs}
     return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
 
 
 def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, Any]:
-    sizes = np.array([[c.width, c.height] for c in scene.cameras])
-    made = _names(scene.names, None if stream is None else buffer)
-    made["heldOut"] = np.flatnonzero(scene.held_out).tolist()
+    sizes = np.array([[c.width, c.height] for c in scene.rig.cameras])
+    made = _names(scene.rig.names, None if stream is None else buffer)
+    made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
     if stream is not None:
         made["coded"] = _stream(stream, "cameras", buffer)
     else:
-        cameras = scene.cameras
+        cameras = scene.rig.cameras
         intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
         poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
         made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
@@ -371,8 +372,8 @@ def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, 
         made["size"] = sizes[0].tolist()
     else:
         made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
-    if scene.colours is not None:
-        made["colour"] = buffer.accessor(scene.colours.ravel(), FLOAT, "SCALAR")
+    if scene.appearance.colours is not None:
+        made["colour"] = buffer.accessor(scene.appearance.colours.ravel(), FLOAT, "SCALAR")
     return made
 
 
@@ -398,7 +399,7 @@ def _encoded(place: str, value: Any) -> Payload | None:
 
 def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     """short: whether the triangles may be coded, which readers of 1.1 do not know."""
-    plane = scene.view_plane
+    plane = scene.rig.view_plane
     made: dict[str, Any] = {
         name: (np.asarray(value, np.float64) + 0.0).tolist()  # + 0.0: no minus zero in the file
         for name, value in (
@@ -408,12 +409,12 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
             ("extent", plane.extent),
         )
     }
-    if len(scene.triangles):
-        stream = _encoded("triangles", scene.triangles) if short else None
+    if len(scene.rig.triangles):
+        stream = _encoded("triangles", scene.rig.triangles) if short else None
         if stream is not None:
             made["codedTriangles"] = _stream(stream, "triangles", buffer)
         else:
-            made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT32, "SCALAR")
+            made["triangles"] = buffer.accessor(scene.rig.triangles.ravel(), UINT32, "SCALAR")
     return made
 
 
@@ -423,9 +424,9 @@ def _decimals(numbers: Iterable[float]) -> list[float]:
 
 
 def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    camera = scene.cameras[scene.reference]
-    turn = capture_to_gltf(scene.view_plane)
-    perspective, axes = opening_view(camera, scene.mesh)
+    camera = scene.rig.cameras[scene.rig.reference]
+    turn = capture_to_gltf(scene.rig.view_plane)
+    perspective, axes = opening_view(camera, scene.proxy.mesh)
     proxy = {"name": "proxy", "mesh": 0, **_turned(turn)}
     place = _decimals(turn @ camera.centre)
     perspective = dict(zip(perspective, _decimals(perspective.values()), strict=True))

@@ -10,7 +10,7 @@ from eigenfield.core.scene import Scene
 
 def camera_colour(scene: Scene, index: int) -> NDArray[np.float32] | None:
     """(2, 3) gain and offset that harmonised the camera at `index`; None where the scene is not harmonised."""
-    return None if scene.colours is None else scene.colours[index]
+    return None if scene.appearance.colours is None else scene.appearance.colours[index]
 
 
 def undo_colour(

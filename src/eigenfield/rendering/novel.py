@@ -19,15 +19,15 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     """
     weights = view_weights(scene, at)
     x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
-    reference = scene.cameras[scene.reference]
+    reference = scene.rig.cameras[scene.rig.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
-    encoded = scene.encoded
+    encoded = scene.rig.encoded
     for row in np.flatnonzero(weights):
-        camera = scene.cameras[encoded[row]].resized(reference.width, reference.height)
+        camera = scene.rig.cameras[encoded[row]].resized(reference.width, reference.height)
         K += weights[row] * camera.K
         R += weights[row] * camera.R
     rotation = nearest_rotation(R)
-    centre = scene.view_plane.point(float(x), float(y))
+    centre = scene.rig.view_plane.point(float(x), float(y))
     return Camera(K, rotation, -rotation @ centre, reference.width, reference.height)
 
 

@@ -19,9 +19,9 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDAr
     steps = np.linspace(-1.0, 1.0, nodes)
     rows = component_rows(scene)
     found = np.full((nodes, nodes, rows.shape[1]), np.nan)
-    if mode == "delaunay" and len(scene.triangles):
+    if mode == "delaunay" and len(scene.rig.triangles):
         _fill_triangles(scene, steps, rows, found)
-    if scene.view_plane.is_line:  # Y counts for nothing
+    if scene.rig.view_plane.is_line:  # Y counts for nothing
         found[:] = np.array([view_weights(scene, (x, 0.0), mode) @ rows for x in steps])
     for row, column in np.argwhere(np.isnan(found).any(axis=2)) if rows.shape[1] else ():
         found[row, column] = view_weights(scene, (steps[column], steps[row]), mode) @ rows
@@ -30,8 +30,8 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDAr
 
 def component_rows(scene: Scene) -> NDArray[np.float64]:
     """(Ne, N) float64: the weights of all bases of all planes, side by side."""
-    parts = [basis.weights for plane in scene.planes for basis in plane.bases]
-    return np.concatenate([np.zeros((len(scene.encoded), 0)), *parts], axis=1, dtype=np.float64)
+    parts = [basis.weights for plane in scene.appearance.planes for basis in plane.bases]
+    return np.concatenate([np.zeros((len(scene.rig.encoded), 0)), *parts], axis=1, dtype=np.float64)
 
 
 def _fill_triangles(
@@ -39,8 +39,8 @@ def _fill_triangles(
 ) -> None:
     """Put the weights of every node into `found`: within a Delaunay triangle its corners', outside the hull those of
     the nearest point on it."""
-    places = scene.view_plane.coordinates([scene.cameras[i].centre for i in scene.encoded])
-    for triangle in scene.triangles:
+    places = scene.rig.view_plane.coordinates([scene.rig.cameras[i].centre for i in scene.rig.encoded])
+    for triangle in scene.rig.triangles:
         a, b, c = places[triangle]
         low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
         first = np.searchsorted(steps, low - SLACK)
@@ -54,7 +54,7 @@ def _fill_triangles(
         block = found[first[1] : last[1], first[0] : last[0]]
         block[inside] = parts[inside] @ rows[triangle]
     outside = np.argwhere(np.isnan(found).any(axis=2))
-    edges = hull(scene.triangles)
+    edges = hull(scene.rig.triangles)
     nearest, part = nearest_on_segments(steps[outside[:, ::-1]], places, edges)
     ends = rows[edges[nearest]]
     found[outside[:, 0], outside[:, 1]] = (1 - part)[:, None] * ends[:, 0] + part[:, None] * ends[:, 1]

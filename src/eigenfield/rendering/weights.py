@@ -27,10 +27,10 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") 
         raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
     point = np.clip([x, y], -1.0, 1.0)
     places = _coordinates(scene)
-    if scene.view_plane.is_line:
+    if scene.rig.view_plane.is_line:
         point[1] = 0.0
     if mode == "delaunay":
-        return _delaunay(point, places, scene.triangles)
+        return _delaunay(point, places, scene.rig.triangles)
     if mode == "nearest3":
         return _nearest3(point, places)
     if mode == "bilinear":
@@ -40,9 +40,9 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") 
 
 def camera_weights(scene: Scene, index: int, mode: str = "delaunay") -> NDArray[np.float64]:
     """(Ne,) weights of a capture camera: its own row for an encoded one, else those of where it stands."""
-    if not scene.held_out[index]:
-        return (scene.encoded == index).astype(np.float64)
-    x, y = scene.view_plane.coordinates(scene.cameras[index].centre)[0]
+    if not scene.rig.held_out[index]:
+        return (scene.rig.encoded == index).astype(np.float64)
+    x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
     return view_weights(scene, (float(x), float(y)), mode)
 
 
@@ -73,7 +73,9 @@ def _coordinates(scene: Scene) -> NDArray[np.float64]:
     frame."""
 
     def make() -> NDArray[np.float64]:
-        return scene.view_plane.coordinates(np.array([scene.cameras[index].centre for index in scene.encoded]))
+        return scene.rig.view_plane.coordinates(
+            np.array([scene.rig.cameras[index].centre for index in scene.rig.encoded])
+        )
 
     return scene.derived("view-plane coordinates", make)
 

@@ -25,7 +25,7 @@ class Photographs:
         Raises CaptureError `photograph-size` for a photograph that is not of its camera's size.
         """
         for index, view in views.items():
-            own, other = scene.cameras[index], capture.views[view].camera
+            own, other = scene.rig.cameras[index], capture.views[view].camera
             if (own.width, own.height) != (other.width, other.height):
                 raise CaptureError(
                     "photograph-size",
@@ -33,7 +33,7 @@ class Photographs:
                     path=capture.views[view].path,
                     remedy="name the photographs that were encoded",
                 )
-        self.names: Mapping[int, str] = {index: scene.names[index] for index in sorted(views)}
+        self.names: Mapping[int, str] = {index: scene.rig.names[index] for index in sorted(views)}
         self._capture = replace(capture, views=tuple(replace(view, mask=None) for view in capture.views))
         self._views = dict(views)
         self._kept: OrderedDict[int, bytes] = OrderedDict()

@@ -16,8 +16,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.appearance import Basis
 from eigenfield.core.payloads import Affine
-from eigenfield.core.scene import Basis
 
 ZERO = 128  # code of the value 0, so that 0 stays 0
 REACH = 127  # codes on either side of it

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from eigenfield.coding.pictures.pictures_10bit import TOP, Coder, crf_of, decode_10bit
 from eigenfield.coding.pictures.precision import precision_codes, spread_precision
 from eigenfield.coding.pictures.stacking import encode
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import (
     Affine,
     Coded,
@@ -28,7 +29,6 @@ from eigenfield.core.payloads import (
     textures_key,
     weights_key,
 )
-from eigenfield.core.scene import Basis, Plane
 from eigenfield.runtime.parallel import parallel_map
 
 FINEST = 1e-4  # of a code, in the photographs' range

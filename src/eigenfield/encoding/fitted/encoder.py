@@ -8,8 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from eigenfield.capture import LightField
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
@@ -56,7 +56,7 @@ class FittedEncoder:
 
     def with_figures(self, scene: EncodedScene) -> EncodedScene:
         """A scene that `scene` made, with the PSNR of each of its planes in its settings."""
-        fitted = {**scene.settings["fitted"], "psnr": self.fits.reached(scene.planes)}
+        fitted = {**scene.settings["fitted"], "psnr": self.fits.reached(scene.appearance.planes)}
         return replace(scene, settings={**scene.settings, "fitted": fitted})
 
 
@@ -73,12 +73,12 @@ def open_encoder(
         warn: Whether photographs that do not show what the others do are named in a warning.
     """
     views, options = plan.views, plan.options
-    cameras, observations = views.encoded_cameras, views.observations
+    cameras, observations = views.rig.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
     textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[known(options.planes)]
     size = plan.atlas[1], plan.atlas[0]
     with (
-        open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.encoded_reference) as data,
+        open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.rig.encoded_reference) as data,
         open_fits(data, plan.density, textures, PRESETS[known(options.preset)], planes, work, progress) as fits,
     ):
         if warn:
@@ -90,7 +90,7 @@ def open_encoder(
 
 @contextlib.contextmanager
 def open_fitted(
-    capture: LightField,
+    capture: CalibratedObservations,
     proxy: str | os.PathLike[str] | Mesh,
     options: EncodeOptions,
     work: str | os.PathLike[str] | None = None,

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.codecs import encoder
+from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Plane
 from eigenfield.encoding.fitted.code_planes import WEIGHTS_CODEC, CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer

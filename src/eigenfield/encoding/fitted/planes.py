@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.aom import aom_program, encode_aom
 from eigenfield.coding.pictures.pictures_10bit import SMALLEST, SVT, encoder_step
+from eigenfield.core.appearance import Plane
 from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Plane
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import Coder, svt
-from eigenfield.core.scene import Basis
+from eigenfield.core.appearance import Basis
 from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis, code_mean, first_pictures
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales

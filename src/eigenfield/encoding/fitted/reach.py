@@ -89,7 +89,7 @@ def _compared(target: Target, found: Tried[EncodedScene], data: FitData) -> Trie
 def _measured(target: Target, scene: EncodedScene, data: FitData) -> float:
     """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
     renderer, observations, count = Renderer(scene), data.observations, len(data)
-    cameras = [scene.cameras[index] for index in scene.encoded]
+    cameras = [scene.rig.cameras[index] for index in scene.rig.encoded]
 
     def of_observation(index: int) -> float | None:
         picture = renderer.draw(cameras[observations.camera_of(index)], np.eye(count)[index])

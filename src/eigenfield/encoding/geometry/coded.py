@@ -16,8 +16,8 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import camera_lattice, world_lattice
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mesh_key
+from eigenfield.core.proxy import Proxy
 from eigenfield.gltf.layout_geometry import cameras_of
-from eigenfield.proxy.relief.find_lattice import relief_lattice
 
 PIXEL_STEP = 0.25  # pixels of the reference camera, for meshes that are no relief
 DEPTH_ERROR = 0.04  # pixels by which a rounded depth moves a point in the camera that is farthest from the reference
@@ -28,10 +28,10 @@ MESH_CODEC = "mesh-1"
 CAMERAS_CODEC = "cameras-1"
 
 
-def coded_mesh(mesh: Mesh, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:
+def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:
     """The mesh as a file will have it: rounded to pixels and inverse depth of the camera that a relief was made in,
     else of the reference camera where that has all of the mesh before it, else to a grid in the world."""
-    return mesh_of_stream(*_code_mesh(mesh, cameras, reference))
+    return mesh_of_stream(*_code_mesh(proxy, cameras, reference))
 
 
 def mesh_of_stream(stream: bytes, mesh: Mesh) -> Coded[Mesh]:
@@ -39,12 +39,12 @@ def mesh_of_stream(stream: bytes, mesh: Mesh) -> Coded[Mesh]:
     return Coded(mesh, Payloads({mesh_key(mesh): [Payload(MESH_CODEC, stream)]}))
 
 
-def _code_mesh(mesh: Mesh, cameras: Sequence[Camera], reference: int) -> tuple[bytes, Mesh]:
+def _code_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> tuple[bytes, Mesh]:
     encode = encoder(MESH_CODEC)
-    relief = relief_lattice(mesh, cameras, DEPTH_ERROR)
-    if relief is not None:
+    mesh, lattice = proxy.mesh, proxy.lattice
+    if lattice is not None:
         with contextlib.suppress(ValueError):  # too far off the picture for the lattice
-            return encode(mesh, relief[0], uv_bits=UV_BITS, fine=relief[1])
+            return encode(mesh, lattice, uv_bits=UV_BITS, fine=lattice.fine)
     camera = cameras[reference]
     depth = camera.project(mesh.vertices)[1]
     if (depth > 0).all():

@@ -1,4 +1,4 @@
-"""Any proxy as a fitted file will have it."""
+"""Any proxy as a fitted file keeps it."""
 
 from __future__ import annotations
 
@@ -9,19 +9,26 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations
 from eigenfield.core.payloads import Coded
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_mesh, mesh_of_stream
-from eigenfield.encoding.geometry.simplify_relief import slim_relief
-from eigenfield.proxy.relief.find_lattice import relief_lattice
+from eigenfield.core.proxy import Proxy
+from eigenfield.encoding.geometry.coded import coded_mesh, mesh_of_stream
+from eigenfield.encoding.geometry.simplify_relief import simplify_relief_rd
 
 
-def slim_mesh(
-    mesh: Mesh, cameras: Sequence[Camera], reference: int, observations: Observations, price: float, texels: float
+def simplify_proxy_rd(
+    proxy: Proxy, cameras: Sequence[Camera], reference: int, observations: Observations, price: float, texels: float
 ) -> Coded[Mesh]:
-    """The mesh as a file will have it: a relief with what its pictures are worth (`slim_relief`), other meshes with all
-    their triangles (`coded_mesh`)."""
-    relief = relief_lattice(mesh, cameras, DEPTH_ERROR)
-    if relief is not None:
+    """The mesh as a file keeps it: a relief simplified by rate and distortion, other meshes with all their triangles.
+
+    Args:
+        proxy: With its lattice, if it is a relief.
+        cameras: The encoded ones.
+        reference: Index of the reference camera among them.
+        observations: Theirs.
+        price: Squared error that one byte is worth.
+        texels: Of the atlas, for one pixel of the reference camera.
+    """
+    if proxy.lattice is not None:
         with contextlib.suppress(ValueError):  # too far off the picture for the lattice
-            slim = slim_relief(mesh, *relief, cameras, observations, price, texels)
-            return mesh_of_stream(slim.stream, slim.mesh)
-    return coded_mesh(mesh, cameras, reference)
+            made = simplify_relief_rd(proxy.mesh, proxy.lattice, cameras, observations, price, texels)
+            return mesh_of_stream(made.stream, made.mesh)
+    return coded_mesh(proxy, cameras, reference)

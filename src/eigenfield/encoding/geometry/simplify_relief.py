@@ -54,10 +54,9 @@ class Form:
         return self.loss + price * len(self.stream)
 
 
-def slim_relief(
+def simplify_relief_rd(
     mesh: Mesh,
     lattice: Lattice,
-    fine: int,
     cameras: Sequence[Camera],
     observations: Observations,
     price: float,
@@ -67,14 +66,14 @@ def slim_relief(
 
     Args:
         mesh: the relief, with UVs.
-        lattice, fine: of `relief_lattice`.
+        lattice: of `relief_lattice`.
         cameras: of the observations.
         observations: some of them are decoded, see `depth_effect`.
         price: squared error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in.
         texels: for a pixel.
     """
     assert mesh.uv is not None
-    exact = lattice.coordinates(mesh.vertices)
+    fine, exact = lattice.fine, lattice.coordinates(mesh.vertices)
     effect = depth_effect(mesh, lattice, 2.0**fine, cameras, observations)
     price *= effect.seen / texels / LEFT
     found: list[tuple[float, Form]] = []

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Basis, EncodedScene, Plane
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.options import known
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
@@ -42,7 +43,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     colours = None
     with texture_maps(
         make_atlas(plan.mesh, *plan.atlas),
-        views.encoded_cameras,
+        views.rig.encoded_cameras,
         views.observations,
         resampling=resampling,
         work=work,
@@ -50,9 +51,9 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     ) as maps:
         if options.harmonise is not None:
             own["harmonise"] = options.harmonise
-            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views.held_out)
+            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views.rig.held_out)
         if options.align is not None:
-            reference = views.taken_by.tolist().index(views.reference)
+            reference = views.taken_by.tolist().index(views.rig.reference)
             align_maps(maps, reference, options.align, progress)
         mean = _mean_of(maps, progress)  # equation 1
         spreader = make_spreader(maps.atlas, mean.seen)

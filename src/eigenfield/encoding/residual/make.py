@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from eigenfield.capture import LightField
 from eigenfield.coding.pictures.pictures_10bit import SMALLEST
 from eigenfield.coding.video.av1 import Planes, encode_film
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
+from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import EncodedScene, Residual
 from eigenfield.encoding.residual.colour import to_planes
@@ -28,7 +28,7 @@ PRESET = 2  # SVT-AV1's: 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
 
 def with_residual(
     scene: EncodedScene,
-    capture: LightField,
+    capture: CalibratedObservations,
     quality: int = DEFAULT_QUALITY,
     progress: Progress | None = None,
 ) -> EncodedScene:
@@ -44,14 +44,14 @@ def with_residual(
         OptionError: `not-photographs` for a scene that is not R, G, B; as `check_residual`.
         CaptureError: A photograph cannot be read.
     """
-    if scene.channels != 3:
+    if scene.appearance.channels != 3:
         raise OptionError(
             "not-photographs",
-            f"the scene has {scene.channels} channels, not R, G, B",
+            f"the scene has {scene.appearance.channels} channels, not R, G, B",
             remedy="leave the residual out",
         )
-    encoded = scene.encoded
-    cameras = [scene.cameras[index] for index in encoded]
+    encoded = scene.rig.encoded
+    cameras = [scene.rig.cameras[index] for index in encoded]
     rows, columns = check_residual(cameras, quality)
     scale = CODE, CODE / CHROMA_GAIN
     renderer, full = Renderer(scene), quality >= FULL_FROM
@@ -59,7 +59,9 @@ def with_residual(
     def planes(row: int) -> Planes:
         index = int(encoded[row])
         shown = capture.photograph(index)
-        drawn = renderer.draw(scene.cameras[index], camera_weights(scene, index), colour=camera_colour(scene, index))
+        drawn = renderer.draw(
+            scene.rig.cameras[index], camera_weights(scene, index), colour=camera_colour(scene, index)
+        )
         counted = drawn.coverage > 0 if shown.mask is None else (drawn.coverage > 0) & (shown.mask > 0.5)
         return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full)
 

@@ -22,8 +22,8 @@ def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
     """
     residual = _residual(scene)
     for row, planes in zip(residual.order, residual_frames(residual), strict=True):
-        index = int(scene.encoded[row])
-        camera = scene.cameras[index]
+        index = int(scene.rig.encoded[row])
+        camera = scene.rig.cameras[index]
         yield index, to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
 
 
@@ -47,12 +47,12 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     Raises OptionError `residual` where the camera has none; as `differences`.
     """
     residual = _residual(scene)
-    if scene.held_out[index]:
+    if scene.rig.held_out[index]:
         raise OptionError(
-            "residual", f"{scene.names[index]} is held out: it has no residual", remedy="name an encoded camera"
+            "residual", f"{scene.rig.names[index]} is held out: it has no residual", remedy="name an encoded camera"
         )
-    position = int(np.flatnonzero(residual.order == np.searchsorted(scene.encoded, index))[0])
-    camera = scene.cameras[index]
+    position = int(np.flatnonzero(residual.order == np.searchsorted(scene.rig.encoded, index))[0])
+    camera = scene.rig.cameras[index]
     for number, planes in enumerate(residual_frames(residual)):
         if number == position:
             return to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
@@ -71,7 +71,7 @@ def corrected(picture: Picture, difference: NDArray[np.float32], background: Seq
 
 def captured_samples(scene: Scene, index: int) -> int | None:
     """`samples` of a renderer for the picture of a camera that the scene's residual belongs to."""
-    return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.cameras[index])
+    return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.rig.cameras[index])
 
 
 def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
@@ -93,7 +93,7 @@ def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -
                 remedy="leave one of them out",
             )
     shots = replace(shots, samples=captured_samples(scene, index))
-    picture = shots.picture(scene.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
+    picture = shots.picture(scene.rig.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
     return shots.pixels_of(corrected(picture, difference, shots.background or (0.0,)))
 
 

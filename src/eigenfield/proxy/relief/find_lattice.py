@@ -9,6 +9,7 @@ columns.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 
 SOME = 4000  # vertices that the camera is fitted to
 REACH = 2**20 - 1  # of lattice coordinates, either way
@@ -33,9 +35,19 @@ CLEAR = 0.75  # of the longest sum, for the coarsest columns
 STRAY = 6.0  # times what a sum of random turns has
 
 
-def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> tuple[Lattice, int] | None:
-    """The lattice of a relief, and how many of its last binary digits are mostly zero (`encode_mesh`'s `fine`); None
-    for other meshes. depth_error: pixels by which a rounded depth may move a point in the camera that it moves most."""
+def relief_proxy(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> Proxy:
+    """The mesh with its lattice, if it is a relief; arguments as `relief_lattice`."""
+    return Proxy(mesh, relief_lattice(mesh, cameras, depth_error))
+
+
+def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) -> Lattice | None:
+    """The lattice that a relief was made on; None for other meshes.
+
+    Args:
+        mesh: With UVs.
+        cameras: Those that may have made it, and in which a rounded depth counts.
+        depth_error: Pixels by which a rounded depth may move a point in the camera that it moves most.
+    """
     assert mesh.uv is not None
     label = _charts(mesh)
     chart = np.flatnonzero(label == np.argmax(np.bincount(label)))
@@ -58,7 +70,7 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     moved = np.linalg.norm([(matrix[:, :3] @ (centre - camera.centre))[:2] for camera in cameras], axis=1).max()
     step = max(2 * depth_error / max(float(moved), 1e-9), float(1 / found[:, 2].min() / 2**19))
     lattice = camera_lattice(matrix, 2.0**-fine, step, (float(origin[0]), float(origin[1])))
-    return (lattice, fine) if _keeps(lattice, mesh, cameras) else None
+    return replace(lattice, fine=fine) if _keeps(lattice, mesh, cameras) else None
 
 
 def _keeps(lattice: Lattice, mesh: Mesh, cameras: Sequence[Camera]) -> bool:

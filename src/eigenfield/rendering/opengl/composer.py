@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.errors import FormatError
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.rendering.weight_map import component_rows, weight_map
 
@@ -122,7 +123,7 @@ class Composer:
         omega = None if mix is None else mix @ self._rows
         if omega is None:
             self._make_rays()
-            set_uniforms(self._sum, eye=_on_plane(self._scene.view_plane, eye))
+            set_uniforms(self._sum, eye=_on_plane(self._scene.rig.view_plane, eye))
         self._context.enable_only(self._context.BLEND)
         self._context.blend_func = self._context.ONE, self._context.ONE
         for grid in (*self._coarser, self._whole):
@@ -170,10 +171,10 @@ class Composer:
 
     def _make_grids(self) -> tuple[_Grid, list[_Grid]]:
         """The grid of the whole atlas, which takes the others, and those that are coarser, with all parts."""
-        whole = self._grid(*self._scene.atlas, mips=True)
-        grids = {self._scene.atlas: whole}
+        whole = self._grid(*self._scene.appearance.atlas, mips=True)
+        grids = {self._scene.appearance.atlas: whole}
         column = group = channel = 0
-        for plane in self._scene.planes:
+        for plane in self._scene.appearance.planes:
             own = self._colours[channel : channel + plane.mean.shape[2]]
             channel += plane.mean.shape[2]
             for size in plane.sizes:
@@ -231,7 +232,7 @@ class Composer:
         if self._maps is not None or not grids:
             return
         found = weight_map(self._scene, self._mode)
-        nodes, bases = len(found), [basis for plane in self._scene.planes for basis in plane.bases]
+        nodes, bases = len(found), [basis for plane in self._scene.appearance.planes for basis in plane.bases]
         counts = [basis.count for basis in bases]
         slots = np.concatenate([np.arange(n) + 4 * sum(-(-m // 4) for m in counts[:i]) for i, n in enumerate(counts)])
         layers = np.zeros((sum(-(-n // 4) for n in counts), 4, nodes, nodes), np.float32)
@@ -242,9 +243,9 @@ class Composer:
         shifts = _shifts()
         program = self._program(SPREAD.replace("SHIFTS", str(len(shifts))), PLACE)
         set_uniforms(program, shifts=shifts)
-        mesh = self._scene.mesh
+        mesh = self._scene.proxy.mesh
         assert mesh.uv is not None
-        corners = np.concatenate([mesh.uv, _on_plane(self._scene.view_plane, mesh.vertices)], axis=1)
+        corners = np.concatenate([mesh.uv, _on_plane(self._scene.rig.view_plane, mesh.vertices)], axis=1)
         vertices = self._context.buffer(corners.astype(np.float32).tobytes())
         faces = self._context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes())
         layout = [(vertices, "2f 3f", "coordinate", "onPlane")]
@@ -279,9 +280,9 @@ def set_uniforms(program: Any, **values: ArrayLike) -> None:
 
 def _colours_of(scene: Scene) -> NDArray[np.float64]:
     """(K, 3): R, G and B of the value 1 of each channel of all planes."""
-    channels = [int(plane.mean.shape[2]) for plane in scene.planes]
-    if scene.to_rgb is not None and max(channels) <= LAYERS:
-        return scene.to_rgb.T.astype(np.float64)
+    channels = [int(plane.mean.shape[2]) for plane in scene.appearance.planes]
+    if scene.appearance.to_rgb is not None and max(channels) <= LAYERS:
+        return scene.appearance.to_rgb.T.astype(np.float64)
     if channels in ([1], [3]):
         return np.eye(3) if channels == [3] else np.ones((1, 3))
     raise FormatError(

@@ -145,7 +145,7 @@ class OpenGLRenderer:
         if textures is not None and textures < 0:
             raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
         assert self._composer is not None, "the renderer is closed"
-        largest = max((basis.count for plane in self._scene.planes for basis in plane.bases), default=0)
+        largest = max((basis.count for plane in self._scene.appearance.planes for basis in plane.bases), default=0)
         self._composer.compose(largest if textures is None else min(textures, largest), weights, camera.centre)
         drawn, resolved = self._frames(camera.width, camera.height)
         gain, offset = (np.ones(3), np.zeros(3)) if colour is None else np.asarray(colour, np.float64)
@@ -161,7 +161,7 @@ class OpenGLRenderer:
         return resolved
 
     def _set_up(self, filter: str, weights: str) -> None:
-        context, scene, mesh = self.context, self._scene, self._scene.mesh
+        context, scene, mesh = self.context, self._scene, self._scene.proxy.mesh
         self._composer = Composer(context, scene, weights)
         head = f"{HEAD}#define BICUBIC {FILTERS.index(filter)}\n"
         source = head + shader("cubic") + shader("surface") + FRAGMENT
@@ -175,7 +175,7 @@ class OpenGLRenderer:
         faces = self._keep(context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes()))
         layout = [(vertices, "3f 2f", "position", "coordinate")]
         self._array = self._keep(context.vertex_array(self._program, layout, index_buffer=faces))
-        detail = median_footprint(make_surface(mesh, *scene.atlas), scene.cameras[scene.reference])
+        detail = median_footprint(make_surface(mesh, *scene.appearance.atlas), scene.rig.cameras[scene.rig.reference])
         set_uniforms(self._program, composed=np.int32(0), finest=ONE_SAMPLE * max(detail, 1.0))
 
     def _frames(self, width: int, height: int) -> tuple[Any, Any]:

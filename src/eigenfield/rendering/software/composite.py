@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.core.scene import Basis, Scene
+from eigenfield.core.appearance import Basis
+from eigenfield.core.scene import Scene
 from eigenfield.rendering.software.kernels import AREA
 from eigenfield.rendering.software.resample import Taps, make_taps, tiles_read
 from eigenfield.rendering.software.resample_kernels import add_tiles, clear_outside, enlarge_tiles, join_tiles
@@ -76,22 +77,30 @@ class Composite:
 
 def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
     """Lay out a scene's textures for the tiles `used` (tile rows, tile columns) of its atlas."""
-    size = scene.atlas
-    total = sum(int(plane.mean.shape[2]) for plane in scene.planes)
-    matrix = np.eye(total, dtype=np.float32) if scene.to_rgb is None else scene.to_rgb.astype(np.float32)
+    size = scene.appearance.atlas
+    total = sum(int(plane.mean.shape[2]) for plane in scene.appearance.planes)
+    matrix = (
+        np.eye(total, dtype=np.float32)
+        if scene.appearance.to_rgb is None
+        else scene.appearance.to_rgb.astype(np.float32)
+    )
     groups = _groups(scene)
-    plain = scene.to_rgb is None and len(scene.planes) == 1 and scene.planes[0].mean.shape[:2] == size
+    plain = (
+        scene.appearance.to_rgb is None
+        and len(scene.appearance.planes) == 1
+        and scene.appearance.planes[0].mean.shape[:2] == size
+    )
     plain &= len(groups) <= 1 and all(_whole(bases, size) for _, _, bases in groups)
     places = np.flatnonzero(used)
     if plain:
-        plane = scene.planes[0]
+        plane = scene.appearance.planes[0]
         tiled = tile(plane.mean, plane.bases, used, total)
         weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
         part = Part(0, total, size, tiled, weights, _numbers(used), None, None)
         return Composite(size, total, part.number, tiled.mean, matrix, (part,), True)
     base = np.zeros((len(places), len(matrix), AREA), np.float32)
     first = 0
-    for plane in scene.planes:
+    for plane in scene.appearance.planes:
         depth = int(plane.mean.shape[2])
         share = np.ascontiguousarray(matrix[:, first : first + depth])
         _add_mean(plane.mean, size, places, share, base)
@@ -144,7 +153,7 @@ def _groups(scene: Scene) -> list[tuple[int, int, list[Basis]]]:
     """First channel, channels and bases of what can be summed together: one plane, one grid, one corner."""
     found: list[tuple[int, int, list[Basis]]] = []
     first = 0
-    for plane in scene.planes:
+    for plane in scene.appearance.planes:
         depth = int(plane.mean.shape[2])
         kinds: dict[tuple[tuple[int, int], tuple[int, int], tuple[int, ...]], list[Basis]] = {}
         for basis in plane.bases:

@@ -51,9 +51,9 @@ class Renderer:
     """Draws a scene; prepared once, then callable from any number of threads at a time."""
 
     def __init__(self, scene: Scene) -> None:
-        self.channels = scene.channels
-        self._surface = make_surface(scene.mesh, *scene.atlas)
-        self._detail = median_footprint(self._surface, scene.cameras[scene.reference])
+        self.channels = scene.appearance.channels
+        self._surface = make_surface(scene.proxy.mesh, *scene.appearance.atlas)
+        self._detail = median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
         self._composite = make_composite(scene, self._surface.used)
         self._spare: deque[Buffers] = deque(maxlen=SPARE_FRAMES)
 
@@ -229,8 +229,8 @@ def viewpoint(
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
     if at is not None:
         return novel_camera(scene, at), view_weights(scene, at, weights)
-    index = scene.reference if camera is None else camera_index(scene, camera)
-    return scene.cameras[index], camera_weights(scene, index, weights)
+    index = scene.rig.reference if camera is None else camera_index(scene, camera)
+    return scene.rig.cameras[index], camera_weights(scene, index, weights)
 
 
 def viewpoint_colour(
@@ -239,14 +239,14 @@ def viewpoint_colour(
     """The `colour` of `Renderer.draw` for what `viewpoint` names: a captured camera's own, None for a place."""
     if at is not None:
         return None
-    return camera_colour(scene, scene.reference if camera is None else camera_index(scene, camera))
+    return camera_colour(scene, scene.rig.reference if camera is None else camera_index(scene, camera))
 
 
 def camera_index(scene: Scene, name: str) -> int:
     """Where `name` stands in `scene.names`. Raises OptionError `unknown-camera`, with the names most like it."""
-    if name in scene.names:
-        return scene.names.index(name)
-    near = difflib.get_close_matches(name, scene.names, n=3, cutoff=0.0)
+    if name in scene.rig.names:
+        return scene.rig.names.index(name)
+    near = difflib.get_close_matches(name, scene.rig.names, n=3, cutoff=0.0)
     raise OptionError("unknown-camera", f"no camera is called {name!r}", remedy=f"nearest are {', '.join(near)}")
 
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.scene import Basis
+from eigenfield.core.appearance import Basis
 from eigenfield.rendering.software.kernels import AREA, DEPTH, LANES, TILE, compose_tiles
 from eigenfield.runtime.parallel import parallel_map, pieces
 

@@ -62,10 +62,10 @@ def write_colmap(
     """
     todo = _captured(shots) if points is None else _along(shots, points)
     files = file_names([shot.name for shot in todo])
-    refuse_attributes(shots.scene.channels)
+    refuse_attributes(shots.scene.appearance.channels)
     sparse = _sparse_points(shots.scene, todo)
     plain = replace(shots, resolution=None)
-    if residual and (points is not None or any(camera.K[0, 1] for camera in shots.scene.cameras)):
+    if residual and (points is not None or any(camera.K[0, 1] for camera in shots.scene.rig.cameras)):
         raise OptionError(
             "residual", "these are not the captured cameras", remedy="leave it out: it is of captured views alone"
         )
@@ -89,7 +89,7 @@ def write_colmap(
         assert model is not None, "pinholes without skew have a model"
         for name, data in model.items():
             put(part / "sparse" / "0" / name, data)
-        held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(shots.scene.held_out)]}
+        held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(shots.scene.rig.held_out)]}
         held |= {"residual": sorted(exact)} if residual else {}
         named = {shot.name: f"images/{file}" for shot, file in zip(todo, files, strict=True)}
         write_listing(part, "colmap", {"images": named, **held})
@@ -104,7 +104,7 @@ def _captured(shots: Shots) -> list[Shot]:
             camera_weights(scene, index, shots.weights),
             camera_colour(scene, index),
         )
-        for index, (name, camera) in enumerate(zip(scene.names, scene.cameras, strict=True))
+        for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True))
     ]
 
 
@@ -125,8 +125,8 @@ def _pinhole(camera: Camera, resolution: tuple[int, int] | None) -> Camera:
 
 def _sparse_points(scene: Scene, shots: Sequence[Shot]) -> SparsePoints:
     """Points of the surface that two views or more see."""
-    positions, uv = _surface_points(scene.mesh)
-    seen = np.array(parallel_map(lambda shot: _seen(scene.mesh, shot.camera, positions), shots))
+    positions, uv = _surface_points(scene.proxy.mesh)
+    seen = np.array(parallel_map(lambda shot: _seen(scene.proxy.mesh, shot.camera, positions), shots))
     kept = np.flatnonzero(seen.sum(axis=0) >= min(2, len(shots)))
     if len(kept) == 0:
         raise OptionError("no-points", "the views see nothing in common", remedy="give viewpoints that look at it")

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import Plane, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
@@ -38,26 +39,26 @@ def write_maps(
     if textures is not None and textures < 0:
         raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
     make = camera_maps(scene)
-    names = [scene.names[index] for index in scene.encoded]
+    names = [scene.rig.names[index] for index in scene.rig.encoded]
     files = file_names(names)
     drawn = parallel_stream(lambda row: png_bytes(make(row, textures)), range(len(names)))
     with atomic_folder(folder, overwrite) as part:
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
             put(part / file, data)
-        height, width = scene.atlas
+        height, width = scene.appearance.atlas
         write_listing(part, "maps", {"size": [width, height], "maps": dict(zip(names, files, strict=True))})
 
 
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
     """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
     compose = _composer(scene)
-    unit = np.eye(len(scene.encoded))
+    unit = np.eye(len(scene.rig.encoded))
     return lambda row, textures: compose(unit[row], textures)
 
 
 def mean_map(scene: Scene) -> NDArray[np.float32]:
     """(H, W, C): the means of all planes, drawn at the atlas's size; not cut."""
-    return _composer(scene)(np.zeros(len(scene.encoded)), 0)
+    return _composer(scene)(np.zeros(len(scene.rig.encoded)), 0)
 
 
 def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
@@ -65,16 +66,16 @@ def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDAr
 
     textures: the first so many of each basis.
     """
-    count = scene.textures if textures is None else textures
-    kept = [[basis.truncated(min(count, basis.count)) for basis in plane.bases] for plane in scene.planes]
+    count = scene.appearance.textures if textures is None else textures
+    kept = [[basis.truncated(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
     total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
-    for plane, bases in zip(scene.planes, kept, strict=True):
+    for plane, bases in zip(scene.appearance.planes, kept, strict=True):
         alone = []
         for basis in bases:
             alone.append(replace(basis, weights=np.eye(total, basis.count, -first, np.float32)))
             first += basis.count
         planes.append(Plane(np.zeros_like(plane.mean), tuple(alone)))
-    compose = _composer(replace(scene, planes=tuple(planes)))
+    compose = _composer(replace(scene, appearance=replace(scene.appearance, planes=tuple(planes))))
     weights = [row for bases in kept for basis in bases for row in basis.weights.T]
     for number, row in enumerate(weights):
         yield compose(np.eye(total)[number], None), row
@@ -82,13 +83,13 @@ def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDAr
 
 def _composer(scene: Scene) -> Callable[[NDArray[np.float64], int | None], NDArray[np.float32]]:
     """A function of what rows of weights are multiplied by, and a number of eigen textures: the (H, W, C) sum."""
-    refuse_attributes(scene.channels)
-    every = np.ones(tile_shape(scene.atlas), np.bool_)
+    refuse_attributes(scene.appearance.channels)
+    every = np.ones(tile_shape(scene.appearance.atlas), np.bool_)
     composite = make_composite(scene, every)
 
     def compose(mix: NDArray[np.float64], textures: int | None) -> NDArray[np.float32]:
-        layers = empty_layers(*scene.atlas, scene.channels)
+        layers = empty_layers(*scene.appearance.atlas, scene.appearance.channels)
         compose_scene(composite, mix, textures, every, make_buffers(composite), layers)
-        return read_layers(layers, *scene.atlas, scene.channels)
+        return read_layers(layers, *scene.appearance.atlas, scene.appearance.channels)
 
     return compose

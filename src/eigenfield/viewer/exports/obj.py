@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.quantise import basis_scale, texture_codes
+from eigenfield.core.appearance import Basis
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import Basis, Scene
+from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.imaging.png import png_bytes
@@ -71,8 +72,8 @@ def write_obj_folder(
     if textures is not None and textures < 0:
         raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
     mean = png_bytes(mean_map(scene))
-    count = scene.textures if textures is None else textures
-    total = sum(min(count, basis.count) for plane in scene.planes for basis in plane.bases)
+    count = scene.appearance.textures if textures is None else textures
+    total = sum(min(count, basis.count) for plane in scene.appearance.planes for basis in plane.bases)
     digits = max(2, len(str(total - 1)))
     with atomic_folder(folder, overwrite) as part:
         (part / "mean.png").write_bytes(mean)
@@ -90,13 +91,13 @@ def write_obj_folder(
             "obj",
             {
                 "axes": "x right, y up, the cameras look along -z; v upwards",
-                "toCapture": capture_to_gltf(scene.view_plane).T.tolist(),
+                "toCapture": capture_to_gltf(scene.rig.view_plane).T.tolist(),
                 "sum": SUM,
                 "mean": "mean.png",
                 "textures": entries,
                 "weights": {
-                    scene.names[camera]: _numbers(np.array([of[row] for of in weights]))
-                    for row, camera in enumerate(scene.encoded)
+                    scene.rig.names[camera]: _numbers(np.array([of[row] for of in weights]))
+                    for row, camera in enumerate(scene.rig.encoded)
                 },
             },
         )
@@ -110,7 +111,7 @@ def _codes(scene: Scene, count: int) -> Iterator[Coded]:
             ones = np.ones((1, picture.shape[2]), np.float32)
             yield from _codes_of(Basis(picture[None], ones, 0 * ones, weights[:, None]), picture.shape[2], 1)
         return
-    (plane,) = scene.planes
+    (plane,) = scene.appearance.planes
     for basis in plane.bases:
         yield from _codes_of(basis, plane.mean.shape[2], min(count, basis.count))
 
@@ -123,14 +124,14 @@ def _codes_of(basis: Basis, channels: int, count: int) -> Iterator[Coded]:
 
 def _plain(scene: Scene) -> bool:
     """Whether the scene's eigen textures are pictures of the whole atlas."""
-    sizes = {basis.textures.shape[1:3] for plane in scene.planes for basis in plane.bases}
-    return scene.to_rgb is None and len(scene.planes) == 1 and sizes <= {scene.atlas}
+    sizes = {basis.textures.shape[1:3] for plane in scene.appearance.planes for basis in plane.bases}
+    return scene.appearance.to_rgb is None and len(scene.appearance.planes) == 1 and sizes <= {scene.appearance.atlas}
 
 
 def _mesh(scene: Scene, material: str) -> bytes:
-    mesh = scene.mesh
+    mesh = scene.proxy.mesh
     assert mesh.uv is not None
-    turned = mesh.vertices.astype(np.float64) @ capture_to_gltf(scene.view_plane).T
+    turned = mesh.vertices.astype(np.float64) @ capture_to_gltf(scene.rig.view_plane).T
     lines = [
         f"# eigenfield {__version__}",
         "# x right, y up, the cameras look along -z; lengths as in the capture",

@@ -61,7 +61,7 @@ def quilt_of(
         raise OptionError("quilt", f"a quilt of {columns}x{rows}", remedy=f"ask for 1x1 to {MOST}x{MOST}")
     if not 0 <= spread <= 1:
         raise OptionError("spread", f"a spread of {spread:g}", remedy="give 0 (one place) to 1 (the array's width)")
-    camera = scene.cameras[scene.reference]
+    camera = scene.rig.cameras[scene.rig.reference]
     scale = min(1.0, SIDE / (columns * camera.width), SIDE / (rows * camera.height))
     width, height = resolution or (max(1, int(camera.width * scale)), max(1, int(camera.height * scale)))
     if width < 1 or height < 1 or columns * width > LARGEST or rows * height > LARGEST:
@@ -118,7 +118,7 @@ def quilt_views(shots: Shots, quilt: Quilt) -> list[tuple[Camera, NDArray[np.flo
     middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
     plane of the display. Raises OptionError `quilt-array` where the cameras do not stand side by side.
     """
-    scene, plane = shots.scene, shots.scene.view_plane
+    scene, plane = shots.scene, shots.scene.rig.view_plane
     base = at_resolution(novel_camera(scene, (0.0, 0.0)), (quilt.width, quilt.height))
     right = plane.right
     if base.R[0] @ right < SIDEWAYS:
@@ -156,7 +156,7 @@ def _looking(
 
 def _median_depth(scene: Scene, camera: Camera) -> float:
     """Of what the camera sees, along its z. Raises OptionError `quilt-array` where it sees nothing."""
-    near = rasterise_view(scene.mesh, camera).inverse_depth
+    near = rasterise_view(scene.proxy.mesh, camera).inverse_depth
     if not near.any():
         raise OptionError(
             "quilt-array", "the array's middle sees nothing of the scene", remedy="a quilt needs a surface before it"

@@ -1,0 +1,50 @@
+"""The cameras of a capture, which of them are encoded, and the plane that they stand on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.camera import Camera
+from eigenfield.core.viewplane import ViewPlane
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """All Nc cameras of a capture, encoded or held out.
+
+    Attributes:
+        names: One for each camera.
+        cameras: In the capture's order.
+        held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
+        reference: Index of the camera nearest the centre, or of the one asked for; an encoded one.
+        view_plane: The plane through the cameras.
+        triangles: (T, 3) int32 Delaunay triangles on it over the *encoded* cameras, counted among themselves.
+    """
+
+    names: tuple[str, ...]
+    cameras: tuple[Camera, ...]
+    held_out: NDArray[np.bool_]
+    reference: int
+    view_plane: ViewPlane
+    triangles: NDArray[np.int32]
+
+    @property
+    def encoded(self) -> NDArray[np.int64]:
+        """(Ne,) indices of the encoded cameras."""
+        return np.flatnonzero(~self.held_out)
+
+    @property
+    def encoded_cameras(self) -> list[Camera]:
+        return [self.cameras[index] for index in self.encoded]
+
+    @property
+    def encoded_names(self) -> list[str]:
+        return [self.names[index] for index in self.encoded]
+
+    @property
+    def encoded_reference(self) -> int:
+        """The reference camera, counted among the encoded ones."""
+        return int(np.searchsorted(self.encoded, self.reference))
