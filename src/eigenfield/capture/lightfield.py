@@ -15,7 +15,7 @@ from eigenfield.core.errors import CaptureError
 from eigenfield.core.observations import Photograph
 
 
-class Source(Protocol):
+class PhotographSource(Protocol):
     """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.
 
     Attributes:
@@ -43,7 +43,7 @@ class View:
     """One photograph and its camera.
 
     Attributes:
-        name, path, lens, mask, upright: as `Source`.
+        name, path, lens, mask, upright: as `PhotographSource`.
         camera: the pinhole camera of the photograph after lens removal, at the photograph's own size.
         bounds: the nearest and farthest depth of the scene along z, world units, where the calibration states them; a
             hint.
@@ -93,7 +93,7 @@ class LightField:
         return self
 
     @property
-    def sources(self) -> tuple[Source, ...]:
+    def sources(self) -> tuple[PhotographSource, ...]:
         """What each photograph is read from."""
         return self.views
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from eigenfield.capture.layout import Layout
-from eigenfield.capture.lightfield import LightField, Source, View
+from eigenfield.capture.lightfield import LightField, PhotographSource, View
 from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
@@ -19,7 +19,7 @@ class Shot:
     """One photograph without a camera.
 
     Attributes:
-        name, path, mask, upright: as `Source`.
+        name, path, mask, upright: as `PhotographSource`.
         width, height: of the picture as it is decoded, upright.
         focal: pixels, where EXIF or the format states it; None otherwise.
     """
@@ -69,7 +69,7 @@ class PhotoSet:
         return None
 
     @property
-    def sources(self) -> tuple[Source, ...]:
+    def sources(self) -> tuple[PhotographSource, ...]:
         """What each photograph is read from."""
         return self.shots
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate import structure_from_motion, triangulated_points
 from eigenfield.capture import Capture, LightField, PhotoSet
-from eigenfield.capture.lightfield import Source
+from eigenfield.capture.lightfield import PhotographSource
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
@@ -122,7 +122,7 @@ def _identity(capture: Capture) -> list[Any]:
             for view in capture.views
         ]
 
-    def digest(source: Source) -> list[Any]:
+    def digest(source: PhotographSource) -> list[Any]:
         mask = None if source.mask is None else file_digest(source.mask)
         return [source.name, file_digest(source.path), mask, source.upright]
 
