@@ -53,9 +53,7 @@ def principal_components() -> None:
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")
     cameras = [view.camera for view in capture.views]
     mesh = prepare_proxy(tarot() / "calibration" / "proxy.ply", cameras)
-    shots = [capture.photograph(i) for i in range(1)]
-    assert shots[0].mask is None
-    with texture_maps(make_atlas(mesh, SIDE, SIDE), cameras, lambda i: (capture.photograph(i).pixels, None)) as maps:
+    with texture_maps(make_atlas(mesh, SIDE, SIDE), cameras, capture) as maps:
         mean = mean_map(maps)
         matrix = np.where(maps.seen[..., None] > 0, maps.values, mean.values).reshape(len(cameras), -1)
     started = time.perf_counter()

@@ -1,4 +1,4 @@
-"""The figures of docs/evaluation.md and the README's summary of them, made from benchmarks/results/report.json."""
+"""The tables of docs/benchmarks.md about the paper's way, made from benchmarks/results/report.json."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ def largest(captures: Captures) -> str:
     found = {"from encoded to held-out cameras": gap}
     titles = {
         "codec": "the codec of the textures",
-        "truncation": "truncation to N textures (which holds what wrong geometry and gloss make the maps differ by)",
+        "truncation": "truncation to N textures (it includes what wrong geometry and gloss add to the maps)",
         "resampling": "resampling into the atlas and out of it",
     }
     for key, title in titles.items():
@@ -157,9 +157,9 @@ def truth(captures: Captures) -> str:
         return ""
     cost = {kind: found[kind]["cost"] for kind in ("encoded", "held_out")}
     return (
-        "\nWhere the true geometry is known (the demo, every second row and column, cameras and mesh estimated from the"
-        f" bare photographs beside the true ones), the estimate costs {_cost(cost['encoded'])} dB on encoded views and"
-        f" {_cost(cost['held_out'])} dB on held-out ones.\n"
+        "\nThe demo's true geometry is known. With cameras and mesh estimated from its photographs (every second row"
+        f" and column), encoded views lose {_cost(cost['encoded'])} dB and held-out views {_cost(cost['held_out'])} dB"
+        " against the true ones.\n"
     )
 
 
@@ -187,45 +187,17 @@ def origin(shown: Sequence[Mapping[str, Any]], link: str) -> str:
 
 
 SECTIONS: tuple[tuple[str, Callable[[Captures], str]], ...] = (
-    ("Every capture, the paper's way (N = 15, density 1.5)", summary),
-    ("The paper's measure, and its way to count", paper),
+    ("Every capture (15 textures, density 1.5)", summary),
+    ("The paper's measure and its way to count bytes", paper),
     ("Where the decibels go", losses),
-    (
-        "Bytes at equal quality, ours against peers on the same photographs (RGB / luma; + means that ours needs more)",
-        rates,
-    ),
-    ("Held-out views, dB", between),
+    ("Bytes relative to codecs at equal PSNR, RGB / luma (+: our file is larger)", rates),
+    ("Views that were held out, dB", between),
 )
 
 
 def page() -> str:
-    """The tables of docs/evaluation.md."""
+    """The tables of the whole evaluation (benchmarks/report.py)."""
     captures, shown = newest(runs("report"))
     parts = [f"### {title}\n\n{of(captures)}\n" for title, of in SECTIONS]
-    parts.insert(3, f"The losses by size:\n\n{largest(captures)}{truth(captures)}\n")
+    parts.insert(3, f"The losses, the largest first:\n\n{largest(captures)}{truth(captures)}\n")
     return "".join(parts) + origin(shown, "../benchmarks/results/report.json")
-
-
-def brief() -> str:
-    """The README's section."""
-    captures, shown = newest(runs("report"))
-    anchor = ANCHORS[0]
-    rows = []
-    for name, one in captures.items():
-        if "encoded" not in one:
-            continue
-        bd, ways = one.get("bd", {}).get(anchor, {}), one.get("between", {})
-        rows.append([
-            f"`{name}`", decimals(one["bytes"]["total"] / 1e6), decimals(one["encoded"]["psnr"]),
-            f"{percent(bd.get('psnr'))} / {percent(bd.get('psnr_luma'))}", str(one["hold_out"]),
-            *(decimals(ways.get(way, {}).get("psnr")) for way in WAYS),
-        ])  # fmt: skip
-    head = ["capture", "MB", "encoded dB", "bytes against AV1 preset 2, RGB / luma", "held out", *WAYS.values()]
-    return (
-        "### Evidence\n\n`python benchmarks/report.py` (with `pip install -e '.[report]'`) runs the whole evaluation of"
-        " any captures and makes one page of it; [what it shows, and what not](docs/evaluation.md). All of the"
-        " paper's way (`--fit none`). Bytes against AV1:"
-        f" at equal PSNR of the captured views, + means that ours needs more ({anchor}, one key frame); last, views"
-        " that were held out, as simpler ways draw them and as the scene does, in dB.\n\n"
-        + table(head, rows) + "\n" + origin(shown, "benchmarks/results/report.json") + "\n"
-    )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The figures of the README and of docs/evaluation.md, made from benchmarks/results; `--check` fails where they differ.
+"""The tables of docs/benchmarks.md and the README, made from benchmarks/results; `--check` fails where they differ.
 
 python benchmarks/tables.py [--check]
 """
@@ -11,16 +11,17 @@ from typing import Any
 
 import evaluation_tables
 import rate_tables
+import single_tables
 from evaluation_tables import table
 from measure import latest, runs
 
 README = Path(__file__).parents[1] / "README.md"
+BENCHMARKS = README.parent / "docs" / "benchmarks.md"
 CAPTURES = ("tarot", "tarot-5x4", "cube", "demo")
 SCENES = (
     "tarot-all", "tarot", "tarot-blind", "tarot-5x4", "amethyst", "jellybeans", "shop", "boxes", "antinous", "fern",
     "cube", "fountain", "fox", "temple",
 )  # fmt: skip
-EVALUATION = README.parent / "docs" / "evaluation.md"
 DRAWN = {"bilinear": "bilinear", "bicubic": "bicubic", "bicubic_one_sample": "bicubic, one sample"}  # in render.json
 BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
 
@@ -28,7 +29,7 @@ BEGIN, END = "<!-- figures -->\n", "<!-- end of figures -->\n"
 def origin(figures: dict[str, Any], name: str) -> str:
     machine = figures["machine"]
     return (
-        f"[`{figures['command']}`](benchmarks/results/{name}.json), commit {figures['commit']}, "
+        f"[`{figures['command']}`](../benchmarks/results/{name}.json), commit {figures['commit']}, "
         f"{machine['processor']}, {machine['cores']} cores.  \n"
     )
 
@@ -55,14 +56,15 @@ def quality() -> str:
     exact = demo["exact geometry, all textures of 25 views, density 2, uncoded"]["encoded"]
     avif = {name: results[name]["cases"]["all encoded"]["maps_as_avif"]["saving"] for name in ("tarot", "demo")}
     return (
-        "### Quality\n\nThe paper's way (`--fit none`): PSNR of re-drawn photographs over covered pixels, 8-bit RGB, drawn bicubic from the file as it is"
-        " decoded; in brackets outside the glass ball. `tarot` is Stanford's, 289 views of 512², atlas 1024; `tarot-5x4`"
-        " 20 of them at 1024²; `cube` 13 pictures of a phone on a mesh with holes; `demo` what `make demo` draws.\n\n"
+        "### Given cameras and mesh\n\nPSNR of re-drawn photographs over covered pixels, 8-bit RGB. Pictures are drawn with"
+        " the bicubic filter from the decoded file. Figures in brackets leave out the glass ball. `tarot` is Stanford's"
+        " capture of 289 views at 512² with an atlas of 1024²; `tarot-5x4` has 20 of these views at 1024²; `cube` is 13"
+        " phone pictures on a mesh with holes; `demo` is the capture that `make demo` draws.\n\n"
         + table(head, rows)
-        + f"\nBefore coding, Tarot's encoded views have {decibels(before)} dB, held out `odd` {decibels(held)}. With exact"
-        " geometry (25 views of the demo), all textures and density 2, what is left is resampling:"
-        f" {decibels(exact)} dB. Held against the texture maps as AVIF at the same UV SSIM, the file saves"
-        f" {100 * avif['tarot']:.1f} % (tarot) and {100 * avif['demo']:.1f} % (demo).\n\n"
+        + f"\nBefore coding, Tarot's encoded views have {decibels(before)} dB and its held-out views (`odd`)"
+        f" {decibels(held)} dB. With exact geometry (25 views of the demo), all textures and density 2, only resampling"
+        f" loses anything: {decibels(exact)} dB remain. Compared with the texture maps coded as AVIF at the same UV SSIM,"
+        f" the file is {100 * avif['tarot']:.1f} % smaller on Tarot and {100 * avif['demo']:.1f} % smaller on the demo.\n\n"
         + "".join(origin(figures, f"quality-{name}") for name, figures in results.items())
         + "\n"
     )
@@ -111,14 +113,16 @@ def reconstruction() -> str:
     ]
     uncoded = scenes["tarot"]["uncoded"]["held_out"]
     return (
-        "### From bare photographs\n\nCameras and geometry from photographs alone, beside the truth:\n\n"
-        + table(["", "", "seconds"], truth)
-        + "\nWhole captures, one command each, the paper's way, cameras and mesh included; no mesh is given. `fern`, `cube`, `fountain`, `fox`"
-        " and `temple` come with a calibration, the parameters of `boxes` and the names of `shop` tell the cameras, the"
-        " others have names at most. Figures as above:\n\n"
+        "### From bare photographs\n\nCameras and geometry estimated from photographs alone, compared with the truth:\n\n"
+        + table(["what is estimated", "error", "seconds"], truth)
+        + "\nWhole captures, one command each. Seconds and memory include the estimation of cameras and mesh; no mesh is"
+        " given. `fern`, `cube`, `fountain`, `fox` and `temple` come with a calibration. The parameter file of `boxes` and"
+        " the file names of `shop` give the cameras. The other captures have file names at most.\n\n"
         + table(head, rows)
-        + f"\n`--blind`: held-out photographs only find their own camera. Before coding, Tarot's held-out views have"
-        f" {decibels(uncoded)} dB.\n\n" + origin(scenes["tarot"], "proxy-scene-tarot") + "\n"
+        + f"\nWith `--blind`, held-out photographs take no part in the estimation; each only registers its own camera."
+        f" Before coding, Tarot's held-out views have {decibels(uncoded)} dB.\n\n"
+        + origin(scenes["tarot"], "proxy-scene-tarot")
+        + "\n"
     )
 
 
@@ -143,8 +147,9 @@ def encoding() -> str:
          f"{av1['bytes'] / 1e6:.2f}"],
     ]  # fmt: skip
     return (
-        "### Encoding\n\nTarot, atlas 1024, 15 textures, warm kernels; memory is the peak of anonymous pages.\n\n"
-        + table(["", "seconds", "peak MB", "MB written"], rows)
+        "### Encoding the paper's way\n\nTarot, atlas of 1024², 15 textures, kernels compiled before. Memory is the peak of"
+        " anonymous pages.\n\n"
+        + table(["what runs", "seconds", "peak MB", "MB written"], rows)
         + f"\nAll cameras need {figures['ratio']['memory_all_to_every_second_row']:.2f} times the memory of half of"
         " them.\n\n" + origin(figures, "encode") + "\n"
     )
@@ -164,11 +169,11 @@ def drawing() -> str:
         )
     width, height = figures["view"]
     return (
-        f"### Drawing\n\nFrames per second of the software renderer (best frame in brackets) at {width}x{height}, atlas"
-        f" {figures['atlas']}², {figures['threads']} threads, the viewpoint moving every frame; the paper reports over 60"
-        " up to 40 textures on a GTX 1080. One sample: at edges too, which are the mean of four otherwise. The last column is"
-        " what share of the memory bandwidth"
-        f" ({figures['read_gb_per_second']:.0f} GB/s read, same run) all textures read once a frame make up.\n\n"
+        f"### Drawing\n\nFrames per second of the software renderer at {width}x{height} with an atlas of"
+        f" {figures['atlas']}² on {figures['threads']} threads; the best frame is in brackets. The viewpoint moves in every"
+        " frame. The paper reports over 60 frames per second up to 40 textures on a GTX 1080. Pixels at edges are the mean"
+        " of four samples, except in the column of one sample. The last column relates the bytes of all textures, read"
+        f" once a frame, to the memory bandwidth ({figures['read_gb_per_second']:.0f} GB/s, measured in the same run).\n\n"
         + table(["N", *DRAWN.values(), "of the bandwidth"], rows)
         + f"\nSumming 40 textures takes {figures['composition_40']['ratio_to_numpy']:.2f} of the time of NumPy's matrix"
         " product on float32 textures.\n\n"
@@ -201,15 +206,15 @@ def shaded() -> str:
     eye = "x".join(str(side) for side in opengl["eye"])
     page = "x".join(str(side) for side in browser["view"])
     return (
-        "The shader that browsers and the OpenGL renderer share, frames per second and in brackets how many times as long"
-        f" a frame takes as with one plain texture on the same mesh. OpenGL at {width}x{height} and in stereo (2 x {eye},"
-        f" each texel with weights of its own) on {opengl['driver']}; {browser['browser']} at {page} on"
-        f" {driver(browser['driver'])}: **both draw on the processor, no GPU was there**; N = 0 is the plain texture."
-        " The atlas has 1024² texels.\n\n"
+        "The browser and the OpenGL renderer share one shader. The table gives its frames per second; in brackets is the"
+        " time of a frame relative to one plain texture on the same mesh (N = 0). **No GPU was available: both draw on the"
+        f" processor.** OpenGL runs on {opengl['driver']}, at {width}x{height} and in stereo (2 x {eye}, weights per"
+        f" texel). {browser['browser']} runs on {driver(browser['driver'])} at {page}. The atlas has 1024² texels.\n\n"
         + table(["N", "OpenGL bilinear", "bicubic", "stereo", "browser", "by the ray"], rows)
-        + "\n![Frames per second against the number of eigen textures](docs/frames.png)\n\n"
-        f"The viewer's script is {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js in it; the first picture of"
-        f" the demo, encoded with `--fit none`, needs {first['first_picture_bytes'] / 1e3:.0f} of its {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
+        + "\n![Frames per second against the number of eigen textures](frames.png)\n\n"
+        f"The viewer's script has {browser['bundle']['viewer.js'] / 1e3:.0f} kB, three.js included. The first picture of"
+        f" the demo, encoded with `--fit none`, needs {first['first_picture_bytes'] / 1e3:.0f} of the file's"
+        f" {first['demo_bytes']['total'] / 1e3:.0f} kB.\n\n"
     )
 
 
@@ -230,9 +235,16 @@ def between_marks(text: str, made: str) -> str:
 
 def main() -> None:
     made = {
-        README: f"## Figures\n\n{rate_tables.brief()}{quality()}{reconstruction()}{evaluation_tables.brief()}"
-        f"{encoding()}{drawing()}",
-        EVALUATION: rate_tables.section() + evaluation_tables.page(),
+        README: rate_tables.five(),
+        BENCHMARKS: rate_tables.section()
+        + "## The paper's way (`--fit none`)\n\n"
+        + quality()
+        + reconstruction()
+        + evaluation_tables.page()
+        + "\n## Time\n\n"
+        + encoding()
+        + drawing()
+        + single_tables.section(),
     }
     for path, figures in made.items():
         text = path.read_text(encoding="utf-8")

@@ -9,6 +9,23 @@ from pathlib import Path
 import pytest
 
 
+@pytest.fixture(scope="session", autouse=True)
+def every_file_keeps_to_the_schema():
+    """Whatever a test writes as a .glb has its JSON checked; files that a test damages afterwards are not."""
+    from eigenfield.gltf import write
+    from support.schema import check_json
+
+    check_readable = write.check_readable
+
+    def checked(text: bytes, binary: bytes) -> None:
+        check_readable(text, binary)
+        check_json(text)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(write, "check_readable", checked)
+        yield
+
+
 @pytest.fixture(scope="session")
 def data() -> Path:
     """The folder of real captures; tests that need it are skipped where EIGENFIELD_DATA does not name one."""

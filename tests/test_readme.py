@@ -1,4 +1,4 @@
-"""Every command and every line of Python in the README runs as it stands there."""
+"""Commands and Python of the pages run as they stand, links lead somewhere, tables are those of the results."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 import shlex
 import subprocess
 import sys
+import tomllib
 import urllib.request
 from datetime import datetime
 from pathlib import Path
@@ -13,53 +14,50 @@ from pathlib import Path
 import pytest
 
 import measure
+from eigenfield.cli.encode import command as encode_command
 from support.captures import write_array, write_capture
 
 ROOT = Path(__file__).parents[1]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
+COMMANDS = {
+    "README.md": ["inspect", "encode", "view", "export", "evaluate"],
+    "docs/usage.md": [
+        "inspect", "encode", "encode", "encode", "render", "render", "export", "evaluate", "info", "validate", "proxy",
+    ],
+}  # fmt: skip
+MADE = {
+    "README.md": {"scene.glb", "scene.html"},
+    "docs/usage.md": {
+        "overlay.png", "scene.glb", "small.glb", "paper.glb", "view.png", "flight.mp4", "redrawn", "plots", "mesh.glb",
+        "mesh.cameras",
+    },
+}  # fmt: skip
+NUMBER = re.compile(r"(?<![\w.])[-+−]?\d+(?:[.,]\d+)*")
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", README, re.DOTALL)
+def page(name):
+    return (ROOT / name).read_text(encoding="utf-8")
 
 
-@pytest.fixture(scope="module")
-def place(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("readme")
-    write_capture(folder / "capture")
-    write_array(folder / "photos")
-    return folder
+def blocks(name, language):
+    return re.findall(rf"```{language}\n(.*?)```", page(name), re.DOTALL)
 
 
-def test_the_commands_run_in_order(place):
-    lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
-    assert [shlex.split(line)[1] for line in lines] == [
-        "inspect", "encode", "proxy", "inspect", "encode", "encode", "encode", "view", "render", "render", "export",
-        "export", "evaluate", "info", "validate",
-    ]  # fmt: skip
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_commands_run_in_order(name, tmp_path):
+    write_capture(tmp_path / "capture")
+    write_array(tmp_path / "photos")
+    lines = [line for block in blocks(name, "sh") for line in block.splitlines() if line.startswith("eigenfield ")]
+    assert [shlex.split(line)[1] for line in lines] == COMMANDS[name]
     for line in lines:
         words = shlex.split(line, comments=True)
         if "--path" in words:
             words += ["--frames", "4"]
         if words[1] == "view":
-            look(words, place)
+            look(words, tmp_path)
             continue
-        done = subprocess.run([sys.executable, "-m", *words], cwd=place, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-m", *words], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, f"{line}\n{done.stderr}"
-    assert {
-        "photos.glb",
-        "mesh.glb",
-        "mesh.cameras",
-        "overlay.png",
-        "scene.glb",
-        "small.glb",
-        "paper.glb",
-        "view.png",
-        "flight.mp4",
-        "scene.html",
-        "redrawn",
-        "plots",
-    } <= {path.name for path in place.iterdir()}
+    assert MADE[name] <= {path.name for path in tmp_path.iterdir()}
 
 
 def look(words, place):
@@ -77,35 +75,59 @@ def look(words, place):
     assert process.returncode == 0, err
 
 
-def test_the_python_runs(tmp_path):
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_python_runs(name, tmp_path):
     write_capture(tmp_path / "capture")
     write_array(tmp_path / "photos")
-    code = "\n".join(blocks("python"))
+    code = "\n".join(blocks(name, "python"))
+    assert code
     subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
 
 
+def test_the_readme_is_short():
+    assert len(page("README.md").splitlines()) <= 120
+
+
 def test_the_make_targets_exist():
-    targets = re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MULTILINE)
-    named = {word for block in blocks("sh") for word in re.findall(r"^make ([a-z]+)", block, re.MULTILINE)}
+    targets = re.findall(r"^([a-z-]+):", page("Makefile"), re.MULTILINE)
+    named = set(re.findall(r"`make ([a-z]+)`", page("README.md")))
     assert named and named <= set(targets)
 
 
 def test_links_lead_somewhere():
-    for target in re.findall(r"\]\(([^)#]+)\)", README):
-        assert target.startswith("http") or (ROOT / target).exists(), target
+    pages = [ROOT / "README.md", ROOT / "CHANGELOG.md", *(ROOT / "docs").rglob("*.md")]
+    links = [(path, target) for path in pages for target in re.findall(r"\]\(([^)#\s]+)", path.read_text("utf-8"))]
+    assert links
+    lost = [(path.name, to) for path, to in links if not to.startswith("http") and not (path.parent / to).exists()]
+    assert lost == []
+
+
+def test_every_option_of_encode_has_its_use():
+    """docs/usage.md says what each option is good for, and names none that is gone."""
+    table = page("docs/usage.md").split("## Options of `encode`\n")[1].split("\n## ")[0]
+    named = set(re.findall(r"`[^`]*?(--[a-z-]+)", "\n".join(re.findall(r"^\| (.*?) \|", table, re.MULTILINE))))
+    common = {"--help", "--output", "--overwrite", "--quiet", "--threads", "--traceback", "--verbose"}
+    known = {word for option in encode_command.params for word in (*option.opts, *option.secondary_opts)}
+    assert named == {word for word in known if word.startswith("--")} - common
+
+
+def test_a_bullet_of_the_evaluation_is_one_claim():
+    """At most 40 words and three numbers a bullet; everything else is a row of docs/benchmarks.md."""
+    bullets = re.findall(r"^- (.*?)(?=\n- |\n\n|\Z)", page("docs/evaluation.md"), re.MULTILINE | re.DOTALL)
+    assert len(bullets) > 20
+    shown = [re.sub(r"\]\([^)]*\)|`[^`]*`|(?<=\[decision) \d+", "", bullet) for bullet in bullets]
+    assert [bullet for bullet in shown if len(bullet.split()) > 40 or len(NUMBER.findall(bullet)) > 3] == []
 
 
 def test_constraints_pin_what_is_required():
-    pinned = {line.split("==")[0].lower().replace("_", "-") for line in (ROOT / "constraints.txt").read_text().split()}
-    import tomllib
-
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    pinned = {line.split("==")[0].lower().replace("_", "-") for line in page("constraints.txt").split()}
+    project = tomllib.loads(page("pyproject.toml"))["project"]
     wanted = [*project["dependencies"], *(r for extra in project["optional-dependencies"].values() for r in extra)]
     assert {re.split(r"[<>=\[]", requirement)[0].lower() for requirement in wanted} <= pinned
 
 
-def test_the_figures_are_those_of_the_results():
-    """The tables between the marks are what benchmarks/tables.py makes of benchmarks/results."""
+def test_the_tables_are_those_of_the_results():
+    """What is between the marks of README.md and docs/benchmarks.md is what benchmarks/tables.py makes."""
     done = subprocess.run(
         [sys.executable, str(ROOT / "benchmarks" / "tables.py"), "--check"], capture_output=True, text=True
     )

@@ -15,10 +15,20 @@ from hypothesis import strategies as st
 from PIL import Image
 
 import eigenfield
-from eigenfield.capture import FORMATS, LightField, PhotoSet, open_any, open_capture, open_photographs, read_header
+from eigenfield.capture import (
+    FORMATS,
+    Lens,
+    LightField,
+    PhotoSet,
+    open_any,
+    open_capture,
+    open_photographs,
+    read_header,
+)
 from eigenfield.capture.photographs.exif import focal_of
 from eigenfield.cli.inspect import command
 from eigenfield.core.errors import CaptureError, EigenfieldError
+from eigenfield.core.observations import of_cameras
 from support.captures import frame_of
 from support.named import CFG, hci, refused, write, write_video
 from support.scenes import row_grid
@@ -235,6 +245,32 @@ def test_cameras_join_photographs(tmp_path):
     assert isinstance(light_field, LightField) and light_field.layout is photo_set.layout
     assert light_field.names == photo_set.names and light_field.problems[-1] == "estimated"
     assert np.array_equal(light_field.photograph(4).pixels, photo_set.photograph(4).pixels)
+    assert photo_set.light_field is None and light_field.light_field is light_field
+    assert light_field.sizes == photo_set.sizes == [(48, 40)] * 9
+    paths = [[(one.path, one.mask, one.upright, one.lens) for one in capture.sources] for capture in
+             (light_field, photo_set)]  # fmt: skip
+    assert paths[0] == paths[1]
+
+
+def test_each_photograph_is_an_observation_at_one_time(tmp_path):
+    photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
+    for capture in (photo_set, photo_set.calibrated(row_grid(9))):
+        assert [(capture.camera_of(i), capture.time_of(i)) for i in range(len(capture))] == [(i, 0) for i in range(9)]
+        some, part = of_cameras(capture, [7, 2]), capture.subset([7, 2])
+        assert len(some) == len(part) == 2
+        for index in range(2):
+            assert (some.camera_of(index), some.time_of(index)) == (index, 0)
+            assert np.array_equal(some.photograph(index).pixels, part.photograph(index).pixels)
+
+
+def test_other_cameras_for_a_light_field(tmp_path):
+    cameras, lens = row_grid(9), Lens("brown", (0.1, 0.0, 0.0, 0.0, 0.0))
+    photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
+    given = photo_set.calibrated(cameras, [lens] * 9)
+    turned = given.calibrated(cameras[::-1], problems=["turned"])
+    assert turned.cameras == cameras[::-1] and turned.problems[-1] == "turned"
+    assert [view.lens for view in turned.views] == [lens] * 9 and turned.names == given.names
+    assert [view.lens for view in given.calibrated(cameras, [None] * 9).views] == [None] * 9
 
 
 # EXIF

@@ -42,7 +42,7 @@ def test_mean_and_fill_are_equations_1_and_2():
     np.testing.assert_allclose(average.values, reference.mean_texture(maps.values, maps.seen), atol=1e-6)
     assert (average.count == maps.seen.sum(axis=0)).all()
     expected = reference.filled_maps(maps.values, maps.seen)
-    for camera in range(maps.cameras):
+    for camera in range(maps.count):
         np.testing.assert_allclose(
             basis.filled(maps.values[camera], maps.seen[camera], average.values), expected[camera], atol=1e-6
         )

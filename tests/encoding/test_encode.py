@@ -31,6 +31,7 @@ from eigenfield.gltf import save
 from eigenfield.rendering import camera_weights, delaunay_triangles, renderer_of
 from eigenfield.runtime.parallel import set_threads
 from support.captures import write_capture
+from support.observations import InMemory
 from support.scenes import row_grid
 
 
@@ -133,11 +134,9 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
     mesh, cameras = read(folder), [view.camera for view in capture.views]
     atlas = make_atlas(mesh, 64, 64)
 
-    def picture(index):
-        pixels = capture.photograph(index).pixels
-        return np.concatenate([pixels, 2 * pixels - 5], axis=2)[..., :channels].copy(), None
-
-    with texture_maps(atlas, cameras, picture, channels) as maps:
+    photographs = [capture.photograph(index).pixels for index in range(len(capture))]
+    pictures = [np.concatenate([pixels, 2 * pixels - 5], axis=2)[..., :channels].copy() for pixels in photographs]
+    with texture_maps(atlas, cameras, InMemory(pictures), channels) as maps:
         mean = mean_map(maps)
         weights = weights_of(spectrum(gram_matrix(maps, mean)), 8)
         textures = eigen_textures(maps, mean, weights)

@@ -42,6 +42,7 @@ from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.parallel import set_threads
+from support.observations import InMemory
 from support.scenes import bumpy_square, row_grid, smooth_pictures, tiny_scene, unit_weights
 
 SIDE, GRID = 64, (40, 36)
@@ -87,7 +88,7 @@ def world():
         plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
         drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9))
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
-    with open_shots(CAMERAS, lambda index: (pictures[index], None), mesh, (SIDE, SIDE)) as shots:
+    with open_shots(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as shots:
         yield shots, composer, model
 
 
@@ -220,12 +221,12 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
     shots, _, _ = world
     pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
     lit = np.random.default_rng(4).uniform(0, 1, (len(shots), 2, 2, 3)).astype(np.float32)
-    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as plain:
+    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as plain:
         for index, picture in enumerate(pictures):
             rows, columns = np.clip((middles(plain, index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
             inside = (rows >= 0) & (rows < 2) & (columns >= 0) & (columns < 2)
             picture[inside] = lit[index][rows[inside], columns[inside]]
-    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as glitter:
+    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glitter:
         pixels = Pixels(glitter, glitter, glitter)
         alone = fit_plane(pixels, settings_of(), "test", 1)
         fit = fit_plane(pixels, replace(settings_of(), local=5), "test", 1)
@@ -250,7 +251,7 @@ def test_pixels_far_off_count_for_less(world):
         found = residual(shots, model)
         return psnr_of(found.squares, found.pixels, 3)
 
-    with open_shots(CAMERAS, lambda i: (pictures[i], None), bumpy_square(12), (SIDE, SIDE)) as glinting:
+    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glinting:
         with doubtable(glinting) as doubted:
             robust = reached(doubted)
             weights = np.stack([doubted.weight(i) for i in range(9)])
@@ -306,13 +307,9 @@ def test_what_a_mask_hides_does_not_count(world):
         "mean": model.mean, "textures": [model.blocks[0].textures], "weights": [model.blocks[0].weights],
         "photographs": True, "wanted": (False, False, False),
     }  # fmt: skip
-    for masks, good in ((None, False), (mask, True)):
-        with open_shots(
-            CAMERAS,
-            lambda i, masks=masks: (pictures[i], masks if i == 4 else None),
-            bumpy_square(12),
-            (SIDE, SIDE),
-        ) as others:
+    for hidden, good in ((None, False), (mask, True)):
+        masked = InMemory(pictures, [hidden if index == 4 else None for index in range(9)])
+        with open_shots(CAMERAS, masked, bumpy_square(12), (SIDE, SIDE)) as others:
             found = look(others, model, composer=composer, **options)
             assert (psnr_of(found.squares[4:5], found.pixels[4:5], 3) > 45) == good
 

@@ -17,6 +17,7 @@ from eigenfield.gltf import encode_scene
 from eigenfield.proxy.relief.find_lattice import relief_lattice
 from eigenfield.rendering import draw_texture
 from support.captures import write_capture
+from support.observations import InMemory
 from support.scenes import row_grid, smooth_pictures
 from support.surfaces import relief
 
@@ -45,17 +46,16 @@ def detailed(side: int = 256) -> np.ndarray:
 
 
 def photographs_of(mesh: Mesh, cameras: tuple[Camera, ...]):
-    """What `fit_surface` asks for: the photographs of a mesh, no masks."""
-    pictures = [draw_texture(mesh, detailed(), camera, samples=2).image for camera in cameras]
-    return lambda index: (pictures[index], None)
+    """The photographs of a mesh, without masks."""
+    return InMemory([draw_texture(mesh, detailed(), camera, samples=2).image for camera in cameras])
 
 
 @pytest.mark.parametrize("off", [0.97, 1.04])
 def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
     cameras = row_grid(9, 64, 56)
-    decode = photographs_of(sheet(3.0), cameras)
+    observations = photographs_of(sheet(3.0), cameras)
     wrong = sheet(3.0 * off)
-    found = fit_surface(wrong, None, cameras, decode, SIDE)
+    found = fit_surface(wrong, None, cameras, observations, SIDE)
     inside = (np.abs(wrong.vertices[:, :2]) < 1.6).all(axis=1)  # what most cameras see
     before, after = (np.abs(mesh.vertices[inside, 2]) for mesh in (wrong, found))
     assert np.median(after) < 0.15 * np.median(before)
@@ -66,13 +66,13 @@ def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
 def test_a_relief_stays_on_the_rays_it_was_made_on():
     cameras = row_grid(9, 64, 56)
     true = relief(cameras[4], 0.5, False)
-    decode = photographs_of(true, cameras)
+    observations = photographs_of(true, cameras)
     lattice, fine = relief_lattice(true, cameras, DEPTH_ERROR) or (None, 0)
     assert lattice is not None
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
-    found = fit_surface(wrong, lattice, cameras, decode, SIDE)
+    found = fit_surface(wrong, lattice, cameras, observations, SIDE)
     now = lattice.coordinates(found.vertices)
     np.testing.assert_allclose(now[:, :2], exact[:, :2], atol=0.02)
     right = lattice.coordinates(true.vertices)[:, 2]
@@ -86,13 +86,9 @@ def test_what_is_right_stays_and_what_nothing_tells_stays():
     true = sheet(3.0)
     found = fit_surface(true, None, cameras, photographs_of(true, cameras), SIDE)
     assert np.abs(found.vertices - true.vertices).max() < 0.02
-    for picture in (np.full((56, 64, 3), 0.5, np.float32), None):
-        noise = np.random.default_rng(3)
-
-        def decode(_: int, picture=picture, noise=noise):
-            return (noise.random((56, 64, 3), np.float32) if picture is None else picture), None
-
-        found = fit_surface(true, None, cameras, decode, SIDE)
+    noise = np.random.default_rng(3)
+    for pictures in (np.full((9, 56, 64, 3), 0.5, np.float32), noise.random((9, 56, 64, 3), np.float32)):
+        found = fit_surface(true, None, cameras, InMemory(list(pictures)), SIDE)
         assert np.abs(found.vertices - true.vertices).max() < 0.12  # half a pixel of parallax
 
 
@@ -101,8 +97,8 @@ def test_doubled_vertices_move_as_one():
     whole = sheet(3.1)
     torn = Mesh(whole.vertices[whole.faces.ravel()], np.arange(whole.faces.size, dtype=np.int32).reshape(-1, 3),
                 whole.uv[whole.faces.ravel()])  # fmt: skip
-    decode = photographs_of(sheet(3.0), cameras)
-    found, torn_found = (fit_surface(mesh, None, cameras, decode, SIDE) for mesh in (whole, torn))
+    observations = photographs_of(sheet(3.0), cameras)
+    found, torn_found = (fit_surface(mesh, None, cameras, observations, SIDE) for mesh in (whole, torn))
     assert np.abs(found.vertices - whole.vertices).max() > 0.05
     first = np.unique(whole.faces, return_index=True)[1]
     np.testing.assert_array_equal(torn_found.vertices, torn_found.vertices[first][whole.faces.ravel()])
@@ -141,15 +137,13 @@ def test_a_mesh_of_open_edges_alone_stays():
 
 def test_masked_pixels_do_not_count():
     cameras = row_grid(9, 64, 56)
-    right, spoiled = photographs_of(sheet(3.0), cameras), np.random.default_rng(1)
-
-    def decode(index: int):
-        picture, mask = right(index)[0].copy(), np.ones((56, 64), np.float32)
-        picture[:, :20], mask[:, :20] = spoiled.random((56, 20, 3)), 0
-        return picture, mask
-
+    pictures, spoiled = photographs_of(sheet(3.0), cameras).pixels, np.random.default_rng(1)
+    mask = np.ones((56, 64), np.float32)
+    mask[:, :20] = 0
+    for picture in pictures:
+        picture[:, :20] = spoiled.random((56, 20, 3))
     wrong = sheet(3.1)
-    found = fit_surface(wrong, None, cameras, decode, SIDE)
+    found = fit_surface(wrong, None, cameras, InMemory(pictures, [mask] * 9), SIDE)
     seen = (np.abs(wrong.vertices[:, :2]) < 0.8).all(axis=1)
     assert np.median(np.abs(found.vertices[seen, 2])) < 0.03
 

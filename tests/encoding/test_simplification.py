@@ -19,6 +19,7 @@ from eigenfield.encoding.geometry.raster_kernels import STEPS, Ground, sheet_cos
 from eigenfield.encoding.geometry.simplify_relief import _fitted, _sheet
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.relief.find_lattice import relief_lattice
+from support.observations import greys, repeated
 from support.scenes import bumpy_square, row_grid
 from support.surfaces import relief
 
@@ -182,7 +183,7 @@ def test_the_effect_is_what_the_photographs_lose():
     """Against the error itself: the photographs drawn from the middle one's texture on a plane that is a little off."""
     mesh, cameras, photographs = photographed_plane()
     lattice = plane_lattice(cameras)
-    effect = depth_effect(mesh, lattice, 1.0, cameras, lambda index: photographs[index])
+    effect = depth_effect(mesh, lattice, 1.0, cameras, greys(photographs))
     assert effect.seen == pytest.approx(9, rel=0.1)
     off = 0.5  # of the lattice's steps
     depth = 1 / (1 / 2.0 + 0.02 * off)
@@ -199,11 +200,24 @@ def test_the_effect_is_what_the_photographs_lose():
     assert expected == pytest.approx(actual, rel=0.25)
 
 
+def test_photographs_again_at_another_time_lose_as_much_again():
+    mesh, cameras, photographs = photographed_plane()
+    lattice, once = plane_lattice(cameras), greys(photographs)
+    twice = repeated(once.pixels, 2)
+    effect, both = (depth_effect(mesh, lattice, 1.0, cameras, some) for some in (once, twice))
+    assert both.seen == pytest.approx(2 * effect.seen)
+    np.testing.assert_allclose(both.ground.curve, 2 * effect.ground.curve, rtol=1e-4)
+    part = replace(mesh, faces=mesh.faces[::2])
+    (error, seen), (errors, again) = (opened(mesh, part, cameras, some) for some in (once, twice))
+    assert errors == pytest.approx(2 * error) and error > 0
+    np.testing.assert_array_equal(again, seen)
+
+
 def test_depths_are_fitted_but_for_those_of_kept_vertices():
     mesh, cameras, photographs = photographed_plane()
     assert mesh.uv is not None
     lattice = plane_lattice(cameras)
-    effect = depth_effect(mesh, lattice, 1.0, cameras, lambda index: photographs[index])
+    effect = depth_effect(mesh, lattice, 1.0, cameras, greys(photographs))
     true = lattice.coordinates(mesh.vertices)[:, 2]
     rough = true + np.random.default_rng(2).normal(0, 1, len(true))
     kept = np.arange(0, len(true), 40)
@@ -218,14 +232,14 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
 def test_flat_photographs_do_not_mind():
     mesh, cameras, photographs = photographed_plane()
     flat = np.full_like(photographs[0], 0.5)
-    effect = depth_effect(mesh, plane_lattice(cameras), 1.0, cameras, lambda _: flat)
+    effect = depth_effect(mesh, plane_lattice(cameras), 1.0, cameras, greys([flat] * 9))
     assert effect.ground.curve.max() == 0 and effect.ground.most.max() < 1e-6
 
 
 def test_a_mesh_that_no_camera_sees_costs_nothing_but_is_whole():
     mesh, cameras, photographs = photographed_plane()
     away = [replace(camera, t=camera.t + np.array([50.0, 0, 0])) for camera in cameras]
-    form = slim_relief(mesh, plane_lattice(cameras), 0, away, lambda index: photographs[index], 1e-3, 1.0)
+    form = slim_relief(mesh, plane_lattice(cameras), 0, away, greys(photographs), 1e-3, 1.0)
     assert len(form.mesh.faces) > 0
 
 
@@ -239,9 +253,9 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
     plain = coded_mesh(mesh, cameras, 4)
     sizes, holes = [], []
     for price in (1e-9, 0.05):
-        found = slim_mesh(mesh, cameras, 4, lambda index: photographs[index], price, 1.0)
+        found = slim_mesh(mesh, cameras, 4, greys(photographs), price, 1.0)
         sizes.append(len(stream_of(found) or b""))
-        holes.append(opened(mesh, found, cameras, lambda index: photographs[index])[0])
+        holes.append(opened(mesh, found, cameras, greys(photographs))[0])
         for camera in cameras if price < 1e-6 else ():
             before, after = rasterise_view(mesh, camera), rasterise_view(found, camera)
             both = (before.face >= 0) & (after.face >= 0)
@@ -250,7 +264,7 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
             assert np.median(np.abs(off)) < 0.01
     assert sizes[1] < 0.6 * sizes[0]
     # more bytes than without any choice only for what they close
-    closed = holes[0] < opened(mesh, plain, cameras, lambda index: photographs[index])[0]
+    closed = holes[0] < opened(mesh, plain, cameras, greys(photographs))[0]
     assert closed or sizes[0] <= 1.05 * len(stream_of(plain) or b"")
 
 
@@ -259,7 +273,7 @@ def test_other_meshes_keep_their_triangles():
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
     assert relief_lattice(bent, cameras, DEPTH_ERROR) is None
-    found = slim_mesh(bent, cameras, 4, lambda _: np.zeros((48, 64), np.float32), 1.0, 1.0)
+    found = slim_mesh(bent, cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0)
     assert len(found.faces) == len(bent.faces) and stream_of(found) is not None
 
 
@@ -269,10 +283,10 @@ def test_what_a_camera_sees_through_is_found():
     whole, part = mesh, replace(mesh, faces=mesh.faces[: len(mesh.faces) // 2])
     bright = np.full((cameras[0].height, cameras[0].width), 0.5, np.float32)
     for before, after in ((whole, whole), (part, whole)):  # more is no hole
-        error, seen = opened(before, after, cameras, lambda index: bright)
+        error, seen = opened(before, after, cameras, greys([bright] * 9))
         assert error == 0 and len(seen) == 0
     lost = [(rasterise_view(m, c).face >= 0).sum() for m in (whole, part) for c in cameras]
-    error, seen = opened(whole, part, cameras, lambda index: bright)
+    error, seen = opened(whole, part, cameras, greys([bright] * 9))
     assert error == pytest.approx(0.25 * (sum(lost[:9]) - sum(lost[9:])))
     missing = mesh.faces[len(mesh.faces) // 2 :]
     assert set(seen) <= set(missing.reshape(-1)) and len(seen) > 0.8 * len(np.unique(missing))
@@ -294,7 +308,7 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     uv = np.concatenate([near.uv * [0.5, 1], near.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32)
     both = Mesh(vertices, np.concatenate([patch, near.faces + len(near.vertices)]).astype(np.int32), uv)
     grey = np.tile(0.5 + 0.02 * np.sin(np.arange(64)), (48, 1)).astype(np.float32)
-    effect = depth_effect(both, lattice, 2.0**fine, cameras, lambda _: grey)
+    effect = depth_effect(both, lattice, 2.0**fine, cameras, greys([grey] * 9))
     ground = effect.ground
     given, middle = ground.given > 0, ground.given.shape[1] // 2
     front = given & (np.arange(given.shape[1]) < middle)

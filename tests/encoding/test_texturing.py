@@ -21,6 +21,7 @@ from eigenfield.encoding.projected import (
     write_maps,
 )
 from eigenfield.runtime.parallel import set_threads
+from support.observations import InMemory
 
 SIZE = 32
 
@@ -169,7 +170,7 @@ def test_maps_of_all_cameras_stream_and_are_the_same_at_any_number_of_threads(tm
     for count in (1, 2):
         set_threads(count)
         try:
-            with texture_maps(atlas, eyes, lambda i: (photograph(i), None), work=tmp_path) as maps:
+            with texture_maps(atlas, eyes, InMemory([photograph(i) for i in range(3)]), work=tmp_path) as maps:
                 results.append((np.array(maps.values).tobytes(), np.array(maps.seen).tobytes()))
         finally:
             set_threads(None)
@@ -178,14 +179,15 @@ def test_maps_of_all_cameras_stream_and_are_the_same_at_any_number_of_threads(tm
 
 
 def test_a_photograph_that_cannot_be_read_ends_the_work_and_leaves_nothing(tmp_path):
-    def broken(index):
-        if index == 1:
-            raise CaptureError("image-truncated", "ends early", path="b.jpg")
-        return photograph(index), None
+    class Broken(InMemory):
+        def photograph(self, index):
+            if index == 1:
+                raise CaptureError("image-truncated", "ends early", path="b.jpg")
+            return super().photograph(index)
 
     with (
         pytest.raises(CaptureError, match=r"b\.jpg"),
-        texture_maps(make_atlas(PLANE, 8, 8), [camera()] * 5, broken, work=tmp_path),
+        texture_maps(make_atlas(PLANE, 8, 8), [camera()] * 5, Broken([photograph()] * 5), work=tmp_path),
     ):
         pass
     assert list(tmp_path.iterdir()) == []
@@ -260,7 +262,7 @@ def test_filling_is_linear():
 
 def test_maps_and_visibility_are_written(tmp_path):
     atlas = make_atlas(PLANE, SIZE, SIZE)
-    with texture_maps(atlas, [camera(-0.3), camera(0.3)], lambda i: (photograph(i), None)) as maps:
+    with texture_maps(atlas, [camera(-0.3), camera(0.3)], InMemory([photograph(i) for i in range(2)])) as maps:
         spread = make_spreader(atlas, maps.seen.any(axis=0))
         write_maps(maps, np.full((atlas.count, 3), 0.5, np.float32), spread, ["a.jpg", "b.jpg"], tmp_path / "maps")
     assert sorted(path.name for path in (tmp_path / "maps").iterdir()) == [

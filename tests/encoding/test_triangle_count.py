@@ -15,6 +15,7 @@ from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
 from eigenfield.encoding.plan import Options, make_draft
 from eigenfield.proxy import simplified, unwrapped
 from support.captures import write_capture
+from support.observations import greys, repeated
 from support.scenes import row_grid
 from support.surfaces import ball, nine_cameras, square
 
@@ -34,7 +35,7 @@ def stripes(camera: Camera) -> np.ndarray:
 
 
 def worth(mesh: Mesh, price: float) -> int | None:
-    return triangles_worth(mesh, CAMERAS, lambda index: stripes(CAMERAS[index]), price)
+    return triangles_worth(mesh, CAMERAS, greys([stripes(camera) for camera in CAMERAS]), price)
 
 
 def test_a_plane_is_worth_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
@@ -55,7 +56,13 @@ def test_few_triangles_and_meshes_that_no_camera_sees_stay():
 
 
 def test_one_camera_tells_no_depth():
-    assert triangles_worth(wavy(0.1), CAMERAS[:1], lambda index: stripes(CAMERAS[0]), 1e-5) is None
+    assert triangles_worth(wavy(0.1), CAMERAS[:1], greys([stripes(CAMERAS[0])]), 1e-5) is None
+
+
+def test_photographs_again_at_another_time_are_worth_as_many_triangles():
+    twice = repeated(greys([stripes(camera) for camera in CAMERAS]).pixels, 2)
+    assert triangles_worth(wavy(0.05), CAMERAS, twice, 1e-5) == worth(wavy(0.05), 1e-5)
+    assert triangles_worth(wavy(0.1), CAMERAS[:1], repeated([twice.pixels[0]], 2), 1e-5) is None
 
 
 def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
@@ -68,7 +75,7 @@ def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
     for camera in cameras:  # a wave on the wall along x, as each camera sees it
         x = (np.arange(camera.width) + 0.5 - camera.K[0, 2]) / camera.K[0, 0] * 3.0 - camera.t[0]
         pictures.append(np.tile(np.cos(angle * x * camera.K[0, 0] / 3.0), (camera.height, 1)).astype(np.float32))
-    views = [_view(wall, camera, picture) for camera, picture in zip(cameras, pictures, strict=True)]
+    views = [_view(wall, camera, 0, picture) for camera, picture in zip(cameras, pictures, strict=True)]
     looked = [_points(views, number) for number in range(3)]
     assert _loss(wall, views, looked) == pytest.approx(0, abs=1e-9)
     off = 0.5 / (0.5 * cameras[0].K[0, 0])  # of inverse depth, for half a pixel between neighbours
@@ -85,9 +92,9 @@ def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
 def test_where_nothing_is_left_the_picture_is_black():
     wall = square(3.0, 0.0, 8)
     half = replace(wall, faces=wall.faces[wall.vertices[wall.faces].mean(axis=1)[:, 0] < 0])
-    views = [_view(wall, camera, stripes(camera)) for camera in CAMERAS]
+    views = [_view(wall, camera, 0, stripes(camera)) for camera in CAMERAS]
     looked = [_points(views, number) for number in range(len(views))]
-    gone = [view.grey[_view(half, view.camera, view.grey).inverse_depth <= 0] for view in views]
+    gone = [view.grey[_view(half, view.camera, 0, view.grey).inverse_depth <= 0] for view in views]
     assert _loss(half, views, looked) == pytest.approx(sum(float(np.square(one).sum()) for one in gone) / 0.4, rel=1e-5)
 
 
@@ -95,7 +102,7 @@ def test_large_photographs_are_looked_at_smaller():
     wall = wavy(0.1)
     camera = CAMERAS[4].resized(2400, 2000)
     grey = np.kron(stripes(CAMERAS[4]), np.ones((20, 20), np.float32))
-    view = _view(wall, camera, grey)
+    view = _view(wall, camera, 0, grey)
     assert view.grey.size <= 1 << 20 and view.pixels == pytest.approx(2400 * 2000 / (1 << 20))
     assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
 

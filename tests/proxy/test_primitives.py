@@ -19,6 +19,7 @@ from eigenfield.proxy.primitives.clip import clipped, split_long_edges
 from eigenfield.proxy.primitives.shapes import Plane, Sphere, insert_primitive, parse_primitive
 from eigenfield.proxy.primitives.sphere_fit import Region, find_view, fit_sphere, outline, parse_region
 from eigenfield.proxy.topology import areas, boundary_loops, edge_faces
+from support.observations import InMemory
 from support.surfaces import ball, looking, square
 
 # ---------------------------------------------------------------- words
@@ -205,7 +206,7 @@ def test_a_sphere_is_found_from_a_careless_box(known_depth):
     low, high = around.min(axis=0), around.max(axis=0)
     box = Region("1", low[0] - 8, low[1] - 3, high[0] - low[0] + 6, high[1] - low[1] + 9)
     depth = 5.2 if known_depth else None
-    fit = fit_sphere(1, box, cameras, lambda i: pictures[i], depth=depth)
+    fit = fit_sphere(1, box, cameras, InMemory(pictures), depth=depth)
     assert np.linalg.norm(np.array(fit.sphere.centre) - sphere.centre) < 0.05
     assert abs(fit.sphere.radius - sphere.radius) < 0.02
     assert fit.residual < 1.0 and fit.views == 6 and fit.contrast > 0.1
@@ -216,14 +217,14 @@ def test_fits_that_cannot_be_are_said():
     cameras = [camera, looking(np.array([0.5, 0, -5.0]), (0, 0, 0)), looking(np.array([-0.5, 0, -5.0]), (0, 0, 0))]
     grey = np.full((120, 160, 3), 0.5, np.float32)
     with pytest.raises(OptionError) as caught:
-        fit_sphere(0, Region("0", 500, 10, 20, 20), cameras, lambda i: grey)
+        fit_sphere(0, Region("0", 500, 10, 20, 20), cameras, InMemory([grey] * 3))
     assert caught.value.code == "fit-sphere-region"
     with pytest.raises(ProxyError) as caught:
-        fit_sphere(0, Region("0", 50, 40, 30, 30), cameras, lambda i: grey, depth=5.0)
+        fit_sphere(0, Region("0", 50, 40, 30, 30), cameras, InMemory([grey] * 3), depth=5.0)
     assert caught.value.code == "fit-sphere-outline" and caught.value.remedy
     back = Camera(camera.K, np.diag([-1.0, 1, -1]), np.array([0, 0, -5.0]), 160, 120)
     with pytest.raises(ProxyError) as caught:
-        fit_sphere(0, Region("0", 50, 40, 30, 30), [camera, back], lambda i: grey)
+        fit_sphere(0, Region("0", 50, 40, 30, 30), [camera, back], InMemory([grey] * 2))
     assert caught.value.code == "fit-sphere-outline"
 
 
@@ -236,7 +237,7 @@ def test_the_ball_of_tarot(data):
     circle = circles["images/out_08_08.jpg"]
     r = circle["r"]
     box = Region("", circle["cx"] - r - 12, circle["cy"] - r + 8, 2 * r + 10, 2 * r + 16)
-    fit = fit_sphere(view, box, light_field.cameras, lambda i: light_field.photograph(i).pixels)
+    fit = fit_sphere(view, box, light_field.cameras, light_field)
     off = []
     for name, camera in zip(light_field.names, light_field.cameras, strict=True):
         (cx, cy), radius = cv2.minEnclosingCircle(outline(fit.sphere, camera).astype(np.float32))

@@ -6,9 +6,9 @@ import numpy as np
 import trimesh
 
 from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.photographs.decoded import Photograph
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Photograph
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.background import joined
 from eigenfield.proxy.surface.fusion import DepthView

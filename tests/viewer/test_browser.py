@@ -15,20 +15,30 @@ from support import coded_scenes, composed, viewer_scenes
 WEB = Path(__file__).parents[2] / "web"
 CHROMIUM = os.environ.get("EIGENFIELD_CHROMIUM") or shutil.which("chromium") or shutil.which("chromium-browser")
 FILES = sorted((WEB / "tests").glob("*.test.mjs"))
+PLAIN = {"structure": None, "coding": "vite"}  # what needs no browser, and what of web/node_modules it needs
 
 
-def missing() -> str | None:
-    """What these tests lack here, with the remedy."""
+def missing(path: Path) -> str | None:
+    """What a file of tests lacks here, with the remedy."""
+    name = path.name.removesuffix(".test.mjs")
+    package = PLAIN.get(name, "playwright-core")
     if shutil.which("node") is None:
         return "needs Node.js"
-    if CHROMIUM is None:
+    if name not in PLAIN and CHROMIUM is None:
         return "needs Chromium: apt-get install chromium, or name one in EIGENFIELD_CHROMIUM"
-    if not (WEB / "node_modules" / "playwright-core").is_dir():
-        return "needs playwright-core: npm ci in web/"
+    if package is not None and not (WEB / "node_modules" / package).is_dir():
+        return f"needs {package}: npm ci in web/"
     return None
 
 
-pytestmark = pytest.mark.skipif(missing() is not None, reason=str(missing()))
+def cases(plain: bool):
+    """The files that need no browser, or those that do; each is skipped where it lacks something."""
+    found = []
+    for path in FILES:
+        name, lacks = path.name.removesuffix(".test.mjs"), missing(path)
+        if (name in PLAIN) == plain:
+            found.append(pytest.param(path, id=name, marks=pytest.mark.skipif(lacks is not None, reason=str(lacks))))
+    return found
 
 
 @pytest.fixture(scope="module")
@@ -40,17 +50,24 @@ def folder(tmp_path_factory):
     return made
 
 
-def test_there_are_browser_tests():
-    assert len(FILES) >= 5
-
-
-@pytest.mark.parametrize("path", FILES, ids=lambda path: path.name.removesuffix(".test.mjs"))
-def test_in_chromium(path, folder):
-    surroundings = os.environ | {
-        "EIGENFIELD_SCENES": str(folder), "EIGENFIELD_CHROMIUM": str(CHROMIUM), "EIGENFIELD_PYTHON": sys.executable,
-    }  # fmt: skip
+def run(path: Path, **surroundings: str) -> None:
     done = subprocess.run(
         ["node", "--test", "--test-force-exit", "--test-reporter=spec", str(path)],
-        cwd=WEB, env=surroundings, capture_output=True, text=True, timeout=600,
+        cwd=WEB, env=os.environ | {"EIGENFIELD_PYTHON": sys.executable} | surroundings,
+        capture_output=True, text=True, timeout=600,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout[-8000:] + done.stderr[-2000:]
+
+
+def test_there_are_browser_tests():
+    assert len(FILES) >= 14
+
+
+@pytest.mark.parametrize("path", cases(plain=True))
+def test_in_node(path):
+    run(path)
+
+
+@pytest.mark.parametrize("path", cases(plain=False))
+def test_in_chromium(path, folder):
+    run(path, EIGENFIELD_SCENES=str(folder), EIGENFIELD_CHROMIUM=str(CHROMIUM))

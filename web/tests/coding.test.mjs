@@ -1,4 +1,5 @@
-// The decoders of coded meshes, weights, cameras and triangles against what Python codes and decodes, damaged bytes included.
+// The table of codecs against the schema, and its decoders of meshes, weights, cameras, triangles and names against
+// what Python codes and decodes, damaged bytes included.
 
 import assert from "node:assert/strict";
 import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
@@ -10,7 +11,7 @@ import { build } from "vite";
 import { python } from "./command.mjs";
 
 const path = (name) => fileURLToPath(new URL(name, import.meta.url));
-let folder, names, decoders;
+let folder, names, built;
 
 before(async () => {
   folder = await mkdtemp(join(tmpdir(), "eigenfield-coding-"));
@@ -26,18 +27,29 @@ before(async () => {
       lib: { entry: path("pages/coding.ts"), formats: ["es"], fileName: () => "coding.mjs" },
     },
   });
-  decoders = await import(pathToFileURL(join(folder, "built/coding.mjs")));
+  built = await import(pathToFileURL(join(folder, "built/coding.mjs")));
 });
 
 after(() => rm(folder, { recursive: true, force: true }));
 
-const functions = { mesh: "decodeMesh", weights: "decodeWeights", cameras: "decodeCameras", triangles: "decodeTriangles" };
+const decoderOf = (name) => built.CODECS[`${name.split("-")[0]}-1`].decode;
 
 async function vector(name) {
   const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
   const expected = JSON.parse(await readFile(join(folder, `${name}.json`), "utf8"));
-  return { expected, decode: () => decoders[functions[name.split("-")[0]]](bytes, "here") };
+  return { expected, decode: () => decoderOf(name)(bytes, "here") };
 }
+
+test("the table has the schema's codecs, and what they need is known", async () => {
+  const schema = JSON.parse(await readFile(path("../../docs/schema/EIGENFIELD_eigen_textures.schema.json"), "utf8"));
+  const kinds = Object.values(built.CODECS).map(({ kind }) => kind);
+  for (const kind of new Set(kinds)) {
+    const own = Object.keys(built.CODECS).filter((name) => built.CODECS[name].kind === kind);
+    assert.deepEqual(own.sort(), schema.$defs[`${kind}Codec`].enum.toSorted(), kind);
+  }
+  assert.deepEqual(new Set(kinds).size, Object.keys(schema.$defs).filter((name) => name.endsWith("Codec")).length - 1);
+  assert.deepEqual([...built.KNOWN_NEEDS].sort(), schema.$defs.feature.enum.toSorted());
+});
 
 /** The same numbers; floats but for the last digit, which sums in another order may change. */
 function assertAlike(found, expected, name) {
@@ -86,7 +98,7 @@ test("damaged bytes give what Python makes of them, or an error of ours", async 
 test("names decode to the same names, damaged ones too or to an error of ours", async () => {
   let [read, refused] = [0, 0];
   for (const [text, count, expected] of JSON.parse(await readFile(join(folder, "names.json"), "utf8"))) {
-    const found = decoders.decodeNames(Uint8Array.from(Buffer.from(text, "base64")), count);
+    const found = decoderOf("names")(Uint8Array.from(Buffer.from(text, "base64")), count, "here");
     if (expected === null) {
       await assert.rejects(found, (error) => error.name === "SceneError", `${count} names of ${text.slice(0, 80)}`);
       refused += 1;
@@ -99,9 +111,10 @@ test("names decode to the same names, damaged ones too or to an error of ours", 
 });
 
 test("large numbers in few bytes allocate nothing", async () => {
-  for (const [name, at] of [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6], ["triangles-grid", 1]]) {
+  const counts = [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6], ["triangles-grid", 1]];
+  for (const [name, at] of counts) {
     const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
     new DataView(bytes.buffer).setUint32(at, 2 ** 26, true);
-    assert.throws(() => decoders[functions[name.split("-")[0]]](bytes), { name: "SceneError" });
+    assert.throws(() => decoderOf(name)(bytes, "here"), { name: "SceneError" });
   }
 });

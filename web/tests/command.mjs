@@ -4,6 +4,7 @@
 
 import assert from "node:assert/strict";
 import { execFileSync, spawn } from "node:child_process";
+import { delimiter } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const PYTHON = process.env.EIGENFIELD_PYTHON ?? "python3";
@@ -12,7 +13,8 @@ const PYTHON = process.env.EIGENFIELD_PYTHON ?? "python3";
 export const eigenfield = (...args) => python("-m", "eigenfield", ...args);
 
 export function python(...args) {
-  const env = { ...process.env, PYTHONPATH: fileURLToPath(new URL("../../tests", import.meta.url)) };
+  const paths = [fileURLToPath(new URL("../../tests", import.meta.url)), process.env.PYTHONPATH];
+  const env = { ...process.env, PYTHONPATH: paths.filter(Boolean).join(delimiter) };
   return execFileSync(PYTHON, args, { encoding: "utf8", env, stdio: ["ignore", "pipe", "inherit"] });
 }
 

@@ -46,7 +46,7 @@ function tryLoad(page, source) {
       if (!field) return { plain: true, meshes: gltf.scene.children.length };
       const later = new Promise((resolve) => {
         field.addEventListener("error", ({ error }) => resolve({ code: error.code, message: error.message }));
-        field.complete.then(() => resolve(null), () => undefined); // the event tells of it
+        field.complete.then(() => resolve(null), () => undefined); // the event reports it
       });
       draw();
       return { later: await later, loaded: field.loaded };
@@ -137,7 +137,7 @@ test("what is cut off or damaged after the mean is drawn is an event, and the re
   await close();
 });
 
-test("files cut off anywhere are told of", async () => {
+test("files cut off anywhere are reported", async () => {
   const { page, close } = await lab.open();
   const bytes = sceneBytes("scene.glb");
   const part = { length: 0 };
@@ -302,6 +302,53 @@ function streamsOf(json) {
     return { name, view, start: byteOffset, length: byteLength };
   });
 }
+
+/** Every stream of a coded scene as an object that names `codec`, or its own where that is null. */
+function named(e, codec = null) {
+  const [plane] = e.planes;
+  const [basis] = plane.bases;
+  e.mesh.codec = codec ?? "mesh-1";
+  e.cameras.coded = { bufferView: e.cameras.coded, codec: codec ?? "cameras-1" };
+  e.viewPlane.codedTriangles = { bufferView: e.viewPlane.codedTriangles, codec: codec ?? "triangles-1" };
+  basis.codedWeights = { bufferView: basis.codedWeights, codec: codec ?? "weights-1" };
+  plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-1";
+}
+
+const STREAMS = {
+  mesh: (e) => e.mesh,
+  cameras: (e) => e.cameras.coded,
+  triangles: (e) => e.viewPlane.codedTriangles,
+  weights: (e) => e.planes[0].bases[0].codedWeights,
+  picture: (e) => e.planes[0].bases[0].textures[0],
+  names: (e) => (e.cameras.codedNames = { bufferView: 0, count: 25 }),
+};
+
+test("streams may name their codecs; an unknown one is refused by name, and so is one of another kind", async () => {
+  const { page, close } = await lab.open();
+  const { json, binary } = readGlb(sceneBytes("coded.glb"));
+  const own = structuredClone(json);
+  named(find(own));
+  routes["/named.glb"] = { body: writeGlb({ json: own, binary }) };
+  assert.deepEqual(await tryLoad(page, "named.glb"), { later: null, loaded: 6 });
+  for (const [kind, stream] of Object.entries(STREAMS)) {
+    for (const codec of ["soup-9", kind === "mesh" ? "png" : "mesh-1", "toString"]) {
+      const other = structuredClone(own);
+      stream(find(other)).codec = codec;
+      routes["/named.glb"] = { body: writeGlb({ json: other, binary }) };
+      const found = await tryLoad(page, "named.glb");
+      const message = `A ${kind} stream has the codec "${codec}", which this viewer does not know`;
+      assert.deepEqual([found.code, found.message], ["codec-unknown", `${message}; take a newer viewer.`]);
+      assert.match(found.where, /^\/extensions\/EIGENFIELD_eigen_textures\/.+\/codec$/);
+    }
+  }
+  for (const codec of ["avif", 7]) {
+    const other = structuredClone(own);
+    find(other).planes[0].mean.codec = codec;
+    routes["/named.glb"] = { body: writeGlb({ json: other, binary }) };
+    assert.equal((await tryLoad(page, "named.glb")).code, "damaged", `a picture of 10 bits as ${codec}`);
+  }
+  await close();
+});
 
 test("damaged coded parts are refused by name", async () => {
   const { page, close } = await lab.open();

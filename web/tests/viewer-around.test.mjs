@@ -106,7 +106,7 @@ test("a grid is listed by its rows, each from the left", async () => {
   await close();
 });
 
-test("the panel tells quality, bytes and memory; ?memory= keeps to so many megabytes and says so", async () => {
+test("the panel shows quality, bytes and memory; ?memory= keeps to so many megabytes and says so", async () => {
   const wide = { width: 900, height: 600 };
   const full = await openViewer(browser, "scene.glb", wide);
   await settled(full.page);

@@ -29,7 +29,7 @@ test("at view-plane coordinates the picture is the software renderer's", async (
   }
 });
 
-test("the slider: fewer textures, fewer bytes, another picture, its SSIM where the file tells", async () => {
+test("the slider: fewer textures, fewer bytes, another picture, its SSIM where the file has it", async () => {
   const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
   const all = await state(page);
   const full = await picture(page);
@@ -145,7 +145,7 @@ test("a harmonised scene is given its camera's exposure only there", async () =>
   await close();
 });
 
-test("the panel tells of the file; help and panel open by keys; a screenshot is a PNG of the canvas", async () => {
+test("the panel describes the file; help and panel open by keys; a screenshot is a PNG of the canvas", async () => {
   const { page, close } = await openViewer(browser, "held-out.glb", { width: 900, height: 700 });
   await state(page);
   await page.locator("summary", { hasText: "About this file" }).click();

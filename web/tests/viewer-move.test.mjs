@@ -152,7 +152,7 @@ test("a click on the map goes there", async () => {
   await close();
 });
 
-test("orbit: starts without a jump, turns about the surface, tells when it is outside, and comes back", async () => {
+test("orbit: starts without a jump, turns about the surface, says when it is outside, and comes back", async () => {
   const { page, close } = await openViewer(browser, "scene.glb");
   await page.evaluate(() => window.eigenfield.goTo(0.3, 0.2));
   await settled(page);

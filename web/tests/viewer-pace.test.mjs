@@ -12,7 +12,7 @@ before(async () => {
 });
 after(() => browser.close());
 
-/** Frames come so many milliseconds apart, `window.interval`, by a clock that tells just that. */
+/** Frames come so many milliseconds apart, `window.interval`, by a clock that shows just that. */
 const paced = () => {
   window.interval = 120;
   let clock = 1000;
@@ -93,7 +93,7 @@ test("a machine that was slow for a while is asked again", async () => {
   };
   const slow = await move("ArrowRight", 60);
   assert.equal(slow.linear, true);
-  await move("ArrowLeft", 6); // the first quick one tells; patience is twenty seconds of the page's clock
+  await move("ArrowLeft", 6); // the first quick one shows it; patience is twenty seconds of the page's clock
   await page.evaluate(() => void (window.interval = 21_000));
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(done)));
   const again = await move("ArrowRight", 6);

@@ -14,13 +14,14 @@ from eigenfield.capture.formats import FORMATS, Format
 from eigenfield.capture.layout import Layout
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.opening import open_any, open_capture, open_photographs
-from eigenfield.capture.photographs.decoded import Photograph
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import Header, read_header
-from eigenfield.capture.photoset import PhotoSet, Shot
+from eigenfield.capture.photoset import Capture, PhotoSet, Shot
+from eigenfield.core.observations import Photograph
 
 __all__ = [
     "FORMATS",
+    "Capture",
     "Format",
     "Header",
     "Layout",

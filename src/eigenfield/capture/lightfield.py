@@ -2,27 +2,51 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from eigenfield.capture.layout import Layout
-from eigenfield.capture.photographs.decoded import Photograph, decode_masked, size_on_disk
+from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.observations import Photograph
+
+
+class Source(Protocol):
+    """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.
+
+    Attributes:
+        name: unique in the capture: the file's name, or its relative path where file names alone are not unique.
+        path: the picture's file.
+        lens: the distortion that is removed on reading; None where there is none.
+        mask: a mask's file, white where the photograph counts.
+        upright: whether the photograph's EXIF orientation is applied on reading.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def path(self) -> Path: ...
+    @property
+    def lens(self) -> Lens | None: ...
+    @property
+    def mask(self) -> Path | None: ...
+    @property
+    def upright(self) -> bool: ...
 
 
 @dataclass(frozen=True, eq=False)
 class View:
     """One photograph and its camera.
 
-    name: unique in the capture: the file's name, or its relative path where file names alone are not unique.
-    camera: the pinhole camera of the photograph after lens removal, at the photograph's own size.
-    lens: the distortion that is removed on reading; None where there is none.
-    mask: a mask's file, white where the photograph counts.
-    upright: whether the photograph's EXIF orientation is applied on reading.
-    bounds: the nearest and farthest depth of the scene along z, world units, where the calibration says them; a hint.
+    Attributes:
+        name, path, lens, mask, upright: as `Source`.
+        camera: the pinhole camera of the photograph after lens removal, at the photograph's own size.
+        bounds: the nearest and farthest depth of the scene along z, world units, where the calibration states them; a
+            hint.
     """
 
     name: str
@@ -36,13 +60,14 @@ class View:
 
 @dataclass(frozen=True, eq=False)
 class LightField:
-    """A capture: photographs with one camera each.
+    """A capture: photographs with one camera each. Each view is an observation, all of them of one instant.
 
-    root: the folder that the photographs were looked for in.
-    views: in the natural order of their names.
-    problems: one line each, for people: what was left out or mended on reading.
-    format: the reader's name ("transforms", "colmap", "hci", ...).
-    layout: how the array stood, where the photographs' names say so too; None otherwise.
+    Attributes:
+        root: the folder that the photographs were looked for in.
+        views: in the natural order of their names.
+        problems: one line each, for people: what was left out or corrected on reading.
+        format: the reader's name ("transforms", "colmap", "hci", ...).
+        layout: how the array stood, where the photographs' names say so too; None otherwise.
     """
 
     root: Path
@@ -61,6 +86,29 @@ class LightField:
     @property
     def cameras(self) -> tuple[Camera, ...]:
         return tuple(view.camera for view in self.views)
+
+    @property
+    def light_field(self) -> LightField:
+        """The capture itself: its cameras are known. A `PhotoSet` has None here."""
+        return self
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """What each photograph is read from."""
+        return self.views
+
+    @property
+    def sizes(self) -> list[tuple[int, int]]:
+        """(width, height) of each photograph."""
+        return [(camera.width, camera.height) for camera in self.cameras]
+
+    def camera_of(self, index: int) -> int:
+        """Each view has a camera of its own."""
+        return index
+
+    def time_of(self, index: int) -> int:
+        """All views are of one instant."""
+        return 0
 
     def photograph(self, index: int) -> Photograph:
         """Decode one photograph now; nothing is kept. May be called from any thread.
@@ -83,6 +131,23 @@ class LightField:
         chosen = list(indices)
         layout = None if self.layout is None else self.layout.subset(chosen)
         return replace(self, views=tuple(self.views[i] for i in chosen), layout=layout)
+
+    def calibrated(
+        self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()
+    ) -> LightField:
+        """The same photographs with other cameras.
+
+        Args:
+            cameras: one each, in order.
+            lenses: the distortion to remove from each photograph; None: the views' own.
+            problems: lines added to the capture's own.
+        """
+        lenses = [view.lens for view in self.views] if lenses is None else lenses
+        views = tuple(
+            replace(view, camera=camera, lens=lens)
+            for view, camera, lens in zip(self.views, cameras, lenses, strict=True)
+        )
+        return replace(self, views=views, problems=(*self.problems, *problems))
 
     def bytes(self, index: int) -> int:
         """The size of the photograph's file on disk."""

@@ -13,7 +13,7 @@ from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.locate import photographs_in, root_of
 from eigenfield.capture.messages import some
 from eigenfield.capture.pairing import pair
-from eigenfield.capture.photoset import PhotoSet
+from eigenfield.capture.photoset import Capture, PhotoSet
 from eigenfield.core.errors import CaptureError, OptionError
 
 StrPath = str | os.PathLike[str]
@@ -50,9 +50,9 @@ def open_capture(
     if source is None or not source.claim.format.cameras:
         raise _no_cameras(Path(path))
     opened = _open(source, masks, strict)
-    if not isinstance(opened, LightField):
+    if opened.light_field is None:
         raise _no_cameras(Path(path), opened.problems)
-    return opened
+    return opened.light_field
 
 
 def open_photographs(
@@ -96,7 +96,7 @@ def open_any(
     grid: tuple[int, int] | None = None,
     frame: int | str | None = None,
     work: StrPath | None = None,
-) -> LightField | PhotoSet:
+) -> Capture:
     """Open whatever is there: a light field where a calibration or the names tell the cameras, else photographs.
 
     Arguments and errors as `open_capture` and `open_photographs`.
@@ -195,7 +195,7 @@ def _arrangement(source: _Source) -> Arrangement:
     return replace(arrangement, problems=(*source.claim.problems, *arrangement.problems))
 
 
-def _open(source: _Source, masks: StrPath | None, strict: bool) -> LightField | PhotoSet:
+def _open(source: _Source, masks: StrPath | None, strict: bool) -> Capture:
     folder = None if masks is None else Path(masks)
     row = source.claim.format
     if row.read_cameras is not None:

@@ -7,21 +7,21 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from eigenfield.capture.layout import Layout
-from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.photographs.decoded import Photograph, decode_masked, size_on_disk
+from eigenfield.capture.lightfield import LightField, Source, View
+from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
+from eigenfield.core.observations import Photograph
 
 
 @dataclass(frozen=True)
 class Shot:
     """One photograph without a camera.
 
-    name: unique in the set, as a View's. path: the picture's file.
-    width, height: of the picture as it is decoded, upright.
-    focal: pixels, where EXIF or the format says it; None otherwise.
-    mask: a mask's file, white where the photograph counts.
-    upright: whether the EXIF orientation is applied on reading.
+    Attributes:
+        name, path, mask, upright: as `Source`.
+        width, height: of the picture as it is decoded, upright.
+        focal: pixels, where EXIF or the format states it; None otherwise.
     """
 
     name: str
@@ -32,14 +32,22 @@ class Shot:
     mask: Path | None = None
     upright: bool = True
 
+    @property
+    def lens(self) -> Lens | None:
+        """None: a lens becomes known together with the camera."""
+        return None
+
 
 @dataclass(frozen=True, eq=False)
 class PhotoSet:
-    """Photographs of one scene without cameras.
+    """Photographs of one scene without cameras. Each is an observation, all of them of one instant.
 
-    root: the folder they were found in. format: the reader's name ("stanford", "grid", "folder", ...).
-    layout: how the array stood; None for a folder of photographs of which nothing is known.
-    problems: one line each, for people.
+    Attributes:
+        root: the folder they were found in.
+        shots: in the natural order of their names.
+        layout: how the array stood; None for a folder of photographs of which nothing is known.
+        problems: one line each, for people.
+        format: the reader's name ("stanford", "grid", "folder", ...).
     """
 
     root: Path
@@ -54,6 +62,29 @@ class PhotoSet:
     @property
     def names(self) -> tuple[str, ...]:
         return tuple(shot.name for shot in self.shots)
+
+    @property
+    def light_field(self) -> None:
+        """None: the cameras are not known. A `LightField` has itself here."""
+        return None
+
+    @property
+    def sources(self) -> tuple[Source, ...]:
+        """What each photograph is read from."""
+        return self.shots
+
+    @property
+    def sizes(self) -> list[tuple[int, int]]:
+        """(width, height) of each photograph."""
+        return [(shot.width, shot.height) for shot in self.shots]
+
+    def camera_of(self, index: int) -> int:
+        """Each photograph has a camera of its own, though it is not known."""
+        return index
+
+    def time_of(self, index: int) -> int:
+        """All photographs are of one instant."""
+        return 0
 
     def photograph(self, index: int) -> Photograph:
         """Decode one photograph now, its lens as it is; nothing is kept. May be called from any thread.
@@ -76,9 +107,12 @@ class PhotoSet:
     def calibrated(
         self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()
     ) -> LightField:
-        """The light field of these photographs with `cameras`, one each, in order.
+        """The light field of these photographs.
 
-        lenses: the distortion to remove from each, None for none. problems: lines added to the set's own.
+        Args:
+            cameras: one each, in order.
+            lenses: the distortion to remove from each photograph; None: none from any.
+            problems: lines added to the set's own.
         """
         lenses = [None] * len(self.shots) if lenses is None else lenses
         views = tuple(
@@ -86,3 +120,6 @@ class PhotoSet:
             for shot, camera, lens in zip(self.shots, cameras, lenses, strict=True)
         )
         return LightField(self.root, views, (*self.problems, *problems), self.format, self.layout)
+
+
+Capture = LightField | PhotoSet

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.read import read_header
-from eigenfield.capture.photoset import PhotoSet
+from eigenfield.capture.photoset import Capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress, track
@@ -91,19 +90,17 @@ def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:
     return focus if np.median(ahead) > 0 else None
 
 
-def file_kinds(capture: LightField | PhotoSet) -> list[tuple[str, int, bool, int]]:
+def file_kinds(capture: Capture) -> list[tuple[str, int, bool, int]]:
     """(format, bits a channel, alpha, number of photographs), the most frequent first."""
     kinds: Counter[tuple[str, int, bool]] = Counter()
-    for item in capture.views if isinstance(capture, LightField) else capture.shots:
-        header = read_header(item.path)
+    for source in capture.sources:
+        header = read_header(source.path)
         kinds[header.format, header.depth, header.alpha] += 1
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
 
 
-def decode_all(capture: LightField | PhotoSet, progress: Progress | None = None) -> list[CaptureError]:
+def decode_all(capture: Capture, progress: Progress | None = None) -> list[CaptureError]:
     """Decode every photograph and mask once; what cannot be decoded or is hidden altogether, in the capture's order."""
-
-    items = capture.views if isinstance(capture, LightField) else capture.shots
 
     def attempt(index: int) -> CaptureError | None:
         try:
@@ -112,11 +109,11 @@ def decode_all(capture: LightField | PhotoSet, progress: Progress | None = None)
             return error
         if photograph.mask is None or photograph.mask.any():
             return None
-        item = items[index]
+        source = capture.sources[index]
         return CaptureError(
             "mask-black",
             "the mask hides the whole photograph",
-            path=item.mask or item.path,
+            path=source.mask or source.path,
             remedy="white counts, black is left out: invert it, or take the photograph out",
         )
 

@@ -110,7 +110,7 @@ def command(
     docs/measures.md defines every figure. Where the file has a residual, captured views are measured without it
     and with it; held-out ones have none. With --json all figures go to standard output, otherwise a table does.
     """  # fmt: skip
-    from eigenfield.capture import PhotoSet, open_any
+    from eigenfield.capture import open_any
     from eigenfield.evaluation import evaluate, read_circles, stored_scores, with_scene_cameras
     from eigenfield.gltf import load, store_scores
     from eigenfield.runtime.files import refuse_existing
@@ -123,7 +123,7 @@ def command(
     if store:
         refuse_existing(scene, overwrite=True)  # says now, not after the work, that the folder cannot be written to
     opened = open_any(capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame)
-    light_field = with_scene_cameras(loaded, opened) if isinstance(opened, PhotoSet) else opened
+    light_field = with_scene_cameras(loaded, opened)
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.names)
     with progress_bars(quiet) as progress:
         figures = evaluate(

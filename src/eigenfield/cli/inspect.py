@@ -70,13 +70,13 @@ def command(
 
         refuse_existing(overlay, overwrite)
 
-    from eigenfield.capture import LightField, open_any
+    from eigenfield.capture import open_any
     from eigenfield.capture.survey import decode_all
 
     opened = open_any(
         capture, calibration=calibration, masks=masks, strict=False, format=format, grid=grid, frame=frame
     )  # fmt: skip
-    if proxy is not None and not isinstance(opened, LightField):
+    if proxy is not None and opened.light_field is None:
         raise OptionError(
             "proxy-needs-cameras",
             "--proxy is drawn by the capture's cameras, and it has none",
@@ -89,11 +89,11 @@ def command(
         mesh = read_mesh(proxy)
     with progress_bars(quiet) as progress:
         damaged = decode_all(opened, progress)
-    report = describe(opened, damaged) if isinstance(opened, LightField) else describe_photographs(opened, damaged)
+    report = describe_photographs(opened, damaged) if opened.light_field is None else describe(opened, damaged)
     options = {"calibration": calibration, "masks": masks, "format": format, "frame": frame}
     options["grid"] = None if grid is None else f"{grid[0]}x{grid[1]}"
     report["next"] = _next(report, capture, options)
-    if mesh is not None and isinstance(opened, LightField):
+    if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         if overlay is not None:
             note(f"overlay written to {overlay}", quiet)

@@ -96,12 +96,11 @@ def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any],
                 "no-capture", f"--{given[0]} is for a capture, and none is named", remedy="name it behind the scene"
             )
         return None
-    from eigenfield.capture import PhotoSet, open_any
+    from eigenfield.capture import open_any
     from eigenfield.evaluation import match_photographs, with_scene_cameras
     from eigenfield.viewer import Photographs
 
-    opened = open_any(capture, **options)
-    light_field = with_scene_cameras(scene, opened) if isinstance(opened, PhotoSet) else opened
+    light_field = with_scene_cameras(scene, open_any(capture, **options))
     photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
     missing = len(scene.names) - len(photographs.names)
     if missing:

@@ -132,7 +132,7 @@ def encode(
     layout = make_atlas(draft.mesh, *draft.atlas)
     resampling = DEFAULT_RESAMPLING if resampling is None else resampling
     with texture_maps(
-        layout, draft.encoded_cameras, draft.photograph, resampling=resampling, work=place, progress=progress
+        layout, draft.encoded_cameras, draft.observations, resampling=resampling, work=place, progress=progress
     ) as maps:
         fitted = None if harmonise is None else harmonise_maps(maps, harmonise, progress)
         scene_basis, mean, spreader = _decompose(maps, draft, place, progress)
@@ -174,7 +174,7 @@ def _fitted(
     asked = fitted_textures(len(used)) if options.textures is None else options.textures
     atlas = draft.atlas[1], draft.atlas[0]
     with (
-        open_shots(used, draft.photograph, draft.mesh, atlas, work, progress, draft.encoded_reference) as shots,
+        open_shots(used, draft.observations, draft.mesh, atlas, work, progress, draft.encoded_reference) as shots,
         open_fits(
             shots,
             draft.density,
@@ -256,7 +256,7 @@ def _decompose(
     spreader = make_spreader(maps.atlas, mean.seen)
     if options.uv_ssim is None:
         asked = DEFAULT_TEXTURES if options.textures is None else options.textures
-        count = component_count(asked, maps.cameras)
+        count = component_count(asked, maps.count)
     else:
         average = spreader(mean.values)
         count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)

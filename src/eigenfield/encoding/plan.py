@@ -6,24 +6,25 @@ import logging
 import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import LightField, PhotoSet
+from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.core.payloads import stream_of
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Plane, Scene, check_scale
 from eigenfield.core.version import __version__
 from eigenfield.core.viewplane import ViewPlane, find_grid, fit_view_plane
-from eigenfield.encoding.fitted import KINDS, PRESETS, Preset, Target, byte_price, density_of, fit_surface, split_matrix
+from eigenfield.encoding.fitted import KINDS, PRESETS, Preset, Target, byte_price, density_of, fit_surface
 from eigenfield.encoding.geometry import slim_mesh, triangles_worth
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
 from eigenfield.encoding.projected import (
@@ -151,9 +152,9 @@ class Options:
             raise OptionError("fit", f"{maps[0]} is about texture maps, and a fit makes none", remedy=other)
 
 
-def check_options(capture: LightField | PhotoSet, options: Options) -> None:
+def check_options(capture: Capture, options: Options) -> None:
     """Raise OptionError for what `encode` will refuse for this capture, before its cameras and proxy are estimated."""
-    if isinstance(capture, LightField):
+    if capture.light_field is not None:
         places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
     elif capture.layout is not None:
         places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
@@ -208,8 +209,9 @@ class Draft:
         return _grid_of(self.coordinates[self.encoded])
 
     @cached_property
-    def _shown(self) -> LightField:
-        return self.capture.subset(self.encoded.tolist())
+    def observations(self) -> Observations:
+        """Those of the encoded cameras, which are counted among themselves."""
+        return of_cameras(self.capture, self.encoded.tolist())
 
     @property
     def mesh_bytes(self) -> int:
@@ -224,10 +226,6 @@ class Draft:
     def density(self) -> float:
         """The atlas's texels per pixel of the reference photograph, along one axis."""
         return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, self.cameras[self.reference])
-
-    def photograph(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-        """Pixels and mask of an encoded camera, counted among those."""
-        return _photograph(self._shown, index)
 
     def scene(
         self,
@@ -284,20 +282,20 @@ def make_draft(
     held = held_out_cameras(options.hold_out, names, coordinates)
     encoded = np.flatnonzero(~held)
     centre = _reference(options.reference, names, coordinates, encoded)
-    shown, used = capture.subset(encoded.tolist()), [cameras[index] for index in encoded]
+    observations, used = of_cameras(capture, encoded.tolist()), [cameras[index] for index in encoded]
     simplify = options.fit != "none" and triangles is None
 
     def worth(mesh: Mesh) -> int | None:
         relief = mesh.uv is not None and relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
         price = byte_price(options.fit_quality) / options.atlas_density**2
-        return None if relief else triangles_worth(mesh, used, partial(_grey, shown), price)
+        return None if relief else triangles_worth(mesh, used, observations, price)
 
     mesh = prepare_proxy(proxy, cameras, triangles=worth if simplify else triangles, progress=progress)
     _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
     relief = None
     if options.fit != "none":
         relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
-        mesh = fit_surface(mesh, relief and relief[0], used, partial(_photograph, shown), side, work, progress)
+        mesh = fit_surface(mesh, relief and relief[0], used, observations, side, work, progress)
     anew = simplify and relief is None  # a relief keeps its atlas
 
     def again(other: Options) -> Draft:
@@ -325,7 +323,7 @@ def _draft(
             texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
             mesh = slim_mesh(
                 mesh, [cameras[i] for i in encoded], int(np.searchsorted(encoded, centre)),
-                partial(_grey, capture.subset(encoded.tolist())), byte_price(options.fit_quality), texels,
+                of_cameras(capture, encoded.tolist()), byte_price(options.fit_quality), texels,
             )  # fmt: skip
         else:
             mesh = coded_mesh(mesh, cameras, centre)
@@ -336,15 +334,6 @@ def _draft(
     return Draft(
         capture, options, again, mesh, tuple(cameras), plane, coordinates, held, centre, size
     )  # fmt: skip
-
-
-def _photograph(shown: LightField, index: int) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-    picture = shown.photograph(index)
-    return picture.pixels, picture.mask
-
-
-def _grey(shown: LightField, index: int) -> NDArray[np.float32]:
-    return np.asarray(shown.photograph(index).pixels @ split_matrix()[0][0], np.float32)
 
 
 def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import Lens, LightField, Photograph, PhotoSet
+from eigenfield.capture import Capture, Lens, LightField, Photograph
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected import FILTERS, METHODS, Atlas, align_map, harmonised, make_atlas, texture_map
@@ -204,11 +204,14 @@ def start_session(
     return replace(session, reference=reference)
 
 
-def with_scene_cameras(scene: Scene, photographs: PhotoSet) -> LightField:
-    """Photographs without a calibration, with the cameras and lenses that the scene keeps for their names.
+def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
+    """A light field as it is; photographs without a calibration with the cameras and lenses that the scene keeps for
+    their names.
 
     Raises CaptureError `no-photographs` where no name fits.
     """
+    if photographs.light_field is not None:
+        return photographs
     index = {name: i for i, name in enumerate(scene.names)}
     chosen = photographs.subset([i for i, name in enumerate(photographs.names) if name in index])
     if not len(chosen):

@@ -20,7 +20,7 @@ from eigenfield.calibrate import (
     start_given,
     start_planar,
 )
-from eigenfield.capture import LightField, PhotoSet
+from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.camera import Camera
@@ -34,7 +34,7 @@ from eigenfield.proxy import (
     second_layer,
     write_ply,
 )
-from eigenfield.reconstruction.frame import Capture, common_frame, read_masks, read_pictures, resized_cameras
+from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
 from eigenfield.reconstruction.kept import (
     CAMERAS,
     DEPTH,
@@ -98,7 +98,7 @@ def relief_of_array(
         planar = refine_planar(shown, start, exact=not refine, progress=run.progress)
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
-            bases = None if isinstance(capture, PhotoSet) else resized_cameras(capture)
+            bases = None if capture.light_field is None else resized_cameras(capture)
             positions = _positions(capture)[:, ::-1] if start.exchanged else _positions(capture)
             planar = register_views(planar, known, pictures[new], new, positions, bases)
         light_field = _light_field(capture, planar)
@@ -175,11 +175,11 @@ def _refines(capture: Capture, settings: Settings) -> bool:
         return settings.refine
     if capture.layout is not None and capture.layout.exact:
         return False
-    return isinstance(capture, PhotoSet) or len(capture) >= DENSE
+    return capture.light_field is None or len(capture) >= DENSE
 
 
 def _start(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
-    if isinstance(capture, PhotoSet):
+    if capture.light_field is None:
         assert capture.layout is not None
         try:
             return start_planar(pictures, capture.layout, capture.names)
@@ -192,7 +192,7 @@ def _start(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.flo
 
 def _positions(capture: Capture) -> NDArray[np.float64]:
     """(n, 2) on the array's plane, any unit."""
-    if isinstance(capture, PhotoSet):
+    if capture.light_field is None:
         assert capture.layout is not None
         return capture.layout.positions
     return fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
@@ -211,17 +211,12 @@ def _light_field(capture: Capture, planar: Planar) -> LightField:
         for i in np.flatnonzero(strange)
     ]
     keep = [int(i) for i in np.flatnonzero(~strange)]
-    chosen = capture.subset(keep)
-    sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
     whole, small = common_frame(capture)
     grown = []
     for index in keep:
         K = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0]) @ cameras[index].K
-        grown.append(replace(cameras[index], K=K, width=sizes[index][0], height=sizes[index][1]))
-    if isinstance(chosen, PhotoSet):
-        return chosen.calibrated(grown, problems=problems)
-    views_ = tuple(replace(view, camera=camera) for view, camera in zip(chosen.views, grown, strict=True))
-    return replace(chosen, views=views_, problems=(*chosen.problems, *problems))
+        grown.append(replace(cameras[index], K=K, width=capture.sizes[index][0], height=capture.sizes[index][1]))
+    return capture.subset(keep).calibrated(grown, problems=problems)
 
 
 def _inverse_depths(

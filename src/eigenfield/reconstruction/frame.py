@@ -9,18 +9,16 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import LightField, PhotoSet
+from eigenfield.capture import Capture, LightField
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import parallel_map
 
 PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
 
-Capture = LightField | PhotoSet
-
 
 def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
     """(width, height) that holds every photograph, and the same reduced to keep all within PIXELS."""
-    sizes = [(s.width, s.height) for s in (capture.shots if isinstance(capture, PhotoSet) else capture.cameras)]
+    sizes = capture.sizes
     width, height = (max(side) for side in zip(*sizes, strict=True))
     scale = min(1.0, (PIXELS / (len(sizes) * width * height)) ** 0.5)
     return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
@@ -54,13 +52,12 @@ def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
 
     What a removed lens leaves out at the border is no mask: the array's other views see behind it.
     """
-    views = capture.shots if isinstance(capture, PhotoSet) else capture.views
     whole, small = common_frame(capture)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
 
     def put(index: int) -> bool:
-        view = views[index]
-        if view.mask is None and getattr(view, "lens", None) is not None:
+        source = capture.sources[index]
+        if source.mask is None and source.lens is not None:
             return False
         mask = capture.photograph(index).mask
         if mask is None:

@@ -12,9 +12,8 @@ from numpy.typing import NDArray
 from eigenfield.calibrate import (
     Planar,
 )
-from eigenfield.capture import Lens, LightField, PhotoSet
+from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
-from eigenfield.reconstruction.frame import Capture
 from eigenfield.stereo import Canvas
 
 MESH, ERROR, CAMERAS, DEPTH = "mesh.ply", "error.json", "cameras.npz", "depth.npz"
@@ -41,14 +40,10 @@ def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.f
             Camera(K, R, t, int(size[0]), int(size[1]))
             for K, R, t, size in zip(data["K"], data["R"], data["t"], data["sizes"], strict=True)
         ]
-        lenses = [None if not text else Lens(*json.loads(str(text))) for text in data["lenses"]]
+        known = [None if not text else json.loads(str(text)) for text in data["lenses"]]
         problems, points = tuple(map(str, data["problems"])), data["points"]
-    chosen = capture.subset(kept)
-    if isinstance(chosen, PhotoSet):
-        light_field = chosen.calibrated(cameras, lenses)
-    else:
-        views = tuple(replace(view, camera=camera) for view, camera in zip(chosen.views, cameras, strict=True))
-        light_field = replace(chosen, views=views)
+    lenses = [None if lens is None else Lens(lens[0], tuple(lens[1])) for lens in known]
+    light_field = capture.subset(kept).calibrated(cameras, lenses)
     return replace(light_field, problems=problems), points
 
 

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibrate import structure_from_motion, triangulated_points
-from eigenfield.capture import LightField, PhotoSet
+from eigenfield.capture import Capture, LightField, PhotoSet
+from eigenfield.capture.lightfield import Source
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
@@ -33,7 +34,6 @@ from eigenfield.proxy import (
 )
 from eigenfield.proxy.surface.trim import SurfaceError
 from eigenfield.reconstruction.array import looks_one_way, relief_of_array
-from eigenfield.reconstruction.frame import Capture
 from eigenfield.reconstruction.kept import CAMERAS, ERROR, MESH, read_cameras, write_cameras
 from eigenfield.reconstruction.report import ProxyReport, report_of
 from eigenfield.reconstruction.run import DEFAULT_TRIANGLES, Run, Settings
@@ -92,49 +92,41 @@ def reconstruct(
     with Stages(work) as stages:
         run = Run(stages, settings, progress, {})
         identity = _identity(capture)
-        light_field, points, calibration = (
-            (capture, None, None) if _has_cameras(capture) else _by_motion(run, capture, identity)
-        )
-        error = None
-        if _wants_relief(light_field, settings):
-            light_field, mesh, folder = relief_of_array(run, light_field, points, identity)
+        points = calibration = error = None
+        if capture.light_field is None and capture.layout is None:  # not even a grid says where the cameras stood
+            capture, points, calibration = _by_motion(run, capture, identity)
+        if _wants_relief(capture, settings) or capture.light_field is None:
+            light_field, mesh, folder = relief_of_array(run, capture, points, identity)
             calibration = folder or calibration
         else:
-            assert isinstance(light_field, LightField)
+            light_field = capture
             if settings.blind is not None:
                 raise OptionError(
                     "blind", "only arrays that look one way can be reconstructed blind",
                     remedy="leave out --blind: held-out views then help to find cameras and proxy",
                 )  # fmt: skip
             mesh, error = _poisson(run, light_field, points, identity)
-        assert isinstance(light_field, LightField)
         mesh = _finished(run, light_field, mesh, identity)
         report = report_of(mesh, light_field.cameras, error)
         return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds, report)
 
 
-def _has_cameras(capture: Capture) -> bool:
-    """Cameras are known, or told by a grid."""
-    return isinstance(capture, LightField) or capture.layout is not None
-
-
 def _identity(capture: Capture) -> list[Any]:
     """All that a result depends on: every file's bytes, cameras, lenses, layout."""
-    if isinstance(capture, LightField):
-        own: list[Any] = [
+    if capture.light_field is None:
+        own: list[Any] = [] if capture.layout is None else [_plain(capture.layout)]
+        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
+    else:
+        own = [
             [view.camera.K.tolist(), view.camera.R.tolist(), view.camera.t.tolist(), str(view.lens)]
             for view in capture.views
         ]
-        files = [(view.name, view.path, view.mask, view.upright) for view in capture.views]
-    else:
-        layout = capture.layout
-        own = [] if layout is None else [_plain(layout)]
-        own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
-        files = [(shot.name, shot.path, shot.mask, shot.upright) for shot in capture.shots]
-    digests = parallel_map(
-        lambda file: [file[0], file_digest(file[1]), None if file[2] is None else file_digest(file[2]), file[3]], files
-    )
-    return [digests, own]
+
+    def digest(source: Source) -> list[Any]:
+        mask = None if source.mask is None else file_digest(source.mask)
+        return [source.name, file_digest(source.path), mask, source.upright]
+
+    return [parallel_map(digest, capture.sources), own]
 
 
 def _plain(value: Any) -> dict[str, Any]:
@@ -143,9 +135,8 @@ def _plain(value: Any) -> dict[str, Any]:
     return {name: item.tolist() if isinstance(item, np.ndarray) else item for name, item in items}
 
 
-def _by_motion(run: Run, photos: Capture, identity: list[Any]) -> tuple[LightField, NDArray[np.float64], Path]:
+def _by_motion(run: Run, photos: PhotoSet, identity: list[Any]) -> tuple[LightField, NDArray[np.float64], Path]:
     """Cameras of photographs of which nothing is known, by structure from motion."""
-    assert isinstance(photos, PhotoSet)
 
     def build(folder: Path) -> None:
         motion = structure_from_motion(photos, work=run.stages.folder / "matches", progress=run.progress)
@@ -158,7 +149,8 @@ def _by_motion(run: Run, photos: Capture, identity: list[Any]) -> tuple[LightFie
 
 
 def _wants_relief(capture: Capture, settings: Settings) -> bool:
-    if isinstance(capture, PhotoSet):
+    """Always, for a grid whose cameras are not known. Raises OptionError `surface` where that cannot be."""
+    if capture.light_field is None:
         if settings.surface == "poisson":
             raise OptionError(
                 "surface", "a grid without calibration has no metric frame for a Poisson surface",
@@ -221,9 +213,8 @@ def _by_hand(run: Run, light_field: LightField) -> list[Primitive]:
     for text in run.settings.fit_spheres:
         region = parse_region(text)
         fitted = fit_sphere(
-            find_view(region, light_field.names), region, light_field.cameras,
-            lambda index: light_field.photograph(index).pixels, progress=run.progress,
-        )  # fmt: skip
+            find_view(region, light_field.names), region, light_field.cameras, light_field, progress=run.progress
+        )
         log.info("%s: %s", text, fitted)
         shapes.append(fitted.sphere)
     return shapes

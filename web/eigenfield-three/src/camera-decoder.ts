@@ -15,7 +15,7 @@ export interface CodedCameras {
   poses: Float32Array; // [R t], 12 of each, world to camera
 }
 
-export function decodeCameras(bytes: Uint8Array, where = "cameras"): CodedCameras {
+export function decodeCameras(bytes: Uint8Array, where: string): CodedCameras {
   const header = codedHeader(bytes, HEADER, where);
   const [kind, count] = [header.getUint8(1), header.getUint32(6, true)];
   const gridded = (kind & ON_GRID) !== 0;

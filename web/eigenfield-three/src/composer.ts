@@ -193,7 +193,7 @@ function isSame(one: Recipe, other: Recipe): boolean {
 }
 
 const black = new Color(0);
-const kept = new Color();
+const clearColour = new Color();
 
 /** Calls `work`, which draws into targets, within a draw of `camera`, and puts back what three.js has set. */
 function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void {
@@ -202,7 +202,7 @@ function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void
   const { autoClear, info } = renderer;
   const [presenting, shadows, alpha] = [renderer.xr.enabled, renderer.shadowMap.autoUpdate, renderer.getClearAlpha()];
   const [frame, autoReset] = [info.render.frame, info.autoReset];
-  renderer.getClearColor(kept);
+  renderer.getClearColor(clearColour);
   renderer.setClearColor(black, 0);
   renderer.autoClear = renderer.xr.enabled = renderer.shadowMap.autoUpdate = info.autoReset = false;
   work();
@@ -211,7 +211,7 @@ function within(renderer: WebGLRenderer, camera: Camera, work: () => void): void
   Object.assign(renderer, { autoClear });
   renderer.xr.enabled = presenting;
   renderer.shadowMap.autoUpdate = shadows;
-  renderer.setClearColor(kept, alpha);
+  renderer.setClearColor(clearColour, alpha);
   renderer.setRenderTarget(target, face, level);
   const { viewport } = camera as { viewport?: Parameters<WebGLRenderer["state"]["viewport"]>[0] };
   if (viewport) renderer.state.viewport(viewport); // one eye of two

@@ -1,66 +1,60 @@
 // The JSON of a scene, checked: what stands where in the binary chunk. No byte of that chunk is needed for it.
 
+import {
+  FLOAT,
+  UINT16,
+  UINT32,
+  UINT8,
+  accessorReader,
+  readViews,
+  streamOf,
+  viewReader,
+  type Accessor,
+  type AccessorReader,
+  type Stream,
+  type View,
+  type ViewReader,
+} from "./accessors.js";
+import { CODECS } from "./codecs.js";
 import { SceneError, damaged } from "./errors.js";
 import { Value, type Json, type JsonObject } from "./json.js";
 import * as limits from "./limits.js";
-import { FLOAT, readColours, readPlanes, type Plane } from "./planes.js";
-
-export interface View {
-  offset: number;
-  length: number;
-  stride: number; // 0: packed
-}
-
-/** A run of `count` x `items` numbers within buffer view `view`. */
-export interface Accessor {
-  view: number;
-  offset: number;
-  count: number;
-  items: number;
-  type: ComponentType;
-  where: string;
-}
-
-/** Bytes that a decoder of ours reads: docs/coding.md. */
-export interface Stream {
-  view: number;
-  where: string;
-}
+import { readColours, readPlanes, type Plane } from "./planes.js";
+import type { CamerasJson, Feature, PatternJson, SceneJson, ViewPlaneJson } from "./schema.js";
 
 export interface SceneDocument {
   version: string;
   generator: string;
   planes: Plane[];
   colours: [number, number, number][]; // R, G, B of the value 1 of each channel of all planes
-  names: string[] | Stream; // as many as `heldOut`
+  names: string[] | Stream<"names">; // as many as `heldOut`
   heldOut: boolean[];
   reference: number;
-  calibration: Stream | { intrinsics: Accessor; poses: Accessor };
+  calibration: Stream<"cameras"> | { intrinsics: Accessor; poses: Accessor };
   sizes: Accessor | [number, number]; // of each photograph, or of all
   colour: Accessor | null;
   origin: [number, number, number];
   right: [number, number, number];
   up: [number, number, number];
   extent: [number, number];
-  triangles: Accessor | Stream | null;
+  triangles: Accessor | Stream<"triangles"> | null;
   settings: JsonObject;
   scores: JsonObject;
   views: View[];
-  mesh: Stream | null; // the proxy, of which what follows is then a coarse form for other viewers
+  mesh: Stream<"mesh"> | null; // the proxy, of which what follows is then a coarse form for other viewers
   position: Accessor;
   uv: Accessor;
   indices: Accessor;
   preview: number | null; // buffer view of `images[0]`
 }
 
-type ComponentType = 5121 | 5123 | 5125 | 5126;
-const BYTES: Record<ComponentType, number> = { 5121: 1, 5123: 2, 5125: 4, 5126: 4 };
-const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
+const LAYOUT_FEATURES: Feature[] = ["namePattern", "precision", "regions", "sharedPicture", "stacks", "toRGB"];
+const CODEC_FEATURES = Object.values(CODECS).flatMap(({ needs }) => needs ?? []);
+export const KNOWN_NEEDS: ReadonlySet<string> = new Set([...LAYOUT_FEATURES, ...CODEC_FEATURES]);
+
 const MOST_PARTS = 64; // of a pattern of names
 const MOST_DIGITS = 9;
 const MOST_NUMBER = 10 ** MOST_DIGITS;
-const USHORT = 5123;
-const UINT = 5125;
 
 /** Whether a glTF document says that it is a scene of ours. */
 export function isScene(json: Json): boolean {
@@ -75,11 +69,11 @@ export function isScene(json: Json): boolean {
 /** Reads and checks the document of a scene. Raises SceneError: `version`, `needs`, `unsupported`, `damaged`. */
 export function readDocument(json: Json): SceneDocument {
   const root = new Value(json, "");
-  const extension = root.key("extensions").key(limits.EXTENSION);
+  const extension = root.key("extensions").key(limits.EXTENSION) as Value<SceneJson>;
   const version = checkVersion(extension);
   const views = readViews(root);
   const accessor = accessorReader(root, views);
-  const viewOf: ViewReader = (value) => value.integer(0, views.length - 1);
+  const viewOf = viewReader(views);
 
   checkNodes(root);
   const preview = previewOf(root, viewOf);
@@ -113,22 +107,22 @@ export function readDocument(json: Json): SceneDocument {
     colour: colour.exists ? accessor(colour, "SCALAR", [FLOAT], 6 * count) : null,
     ...readViewPlane(viewPlane),
     triangles: codedTriangles.exists
-      ? streamOf(codedTriangles, codedTriangles, viewOf)
+      ? streamOf("triangles", codedTriangles, viewOf)
       : triangles.exists
-        ? trianglesOf(accessor(triangles, "SCALAR", [USHORT, UINT], null), 2 * limits.MAX_CAMERAS)
+        ? trianglesOf(accessor(triangles, "SCALAR", [UINT16, UINT32], null), 2 * limits.MAX_CAMERAS)
         : null,
     settings: freeForm(extension.key("settings")),
     scores: freeForm(extension.key("scores")),
     views,
-    mesh: mesh.exists ? streamOf(mesh, mesh.key("bufferView"), viewOf) : null,
+    mesh: mesh.exists ? streamOf("mesh", mesh, viewOf) : null,
     position: limited(accessor(attributes.key("POSITION"), "VEC3", [FLOAT], null), limits.MAX_VERTICES),
     uv: limited(accessor(attributes.key("TEXCOORD_0"), "VEC2", [FLOAT], null), limits.MAX_VERTICES),
-    indices: trianglesOf(accessor(indices, "SCALAR", [5121, USHORT, UINT], null), limits.MAX_TRIANGLES),
+    indices: trianglesOf(accessor(indices, "SCALAR", [UINT8, UINT16, UINT32], null), limits.MAX_TRIANGLES),
     preview,
   };
 }
 
-function checkVersion(extension: Value): string {
+function checkVersion(extension: Value<SceneJson>): string {
   const version = extension.key("version").text(limits.MAX_NAME);
   if (!/^1\.\d+$/.test(version)) {
     throw new SceneError(
@@ -140,30 +134,12 @@ function checkVersion(extension: Value): string {
   const needs = extension.key("needs");
   for (const need of needs.exists ? needs.items(limits.MAX_VIEWS) : []) {
     const feature = need.text(limits.MAX_NAME);
-    if (!limits.KNOWN_NEEDS.has(feature)) {
+    if (!KNOWN_NEEDS.has(feature)) {
       const message = `The scene needs "${feature.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`;
       throw new SceneError("needs", message, need.where);
     }
   }
   return version;
-}
-
-function readViews(root: Value): View[] {
-  const buffer = root.key("buffers").at(0);
-  if (buffer.key("uri").exists) throw buffer.wrong("not the binary chunk");
-  const total = buffer.key("byteLength").integer(0, 2 ** 32 - 1);
-  return root.key("bufferViews").items(limits.MAX_VIEWS).map((view) => {
-    const offset = view.key("byteOffset");
-    const stride = view.key("byteStride");
-    view.key("buffer").integer(0, 0);
-    const made = {
-      offset: offset.exists ? offset.integer(0, total) : 0,
-      length: view.key("byteLength").integer(1, total),
-      stride: stride.exists ? stride.integer(4, 252) : 0,
-    };
-    if (made.offset + made.length > total) throw view.wrong("outside the buffer");
-    return made;
-  });
 }
 
 /** Nodes make trees: in a circle three.js' loader would wait for itself. */
@@ -186,38 +162,6 @@ function checkNodes(root: Value): void {
   }
 }
 
-/** The buffer view that a value names. */
-export type ViewReader = (value: Value) => number;
-export type AccessorReader = (index: Value, kind: string, types: number[], count: number | null) => Accessor;
-
-/** Reads accessors by their index; those with a `count` must have it, and lie packed. */
-function accessorReader(root: Value, views: View[]): AccessorReader {
-  const accessors = root.key("accessors").items(limits.MAX_VIEWS);
-  return (index, kind, types, count) => {
-    const at = accessors[index.integer(0, accessors.length - 1)];
-    if (!at) throw index.wrong("no such accessor");
-    const type = at.key("componentType").integer(5120, 5126) as ComponentType;
-    if (!types.includes(type)) throw at.wrong(`component type ${type}`);
-    if (at.key("type").text(limits.MAX_NAME) !== kind) throw at.wrong(`not ${kind}`);
-    if (at.key("sparse").exists) throw at.wrong("sparse");
-    const normalised = at.key("normalized");
-    if (normalised.exists && normalised.raw !== false) throw at.wrong("normalised");
-    const items = ITEMS[kind] ?? 1;
-    const has = at.key("count").integer(1, limits.MAX_WEIGHTS);
-    if (count !== null && has !== count) throw at.wrong(`${count} numbers are needed, not ${has}`);
-    const view = at.key("bufferView").integer(0, views.length - 1);
-    const within = views[view];
-    if (!within) throw at.wrong("no such buffer view");
-    const start = at.key("byteOffset");
-    const offset = start.exists ? start.integer(0, within.length) : 0;
-    const size = BYTES[type] * items;
-    if (within.stride && (within.stride < size || kind === "SCALAR")) throw at.wrong("a stride that cannot be");
-    if (offset + (has - 1) * (within.stride || size) + size > within.length) throw at.wrong("outside its buffer view");
-    if ((offset + within.offset) % BYTES[type]) throw at.wrong("not aligned");
-    return { view, offset, count: has, items, type, where: at.where };
-  };
-}
-
 function limited(accessor: Accessor, most: number): Accessor {
   if (accessor.count > most) throw damaged(accessor.where, `more than ${most}`);
   return accessor;
@@ -228,10 +172,6 @@ function trianglesOf(accessor: Accessor, most: number): Accessor {
   return limited(accessor, 3 * most);
 }
 
-export function streamOf(entry: Value, view: Value, viewOf: ViewReader): Stream {
-  return { view: viewOf(view), where: entry.where };
-}
-
 function previewOf(root: Value, viewOf: ViewReader): number | null {
   const images = root.key("images");
   if (!images.exists) return null;
@@ -240,11 +180,11 @@ function previewOf(root: Value, viewOf: ViewReader): number | null {
 }
 
 /** How many cameras there are, and their names or where those are coded. */
-function namesOf(cameras: Value, viewOf: ViewReader): { count: number; names: string[] | Stream } {
+function namesOf(cameras: Value<CamerasJson>, viewOf: ViewReader): { count: number; names: SceneDocument["names"] } {
   const coded = cameras.key("codedNames");
   if (coded.exists) {
     const count = coded.key("count").integer(1, limits.MAX_CAMERAS);
-    return { count, names: streamOf(coded, coded.key("bufferView"), viewOf) };
+    return { count, names: streamOf("names", coded, viewOf) };
   }
   const pattern = cameras.key("pattern");
   const given = pattern.exists ? pattern : cameras.key("names");
@@ -264,7 +204,7 @@ export function wrongIn(names: string[]): string | null {
 }
 
 /** Names of which the pieces are the same in all, along rows or along columns. */
-function patternNames(pattern: Value): string[] {
+function patternNames(pattern: Value<PatternJson>): string[] {
   const counts = pattern.key("counts").items(2).map((item) => item.integer(1, limits.MAX_CAMERAS));
   const [rows = 0, columns = 0] = counts;
   if (!columns || rows * columns > limits.MAX_CAMERAS) throw pattern.wrong("no counts of rows and columns");
@@ -290,7 +230,7 @@ function patternNames(pattern: Value): string[] {
   });
 }
 
-function heldOutOf(cameras: Value, count: number): boolean[] {
+function heldOutOf(cameras: Value<CamerasJson>, count: number): boolean[] {
   const flags = Array<boolean>(count).fill(false);
   const held = cameras.key("heldOut");
   if (!held.exists) return flags;
@@ -304,28 +244,28 @@ function heldOutOf(cameras: Value, count: number): boolean[] {
 }
 
 function calibrationOf(
-  cameras: Value,
+  cameras: Value<CamerasJson>,
   count: number,
   accessor: AccessorReader,
   viewOf: ViewReader,
 ): SceneDocument["calibration"] {
   const coded = cameras.key("coded");
-  if (coded.exists) return streamOf(coded, coded, viewOf);
+  if (coded.exists) return streamOf("cameras", coded, viewOf);
   return {
     intrinsics: accessor(cameras.key("intrinsics"), "SCALAR", [FLOAT], 5 * count),
     poses: accessor(cameras.key("poses"), "SCALAR", [FLOAT], 12 * count),
   };
 }
 
-function sizesOf(cameras: Value, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
+function sizesOf(cameras: Value<CamerasJson>, count: number, accessor: AccessorReader): SceneDocument["sizes"] {
   const one = cameras.key("size");
-  if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT], 2 * count);
+  if (!one.exists) return accessor(cameras.key("sizes"), "SCALAR", [UINT32], 2 * count);
   const [width = 0, height = 0] = one.numbers(2, 1, limits.MAX_CAMERA_SIDE);
   if (!Number.isInteger(width) || !Number.isInteger(height)) throw one.wrong("no whole numbers");
   return [width, height];
 }
 
-function readViewPlane(value: Value): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {
+function readViewPlane(value: Value<ViewPlaneJson>): Pick<SceneDocument, "origin" | "right" | "up" | "extent"> {
   const [right, up] = [value.key("right").triple(), value.key("up").triple()];
   const dot = (a: number[], b: number[]): number => a.reduce((sum, x, i) => sum + x * (b[i] ?? 0), 0);
   for (const off of [dot(right, right) - 1, dot(up, up) - 1, dot(right, up)]) {

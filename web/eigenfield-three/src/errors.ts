@@ -6,7 +6,8 @@ export type SceneErrorCode =
   | "needs"
   | "unsupported"
   | "network"
-  | "codec";
+  | "codec" // a codec that the browser lacks
+  | "codec-unknown"; // one that this viewer does not know
 
 /** What is wrong with a file, for people: one sentence with the remedy. `where` is a JSON pointer or a byte offset. */
 export class SceneError extends Error {

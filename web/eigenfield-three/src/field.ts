@@ -316,7 +316,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
           this.gains.set(one, gain);
           this.dispatchEvent({ type: "texture" });
         })
-        .catch(() => undefined); // drawing has told of it already
+        .catch(() => undefined); // drawing has reported it already
       break;
     }
     return 1;

@@ -17,9 +17,9 @@ export function medianFootprint(geometry: BufferGeometry, camera: CaptureCamera,
   const found: { footprint: number; area: number }[] = [];
   for (let face = 0; face < faces; face += step) {
     const corners = [0, 1, 2].map((i) => index.getX(3 * face + i));
-    const seen = corners.map((v) => project(camera, position.getX(v), position.getY(v), position.getZ(v)));
-    const screen = area(seen);
-    const middle = [0, 1].map((axis) => seen.reduce((sum, corner) => sum + (corner[axis] ?? NaN) / 3, 0));
+    const projected = corners.map((v) => project(camera, position.getX(v), position.getY(v), position.getZ(v)));
+    const screen = area(projected);
+    const middle = [0, 1].map((axis) => projected.reduce((sum, corner) => sum + (corner[axis] ?? NaN) / 3, 0));
     const [x = NaN, y = NaN] = middle;
     if (!(screen > 0 && x >= 0 && y >= 0 && x < camera.width && y < camera.height)) continue;
     const atlas = area(corners.map((v) => [uv.getX(v) * size[0], uv.getY(v) * size[1]]));

@@ -13,17 +13,17 @@ export function deviceLimits(gl: GL, memory: number): DeviceLimits {
   };
 }
 
-/** Layers of zeros of 8 bits, or of half-floats if `deep`; null if there is no memory. Texels are read one by one, or
+/** Layers of zeros of 8 bits, or of half-floats if `halves`; null if there is no memory. Texels are read one by one, or
  * if `between` linearly. */
 export function makeArray(
   gl: GL,
   [width, height]: [number, number],
   layers: number,
   between: boolean,
-  deep: boolean,
+  halves: boolean,
 ): WebGLTexture | null {
   return allocated(gl, gl.TEXTURE_2D_ARRAY, () => {
-    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, deep ? gl.RGBA16F : gl.RGBA8, width, height, layers);
+    gl.texStorage3D(gl.TEXTURE_2D_ARRAY, 1, halves ? gl.RGBA16F : gl.RGBA8, width, height, layers);
     for (const edge of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) {
       gl.texParameteri(gl.TEXTURE_2D_ARRAY, edge, gl.CLAMP_TO_EDGE);
     }
@@ -73,13 +73,13 @@ export function bound(gl: GL, target: GLenum, texture: WebGLTexture, work: () =>
     [gl.UNPACK_SKIP_ROWS, 0],
     [gl.UNPACK_SKIP_IMAGES, 0],
   ];
-  const kept = wanted.map(([name]): [GLenum, number | boolean] => [name, gl.getParameter(name) as number | boolean]);
+  const saved = wanted.map(([name]): [GLenum, number | boolean] => [name, gl.getParameter(name) as number | boolean]);
   const buffer = gl.getParameter(gl.PIXEL_UNPACK_BUFFER_BINDING) as WebGLBuffer | null;
   if (buffer) gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, null);
   wanted.forEach(([name, value]) => gl.pixelStorei(name, value));
   gl.bindTexture(target, texture);
   work();
   gl.bindTexture(target, before);
-  kept.forEach(([name, value]) => gl.pixelStorei(name, value));
+  saved.forEach(([name, value]) => gl.pixelStorei(name, value));
   if (buffer) gl.bindBuffer(gl.PIXEL_UNPACK_BUFFER, buffer);
 }

@@ -45,16 +45,16 @@ function jpeg(data: DataView): PictureHeader | null {
 
 function webp(data: DataView): PictureHeader | null {
   if (fourCC(data, 0) !== "RIFF" || fourCC(data, 8) !== "WEBP") return null;
-  const kept = { type: "image/webp", bits: null };
+  const shared = { type: "image/webp", bits: null };
   const kind = fourCC(data, 12);
   const uint24 = (at: number): number => data.getUint16(at, true) + 65536 * data.getUint8(at + 2);
-  if (kind === "VP8X") return { ...kept, width: 1 + uint24(24), height: 1 + uint24(27) };
+  if (kind === "VP8X") return { ...shared, width: 1 + uint24(24), height: 1 + uint24(27) };
   if (kind === "VP8L") {
     const bits = data.getUint32(21, true);
-    return { ...kept, width: 1 + (bits & 0x3fff), height: 1 + ((bits >>> 14) & 0x3fff) };
+    return { ...shared, width: 1 + (bits & 0x3fff), height: 1 + ((bits >>> 14) & 0x3fff) };
   }
   if (kind !== "VP8 ") return null;
-  return { ...kept, width: data.getUint16(26, true) & 0x3fff, height: data.getUint16(28, true) & 0x3fff };
+  return { ...shared, width: data.getUint16(26, true) & 0x3fff, height: data.getUint16(28, true) & 0x3fff };
 }
 
 /** The largest `ispe` of the file: the picture's own, or that of the grid it is put together from; the first `av1C`. */

@@ -7,7 +7,7 @@
 export { novelCamera, placeCamera, type Frame } from "./cameras.js";
 export { SceneError, type SceneErrorCode } from "./errors.js";
 export { EigenField, type FieldEvents } from "./field.js";
-export type { CaptureCamera, Matrix3rows, SceneInfo, ViewPlane } from "./info.js";
+export type { CaptureCamera, Matrix3rows, SceneInfo, Vector, ViewPlane } from "./info.js";
 export type { Json, JsonObject } from "./json.js";
 export { loadEigenfield, type Loaded, type LoadOptions } from "./load.js";
 export type { Filter } from "./material.js";

@@ -1,15 +1,12 @@
 // What a scene says of itself: cameras, view plane, settings and bytes, read from the file and checked.
 
-import { decodeCameras } from "./camera-decoder.js";
-import { type Accessor, type SceneDocument, type Stream, wrongIn } from "./document.js";
-import { cutOff, damaged } from "./errors.js";
+import { checkFinite, readNumbers, type Accessor, type Numbers, type Stream, type ViewBytes } from "./accessors.js";
+import { type SceneDocument, wrongIn } from "./document.js";
+import { damaged } from "./errors.js";
 import type { Grid } from "./grid.js";
 import type { JsonObject } from "./json.js";
 import * as limits from "./limits.js";
-import { decodeNames } from "./name-decoder.js";
 import type { Basis } from "./planes.js";
-import { decodeTriangles } from "./triangle-decoder.js";
-import { decodeWeights } from "./weight-decoder.js";
 
 const SHORTEST = 1e-6; // of focal lengths, in pixels
 
@@ -65,36 +62,12 @@ export interface PlaneInfo {
   bases: { textures: number; size: [number, number]; grid: [number, number] }[];
 }
 
-/** Bytes of a buffer view. */
-export type ViewBytes = (view: number) => Promise<ArrayBuffer>;
-
-type Numbers = Float32Array | Uint32Array | Uint16Array;
-
-/** The numbers of an accessor, read whole. */
-export async function readNumbers(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Numbers> {
-  const view = await bytes(accessor.view);
-  const needed = scene.views[accessor.view]?.length ?? Infinity;
-  if (view.byteLength < needed) throw cutOff(accessor.where);
-  const count = accessor.count * accessor.items;
-  const copy = view.slice(accessor.offset, accessor.offset + (accessor.type === 5123 ? 2 : 4) * count);
-  if (accessor.type === 5125) return new Uint32Array(copy);
-  if (accessor.type === 5123) return new Uint16Array(copy);
-  return limited(new Float32Array(copy), accessor.where);
-}
-
-function limited<T extends Numbers>(numbers: T, where: string): T {
-  for (const number of numbers) {
-    if (!(Math.abs(number) <= limits.MAX_NUMBER)) throw damaged(where, `${number} among its numbers`);
-  }
-  return numbers;
-}
-
 export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promise<CaptureCamera[]> {
   const [names, { lenses, poses }, sizes, colour] = await Promise.all([
     readNames(scene, bytes),
     readCalibration(scene, bytes),
     readSizes(scene, bytes),
-    scene.colour ? readNumbers(scene.colour, scene, bytes) : null,
+    scene.colour ? readNumbers(scene.colour, scene.views, bytes) : null,
   ]);
   return names.map((name, i) => {
     const [fx = 0, fy = 0, skew = 0, cx = 0, cy = 0] = lenses.numbers.subarray(5 * i, 5 * i + 5);
@@ -113,7 +86,7 @@ export async function readCameras(scene: SceneDocument, bytes: ViewBytes): Promi
 
 async function readNames({ names, heldOut }: SceneDocument, bytes: ViewBytes): Promise<string[]> {
   if (Array.isArray(names)) return names;
-  const found = await decodeNames(new Uint8Array(await bytes(names.view)), heldOut.length, names.where);
+  const found = await names.codec.decode(new Uint8Array(await bytes(names.view)), heldOut.length, names.where);
   const wrong = found.some((name) => name.length > limits.MAX_NAME) ? "names that are too long" : wrongIn(found);
   if (wrong) throw damaged(names.where, wrong);
   return found;
@@ -126,7 +99,7 @@ interface Table {
 }
 
 async function readTable(accessor: Accessor, scene: SceneDocument, bytes: ViewBytes): Promise<Table> {
-  return { numbers: await readNumbers(accessor, scene, bytes), where: accessor.where };
+  return { numbers: await readNumbers(accessor, scene.views, bytes), where: accessor.where };
 }
 
 /** Five numbers of each camera's lens, twelve of its pose. */
@@ -136,11 +109,11 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
     const { intrinsics, poses } = calibration;
     return { lenses: await readTable(intrinsics, scene, bytes), poses: await readTable(poses, scene, bytes) };
   }
-  const { view, where } = calibration;
-  const coded = decodeCameras(new Uint8Array(await bytes(view)), where);
+  const { view, codec, where } = calibration;
+  const coded = codec.decode(new Uint8Array(await bytes(view)), where);
   const count = coded.poses.length / 12;
   if (count !== heldOut.length) throw damaged(where, `${count} cameras in it, and ${heldOut.length} names`);
-  const table = (numbers: Float32Array): Table => ({ numbers: limited(numbers, where), where });
+  const table = (numbers: Float32Array): Table => ({ numbers: checkFinite(numbers, where), where });
   return { lenses: table(coded.intrinsics), poses: table(coded.poses) };
 }
 
@@ -200,10 +173,10 @@ async function readOwnWeights(
   bytes: ViewBytes,
 ): Promise<Numbers> {
   if (!weights) return new Float32Array(0);
-  if ("type" in weights) return readNumbers(weights, scene, bytes);
-  const { view, where } = weights;
-  const { cameras, components, values } = decodeWeights(new Uint8Array(await bytes(view)), where);
-  if (cameras === rows && components === count) return limited(values, where);
+  if ("type" in weights) return readNumbers(weights, scene.views, bytes);
+  const { view, codec, where } = weights;
+  const { cameras, components, values } = codec.decode(new Uint8Array(await bytes(view)), where);
+  if (cameras === rows && components === count) return checkFinite(values, where);
   throw damaged(where, `${cameras} x ${components} weights, and ${rows} encoded cameras x ${count} textures`);
 }
 
@@ -237,9 +210,13 @@ export async function readTriangles(scene: SceneDocument, bytes: ViewBytes): Pro
   return triangles;
 }
 
-async function readCorners(triangles: Accessor | Stream, scene: SceneDocument, bytes: ViewBytes): Promise<Uint32Array> {
-  if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene, bytes));
-  return decodeTriangles(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
+async function readCorners(
+  triangles: Accessor | Stream<"triangles">,
+  scene: SceneDocument,
+  bytes: ViewBytes,
+): Promise<Uint32Array> {
+  if ("type" in triangles) return Uint32Array.from(await readNumbers(triangles, scene.views, bytes));
+  return triangles.codec.decode(new Uint8Array(await bytes(triangles.view)), triangles.where).corners;
 }
 
 export function sceneInfo(

@@ -8,8 +8,18 @@ export interface JsonObject {
   [key: string]: Json | undefined;
 }
 
-/** A value and its JSON pointer. */
-export class Value {
+type Keys<T> = T extends readonly unknown[] ? never : T extends object ? keyof T & string : never;
+type Member<T, K> = T extends object ? (K extends keyof T ? NonNullable<T[K]> : never) : never;
+type Item<T> = T extends readonly (infer Each)[] ? Each : never;
+type KeyOf<T> = unknown extends T ? string : Keys<T>;
+type MemberOf<T, K> = unknown extends T ? unknown : Member<T, K>;
+type ItemOf<T> = unknown extends T ? unknown : Item<T>;
+
+/**
+ * A value and its JSON pointer. T is its type by the schema, `unknown` where no schema of ours has it. The compiler
+ * checks the names of keys by T; the value itself may be anything until a method has checked it.
+ */
+export class Value<T = unknown> {
   constructor(
     readonly raw: Json | undefined,
     readonly where: string,
@@ -24,19 +34,19 @@ export class Value {
     return this.raw;
   }
 
-  key(name: string): Value {
+  key<K extends KeyOf<T>>(name: K): Value<MemberOf<T, K>> {
     const object = this.object();
     const found = Object.hasOwn(object, name) ? object[name] : undefined;
     return new Value(found, `${this.where}/${name}`);
   }
 
-  items(most: number): Value[] {
+  items(most: number): Value<ItemOf<T>>[] {
     if (!Array.isArray(this.raw)) throw this.wrong("no list");
     if (this.raw.length > most) throw this.wrong(`more than ${most} entries`);
     return this.raw.map((item, index) => new Value(item, `${this.where}/${index}`));
   }
 
-  at(index: number): Value {
+  at(index: number): Value<ItemOf<T>> {
     if (!Array.isArray(this.raw)) throw this.wrong("no list");
     return new Value(this.raw[index], `${this.where}/${index}`);
   }

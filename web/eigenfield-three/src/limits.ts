@@ -1,10 +1,6 @@
 // What a file may announce: docs/format.md, "Limits". Checked before anything is allocated.
 
 export const EXTENSION = "EIGENFIELD_eigen_textures";
-export const KNOWN_NEEDS: ReadonlySet<string> = new Set([
-  "bits", "codedCameras", "codedMesh", "codedNames", "codedTriangles", "codedWeights", "namePattern", "precision",
-  "regions", "sharedPicture", "stacks", "toRGB",
-]); // what `needs` may hold
 
 export const MAX_JSON = 64 * 2 ** 20; // bytes
 export const MAX_DEPTH = 64;

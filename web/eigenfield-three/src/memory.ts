@@ -17,8 +17,8 @@ export interface DeviceLimits {
 
 export interface Needs {
   atlas: Size;
-  means: { size: Size; channels: number; pieces: number; deep: boolean }[]; // pieces: pictures one below the other
-  bases: { size: Size; grid: Size; channels: number; count: number; deep: boolean }[]; // deep: of more than 8 bits
+  means: { size: Size; channels: number; pieces: number; tenBits: boolean }[]; // pieces: pictures one below the other
+  bases: { size: Size; grid: Size; channels: number; count: number; tenBits: boolean }[]; // codes of 10 bits
   rays: boolean; // weights may be looked up texel by texel
   geometry: number; // bytes
 }
@@ -108,8 +108,8 @@ function composing(needs: Needs, down: number): number {
   return Math.round([...means, ...sums].reduce((a, b) => a + b, 0));
 }
 
-function bytesOf({ deep }: { deep: boolean }): number {
-  return deep ? HALVES : CODES;
+function bytesOf({ tenBits }: { tenBits: boolean }): number {
+  return tenBits ? HALVES : CODES;
 }
 
 /** Bytes of the first `count` textures of each basis and of the maps of their weights. */
@@ -125,7 +125,7 @@ function stored({ bases, rays }: Needs, down: number, count: number): number {
 /** Columns and rows of the largest piece of a picture that is packed while textures arrive. */
 export function roomFor({ means, bases }: Pick<Needs, "means" | "bases">, meanDown: number, scaleDown: number): Size {
   const sizes = [
-    ...means.filter(({ pieces, deep }) => pieces > 1 || deep).map(({ size }) => smaller(size, meanDown)),
+    ...means.filter(({ pieces, tenBits }) => pieces > 1 || tenBits).map(({ size }) => smaller(size, meanDown)),
     ...bases.filter(({ count }) => count > 0).map(({ size }) => smaller(size, scaleDown)),
   ];
   return covering(sizes);
@@ -138,7 +138,7 @@ export function covering(sizes: Size[]): Size {
 
 function onTheWay(needs: Needs, down: number): number {
   const [width, height] = roomFor({ means: [], bases: needs.bases }, 1, down);
-  return (CODES + (needs.bases.some(({ deep }) => deep) ? WORDS : 0)) * width * height;
+  return (CODES + (needs.bases.some(({ tenBits }) => tenBits) ? WORDS : 0)) * width * height;
 }
 
 function sentence(plan: Omit<Plan, "limitation">, total: number, needs: Needs, limits: DeviceLimits): string | null {

@@ -17,7 +17,7 @@ export interface DecodedMesh {
   indices: Uint32Array; // three a face
 }
 
-export function decodeMesh(bytes: Uint8Array, where = "mesh"): DecodedMesh {
+export function decodeMesh(bytes: Uint8Array, where: string): DecodedMesh {
   const header = codedHeader(bytes, HEADER, where);
   const [flat, digits, fine] = [header.getUint8(1), header.getUint8(2), header.getUint8(3)];
   const [places, faces, count] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];

@@ -151,11 +151,11 @@ export function readTextures(
     before = vertex;
     const near = [anchor >= 0 ? uv[2 * anchor]! : 0, anchor >= 0 ? uv[2 * anchor + 1]! : 0] as const;
     const guess = count > 0 ? ([u / count, v / count] as const) : near;
-    const [many, size] = [Math.min(count, 2), Math.min(reach, 23)];
+    const [neighbours, size] = [Math.min(count, 2), Math.min(reach, 23)];
     const slot = TEXTURE + 2 * 24 * 3;
     for (let axis = 0; axis < 2; axis++) {
       const off = decoder.integer(
-        TEXTURE + (axis * 24 + size) * 3 + many,
+        TEXTURE + (axis * 24 + size) * 3 + neighbours,
         slot + last[0]! * 24 + size,
         slot + 24 * 24 + axis * 24 + last[axis]!,
         M_U + axis,

@@ -6,7 +6,7 @@ import * as limits from "./limits.js";
 const MOST_BYTES = 4 * limits.MAX_NAME; // of one name in UTF-8
 
 /** `count` names. Raises SceneError `damaged`. */
-export async function decodeNames(bytes: Uint8Array, count: number, where = "names"): Promise<string[]> {
+export async function decodeNames(bytes: Uint8Array, count: number, where: string): Promise<string[]> {
   const columns = await inflated(bytes, Math.min(limits.MAX_NAMES, MOST_BYTES * count), where);
   const length = columns.length / count;
   if (length === 0 || !Number.isInteger(length)) throw damaged(where, `${columns.length} bytes of ${count} names`);

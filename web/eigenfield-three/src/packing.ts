@@ -2,9 +2,8 @@
 // into its component of its layer, code by code, and what three.js and others have set is put back. Codes of a mean
 // with a precision p are stored as (code - zero) / p / FINE, so that who sums them knows nothing of it.
 
-import type { Piece } from "./decode.js";
-import type { Codes } from "./deep.js";
 import { bound } from "./gpu.js";
+import type { Codes, Piece } from "./pieces.js";
 
 type GL = WebGL2RenderingContext;
 

@@ -4,7 +4,7 @@ import type { Texture } from "three";
 import type { SceneDocument } from "./document.js";
 import { groupsOf, type Plan } from "./memory.js";
 import { FINE } from "./packing.js";
-import { isDeep, type Picture, type Plane } from "./planes.js";
+import { hasTenBits, type Picture, type Plane } from "./planes.js";
 import type { Textures } from "./textures.js";
 
 /** A mean, or the textures of a basis. */
@@ -77,7 +77,7 @@ function meanNumbers({ mean, channels, precision }: Plane): Numbers {
 
 /** Codes that a stored 1 stands for. */
 function unitOf(pictures: Picture[]): number {
-  return isDeep(pictures) ? 1 : 255;
+  return hasTenBits(pictures) ? 1 : 255;
 }
 
 function basisNumbers(pictures: Picture[], channels: number, used: number): Numbers {

@@ -1,30 +1,26 @@
 // Planes of a scene's document, checked: means, bases, and the pictures that hold them.
 
-import { streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./document.js";
+import { FLOAT, streamOf, type Accessor, type AccessorReader, type Stream, type ViewReader } from "./accessors.js";
+import { CODECS, codecOf, pictureCodec, type Codec } from "./codecs.js";
 import { SceneError } from "./errors.js";
 import { Value } from "./json.js";
 import * as limits from "./limits.js";
+import type { PictureFile } from "./pieces.js";
+import type { BasisJson, MeanJson, PlaneJson, PrecisionJson, SceneJson, TextureJson } from "./schema.js";
 
-export const FLOAT = 5126; // the component type of accessors
+const EIGHT = 8; // bits of a code unless a picture says otherwise
+const MOST_BITS = 16;
 
-const DEEP = 10; // bits of a code that may have more than 8
-
-export interface PictureFile {
-  view: number;
-  mimeType: string;
-  bits: number; // of its codes
-  where: string;
-}
-
+/** One or several textures: value = (code - zero) * scale. */
 export interface Picture extends PictureFile {
-  scale: number[]; // of each channel of each texture: value = (code - zero) * scale
+  codec: Codec<"picture">;
+  scale: number[]; // of each channel of each texture
   zero: number[];
-  textures: number; // in this picture, one below the other
-  pieces: number; // of each texture: one of R, G and B, or its channels, one below the other
 }
 
 /** A small grey picture over all of a mean: value = (code - zero) * scale / p, p = (its own code + 1) / 256. */
 export interface Precision extends PictureFile {
+  codec: Codec<"picture">;
   size: [number, number];
 }
 
@@ -35,7 +31,7 @@ export interface Basis {
   corner: [number, number]; // column and row of the grid at which the textures begin
   pictures: Picture[];
   count: number; // textures
-  weights: Accessor | Stream | null; // null: no textures
+  weights: Accessor | Stream<"weights"> | null; // null: no textures
   where: string;
 }
 
@@ -60,7 +56,7 @@ function readSize(value: Value, most = limits.MAX_SIDE): [number, number] {
 }
 
 export function readPlanes(
-  extension: Value,
+  extension: Value<SceneJson>,
   encoded: number,
   preview: number | null,
   accessor: AccessorReader,
@@ -72,14 +68,14 @@ export function readPlanes(
     const channels = plane.key("channels").integer(1, limits.MAX_CHANNELS);
     const mean = readMean(plane, channels, i === 0 ? preview : null, viewOf);
     const bases = plane.key("bases").items(limits.MAX_BASES);
-    const read = (basis: Value): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
+    const read = (basis: Value<BasisJson>): Basis => readBasis(basis, channels, encoded, accessor, viewOf);
     return { channels, ...mean, bases: bases.map(read) };
   });
   let [decoded, textures] = [0, 0];
   for (const { channels, meanSize, bases } of planes) {
     decoded += 4 * channels * (meanSize ? meanSize[0] * meanSize[1] : 0);
     for (const { size, count, pictures } of bases) {
-      const bytes = pictures.reduce((sum, { textures, bits }) => sum + textures * (bits === 8 ? 1 : 2), 0);
+      const bytes = pictures.reduce((sum, { textures, codec }) => sum + textures * (codec.bits === EIGHT ? 1 : 2), 0);
       decoded += size[0] * size[1] * channels * bytes;
       textures += count;
     }
@@ -92,7 +88,7 @@ export function readPlanes(
 }
 
 /** What makes R, G and B of the channels; one plane of one or three channels needs nothing for it. */
-export function readColours(extension: Value, planes: Plane[]): [number, number, number][] {
+export function readColours(extension: Value<SceneJson>, planes: Plane[]): [number, number, number][] {
   const total = planes.reduce((sum, { channels }) => sum + channels, 0);
   const matrix = extension.key("toRGB");
   if (matrix.exists) {
@@ -108,24 +104,34 @@ export function readColours(extension: Value, planes: Plane[]): [number, number,
 
 /** A picture of one or `textures` textures of `size`, if that is known. `plain`: code / 255 unless it says more. */
 function readPicture(
-  value: Value,
+  value: Value<MeanJson | TextureJson>,
   channels: number,
   textures: number,
   size: [number, number] | null,
   viewOf: ViewReader,
   plain = false,
 ): Picture {
-  const mimeType = value.key("mimeType").text(limits.MAX_NAME);
-  if (!/^image\/(png|jpeg|webp|avif)$/.test(mimeType)) throw value.key("mimeType").wrong("an unknown type");
-  const depth = value.key("bits");
-  const bits = depth.exists ? depth.integer(8, DEEP) : 8;
-  if (bits !== 8 && (bits !== DEEP || mimeType !== "image/avif")) throw depth.wrong(`${bits} bits of ${mimeType}`);
-  const pieces = channels === 3 && bits === 8 ? 1 : channels;
+  const codec = formatOf(value);
+  const pieces = channels === 3 && codec.bits === EIGHT ? 1 : channels;
   if (size) checkRows(value, pieces * textures, size);
   const [scale, zero] = [value.key("scale"), value.key("zero")];
-  const made = { view: viewOf(value.key("bufferView")), mimeType, bits, textures, pieces, where: value.where };
-  if (plain && bits === 8 && !scale.exists && !zero.exists) return { ...made, ...asTheyAre(channels) };
+  const made = { view: viewOf(value.key("bufferView")), codec, textures, pieces, where: value.where };
+  if (plain && codec.bits === EIGHT && !scale.exists && !zero.exists) return { ...made, ...asTheyAre(channels) };
   return { ...made, scale: numbersOf(scale, channels, textures), zero: numbersOf(zero, channels, textures) };
+}
+
+/** What a picture's type and bits say it is, and its codec if it names one. */
+function formatOf(value: Value<MeanJson | TextureJson>): Codec<"picture"> {
+  const mimeType = value.key("mimeType").text(limits.MAX_NAME);
+  if (!pictureCodec(mimeType, EIGHT)) throw value.key("mimeType").wrong("an unknown type");
+  const depth = value.key("bits");
+  const bits = depth.exists ? depth.integer(1, MOST_BITS) : EIGHT;
+  const usual = pictureCodec(mimeType, bits);
+  if (!usual) throw depth.wrong(`${bits} bits of ${mimeType}`);
+  const named = value.key("codec");
+  const codec = codecOf("picture", named, usual);
+  if (codec.mimeType !== mimeType || codec.bits !== bits) throw named.wrong(`${bits} bits of ${mimeType}`);
+  return codec;
 }
 
 function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
@@ -133,13 +139,13 @@ function asTheyAre(channels: number): Pick<Picture, "scale" | "zero"> {
 }
 
 /** Whether some of the codes have more than 8 bits. */
-export function isDeep(pictures: Picture[]): boolean {
-  return pictures.some(({ bits }) => bits > 8);
+export function hasTenBits(pictures: Picture[]): boolean {
+  return pictures.some(({ codec }) => codec.bits > EIGHT);
 }
 
 /** What codes of 8 bits, as browsers decode them, are short of codes of `bits`. */
-export function codeStep({ bits }: Picture): number {
-  return (2 ** bits - 1) / 255;
+export function codeStep({ codec }: Picture): number {
+  return (2 ** codec.bits - 1) / 255;
 }
 
 /** A number of each channel of each texture, or of each channel of all. */
@@ -151,7 +157,7 @@ function numbersOf(value: Value, channels: number, textures: number): number[] {
 }
 
 function readMean(
-  plane: Value,
+  plane: Value<PlaneJson>,
   channels: number,
   preview: number | null,
   viewOf: ViewReader,
@@ -159,7 +165,7 @@ function readMean(
   const own = plane.key("mean");
   if (!own.exists) {
     if (preview === null || (channels !== 1 && channels !== 3)) throw own.wrong("no mean");
-    const mean = { view: preview, mimeType: "image/png", bits: 8, textures: 1, pieces: 1, where: "/images/0" };
+    const mean = { view: preview, codec: CODECS.png, textures: 1, pieces: 1, where: "/images/0" };
     return { mean: { ...mean, ...asTheyAre(channels) }, meanSize: null, precision: null };
   }
   const meanSize = readSize(own.key("size"));
@@ -167,15 +173,17 @@ function readMean(
   return { mean, meanSize, precision: readPrecision(own.key("precision"), mean, viewOf) };
 }
 
-function readPrecision(value: Value, mean: Picture, viewOf: ViewReader): Precision | null {
+function readPrecision(value: Value<PrecisionJson>, mean: Picture, viewOf: ViewReader): Precision | null {
   if (!value.exists) return null;
-  if (mean.bits !== DEEP) throw value.wrong(`of a mean of ${mean.bits} bits`);
+  if (mean.codec.bits === EIGHT) throw value.wrong(`of a mean of ${EIGHT} bits`);
   const size = readSize(value.key("size"), limits.MAX_PRECISION_SIDE);
-  return { view: viewOf(value.key("bufferView")), mimeType: "image/png", bits: 8, size, where: value.where };
+  const codec = codecOf("picture", value.key("codec"), "png");
+  if (codec !== CODECS.png) throw value.key("codec").wrong("no PNG");
+  return { view: viewOf(value.key("bufferView")), codec, size, textures: 1, pieces: 1, where: value.where };
 }
 
 function readBasis(
-  basis: Value,
+  basis: Value<BasisJson>,
   channels: number,
   encoded: number,
   accessor: AccessorReader,
@@ -191,7 +199,7 @@ function readBasis(
   const common = basis.key("picture");
   const shared = common.exists ? common.object() : {};
   const pictures = basis.key("textures").items(limits.MAX_COMPONENTS).map((own) => {
-    const picture = new Value({ ...shared, ...own.object() }, own.where);
+    const picture = new Value<TextureJson>({ ...shared, ...own.object() }, own.where);
     const several = picture.key("count");
     const textures = several.exists ? several.integer(1, limits.MAX_COMPONENTS) : 1;
     count += textures;
@@ -200,7 +208,7 @@ function readBasis(
   if (count > limits.MAX_COMPONENTS) throw basis.wrong(`more than ${limits.MAX_COMPONENTS} textures`);
   const coded = basis.key("codedWeights");
   const plain = (): Accessor => accessor(basis.key("weights"), "SCALAR", [FLOAT], encoded * count);
-  const weights = count ? (coded.exists ? streamOf(coded, coded, viewOf) : plain()) : null;
+  const weights = count ? (coded.exists ? streamOf("weights", coded, viewOf) : plain()) : null;
   return { size, grid: whole, corner: [column, row], pictures, count, weights, where: basis.where };
 }
 

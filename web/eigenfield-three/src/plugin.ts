@@ -1,12 +1,12 @@
 import { MeshBasicMaterial, type Material, type Mesh, type Object3D } from "three";
 import type { GLTF, GLTFLoaderPlugin, GLTFParser } from "three/addons/loaders/GLTFLoader.js";
-import { decodeMean, type Mean } from "./decode.js";
+import type { ViewBytes } from "./accessors.js";
 import { isScene, readDocument, type SceneDocument } from "./document.js";
 import { cutOff, damaged } from "./errors.js";
 import { EigenField } from "./field.js";
 import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } from "./info.js";
-import type { ViewBytes } from "./info.js";
 import { EXTENSION } from "./limits.js";
+import { decodeMean, type Mean } from "./means.js";
 import type { EigenfieldOptions } from "./options.js";
 import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
 import { ViewWeights } from "./weights.js";

@@ -1,11 +1,10 @@
 // The geometry that is drawn: what three.js has made of the file's mesh, checked, or the coded mesh in its place.
 
 import { BufferAttribute, BufferGeometry } from "three";
-import type { SceneDocument, Stream } from "./document.js";
+import type { Stream, ViewBytes } from "./accessors.js";
+import type { SceneDocument } from "./document.js";
 import { SceneError, damaged } from "./errors.js";
-import type { ViewBytes } from "./info.js";
 import { MAX_NUMBER } from "./limits.js";
-import { decodeMesh } from "./mesh-decoder.js";
 
 const SHORT = 65535; // vertices up to which indices have 16 bits: index 65535 itself begins a new strip
 
@@ -28,8 +27,8 @@ export function checkGeometry(geometry: BufferGeometry, scene: SceneDocument): v
 }
 
 /** The proxy of a scene whose glTF mesh is a coarse one, for viewers that know nothing of ours. */
-export async function readCodedMesh({ view, where }: Stream, bytes: ViewBytes): Promise<BufferGeometry> {
-  const { positions, uv, indices } = decodeMesh(new Uint8Array(await bytes(view)), where);
+export async function readCodedMesh({ view, codec, where }: Stream<"mesh">, bytes: ViewBytes): Promise<BufferGeometry> {
+  const { positions, uv, indices } = codec.decode(new Uint8Array(await bytes(view)), where);
   if (!indices.length) throw damaged(where, "a mesh without faces");
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(positions, 3));

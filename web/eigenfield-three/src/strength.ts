@@ -1,6 +1,6 @@
 // How strong an eigen texture is, to show one by itself.
 
-import { closePieces, decodeBitmaps } from "./decode.js";
+import { closePieces } from "./pieces.js";
 import { codeStep, type Basis } from "./planes.js";
 
 const SIDE = 128; // of the thumbnail that is looked at
@@ -21,7 +21,7 @@ export async function eigenGain(
   const within = rank - (first - picture.textures);
   const step = codeStep(picture);
   const together = picture.pieces < channels; // R, G and B
-  const pieces = await decodeBitmaps(await read(picture.view), picture, basis.size);
+  const pieces = await picture.codec.bitmaps(await read(picture.view), picture, basis.size);
   const canvas = new OffscreenCanvas(SIDE, SIDE);
   const context = canvas.getContext("2d", { willReadFrequently: true });
   if (!context) return 1;

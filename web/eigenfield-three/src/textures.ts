@@ -1,13 +1,15 @@
 import { ExternalTexture, type WebGLRenderer } from "three";
-import { closeMean, closePieces, decodeMean, decodePieces, type Mean, type Piece } from "./decode.js";
+import type { ViewBytes } from "./accessors.js";
 import type { SceneDocument } from "./document.js";
 import { SceneError } from "./errors.js";
 import * as gpu from "./gpu.js";
-import { atlasOf, type ViewBytes } from "./info.js";
+import { atlasOf } from "./info.js";
+import { closeMean, decodeMean, type Mean } from "./means.js";
 import * as memory from "./memory.js";
 import type { EigenfieldOptions } from "./options.js";
 import { makePacker, type Packer, type Slot } from "./packing.js";
-import { codeStep, isDeep, type Basis, type Picture } from "./planes.js";
+import { closePieces, type Piece } from "./pieces.js";
+import { codeStep, hasTenBits, type Basis, type Picture } from "./planes.js";
 
 const AHEAD = 3; // pictures decoded at a time
 
@@ -63,10 +65,10 @@ export class Textures {
     const { scene, meanSizes, rays } = parts;
     this.decoded = parts.means;
     const bases = scene.planes.flatMap(({ channels, bases }) =>
-      bases.map((basis) => ({ ...basis, channels, deep: isDeep(basis.pictures) })),
+      bases.map((basis) => ({ ...basis, channels, tenBits: hasTenBits(basis.pictures) })),
     );
     const means = scene.planes.map(({ channels, mean }, i): memory.Needs["means"][number] => {
-      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, deep: isDeep([mean]) };
+      return { size: meanSizes[i] ?? [1, 1], channels, pieces: mean.pieces, tenBits: hasTenBits([mean]) };
     });
     this.needs = { atlas: atlasOf(scene, meanSizes), means, bases, rays, geometry };
     this.means = means.map(() => new ExternalTexture());
@@ -183,7 +185,7 @@ export class Textures {
     const array = this.bases[number]?.sourceTexture;
     const ready = this.ready[number];
     if (!(array instanceof WebGLTexture) || !ready) return;
-    const unit = this.needs.bases[number]?.deep ? 255 * codeStep(picture) : 1;
+    const unit = this.needs.bases[number]?.tenBits ? 255 * codeStep(picture) : 1;
     const together = picture.pieces < channels; // R, G and B
     for (let j = first; j < Math.min(first + picture.textures, usable); j++) {
       for (let i = 0; i < picture.pieces; i++) {
@@ -208,23 +210,23 @@ export class Textures {
       const { meanDown, scaleDown, usable } = plan;
       const between = meanDown > 1 || scaleDown > 1; // texels of what is composed are none of what is stored
       const made = [
-        ...means.map(({ size, channels, deep }) =>
-          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between, deep),
+        ...means.map(({ size, channels, tenBits }) =>
+          gpu.makeArray(gl, memory.smaller(size, meanDown), memory.meanLayers(channels), between, tenBits),
         ),
-        ...bases.map(({ size, channels, count, deep }) => {
+        ...bases.map(({ size, channels, count, tenBits }) => {
           const used = Math.min(count, usable);
           return gpu.makeArray(
             gl,
             used ? memory.smaller(size, scaleDown) : [1, 1],
             used ? memory.layersOf(used, channels) : 1,
             between,
-            deep,
+            tenBits,
           );
         }),
       ];
       const size = memory.roomFor(this.needs, meanDown, scaleDown);
       const picture = gpu.makeRoom(gl, size);
-      const wide = [...means, ...bases].some(({ deep }) => deep);
+      const wide = [...means, ...bases].some(({ tenBits }) => tenBits);
       const codes = wide ? gpu.makeRoom(gl, size, true) : null;
       const precision = gpu.makeRoom(gl, memory.covering(precisions));
       if (picture && precision && (codes || !wide) && made.every((texture) => texture !== null)) {
@@ -260,13 +262,13 @@ export class Textures {
 
   private putMean(gl: WebGL2RenderingContext, made: Mean, mean: Picture, array: WebGLTexture): void {
     const { pieces, precision } = made;
-    const deep = isDeep([mean]);
+    const tenBits = hasTenBits([mean]);
     const [first] = pieces;
-    if (first && pieces.length === 1 && !deep && "close" in first.picture) {
+    if (first && pieces.length === 1 && !tenBits && "close" in first.picture) {
       gpu.putPicture(gl, array, first.picture);
       return;
     }
-    const unit = deep ? 255 * codeStep(mean) : 1;
+    const unit = tenBits ? 255 * codeStep(mean) : 1;
     pieces.forEach((piece, channel) => {
       const slots = [{ channel: 0, layer: Math.floor(channel / 4), component: channel % 4 }];
       this.packer?.put(piece, array, slots, unit, precision && { precision, zero: mean.zero[channel] ?? 0 });
@@ -278,7 +280,7 @@ export class Textures {
     const { basis, picture } = entry;
     const decoded = this.parts
       .bytes(picture.view)
-      .then((data) => decodePieces(data, picture, basis.size, down));
+      .then((data) => picture.codec.decode(data, picture, basis.size, down));
     decoded.catch(() => undefined); // awaited later, or not at all
     return decoded;
   }

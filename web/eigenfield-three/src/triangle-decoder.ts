@@ -7,8 +7,11 @@ import { readLines, tableDecoder } from "./table-decoder.js";
 
 const HEADER = 5;
 
-/** Three encoded cameras each. */
-export function decodeTriangles(bytes: Uint8Array, where = "triangles"): { corners: Uint32Array } {
+export interface CodedTriangles {
+  corners: Uint32Array; // three encoded cameras each
+}
+
+export function decodeTriangles(bytes: Uint8Array, where: string): CodedTriangles {
   const count = codedHeader(bytes, HEADER, where).getUint32(1, true);
   checkNumbers(bytes, 3 * count, 6 * limits.MAX_CAMERAS, where);
   const decoder = tableDecoder(bytes.subarray(HEADER));

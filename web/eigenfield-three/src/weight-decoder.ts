@@ -14,7 +14,7 @@ export interface CodedWeights {
   values: Float32Array; // row by row, a row a camera
 }
 
-export function decodeWeights(bytes: Uint8Array, where = "weights"): CodedWeights {
+export function decodeWeights(bytes: Uint8Array, where: string): CodedWeights {
   const header = codedHeader(bytes, HEADER, where);
   const gridded = header.getUint8(1) === 1;
   const [cameras, components] = [header.getUint32(6, true), header.getUint32(10, true)];

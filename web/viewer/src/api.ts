@@ -12,8 +12,7 @@
 //   eyes()               where the eye is, or in a headset both are: x, y, z in the capture's world
 
 import { Vector3 } from "three";
-import type { EigenField } from "eigenfield-three";
-import type { Frame } from "./mode";
+import type { EigenField, Frame } from "eigenfield-three";
 import type { Options } from "./options";
 import type { Detail } from "./pace";
 import { bytesWith, uvSsim } from "./scores";

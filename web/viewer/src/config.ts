@@ -1,5 +1,5 @@
-// What the page was told: by whoever made it, the JSON in #eigenfield-config, and by its address, ?memory=MB. Every key
-// is optional, and a key of the wrong kind is as good as absent.
+// The configuration of the page: the JSON in #eigenfield-config, by whoever made the page, and ?memory=MB in its
+// address. Every key is optional, and a key of the wrong kind is as good as absent.
 
 export interface Config {
   title: string | null;

@@ -1,6 +1,7 @@
 // Three numbers and three by three, in the capture's world.
 
-export type Vector = [number, number, number];
+import type { Vector } from "eigenfield-three";
+
 type Rows = readonly (readonly number[])[];
 
 export const add = (a: Readonly<Vector>, b: Readonly<Vector>): Vector => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];

@@ -1,5 +1,6 @@
 // What both ways of moving, on the view plane and around a point, have in common.
 
+import type { Frame } from "eigenfield-three";
 import type { PerspectiveCamera } from "three";
 
 /** What keys and sticks ask for, each -1..1: sideways, up, larger, into the scene. */
@@ -8,14 +9,6 @@ export interface Push {
   y: number;
   closer: number;
   forward: number;
-}
-
-/** Where a picture lies in the canvas, in parts of its width and height from the top left. */
-export interface Frame {
-  left: number;
-  top: number;
-  width: number;
-  height: number;
 }
 
 export const WHOLE: Frame = { left: 0, top: 0, width: 1, height: 1 };

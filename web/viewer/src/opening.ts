@@ -62,7 +62,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
       session.message = { text: error.message, code: error.code };
       changed();
     });
-    await field.complete.catch(() => undefined); // the event has told
+    await field.complete.catch(() => undefined); // the `error` event has reported it
   };
 
   const open = async (source: Source): Promise<void> => {

@@ -36,7 +36,7 @@ export function createPanel(viewer: Viewer): Panel {
   );
   const eigen = slider("Eigen texture", (value) => viewer.set({ view: "eigen", eigen: value - 1 }));
   const count = slider("Eigen textures", (value) => viewer.set({ count: value }));
-  const worth = element("p", { class: "quiet figures" });
+  const cost = element("p", { class: "quiet figures" });
   const limitation = element("p", { class: "warning" });
 
   const camera = menu("Captured camera", (value) => {
@@ -92,7 +92,7 @@ export function createPanel(viewer: Viewer): Panel {
   );
   const own = element(
     "div", { class: "own" },
-    view.root, eigen.root, count.root, worth, limitation, cameras, mode.root,
+    view.root, eigen.root, count.root, cost, limitation, cameras, mode.root,
   );
   const root = element(
     "aside", { class: "panel", "aria-label": "Controls and information", id: "panel" },
@@ -161,7 +161,7 @@ export function createPanel(viewer: Viewer): Panel {
       count.show(wanted);
       count.say(drawn < wanted ? `${drawn} of ${wanted}` : `${wanted} of ${field.total}`);
       const ssim = uvSsim(field.info, drawn); // a fitted scene has none
-      worth.textContent = bytes(bytesWith(field.info, drawn)) + (ssim === null ? "" : ` · UV SSIM ${shown(ssim, 4)}`);
+      cost.textContent = bytes(bytesWith(field.info, drawn)) + (ssim === null ? "" : ` · UV SSIM ${shown(ssim, 4)}`);
       limitation.hidden = field.limitation === null;
       limitation.textContent = field.limitation;
       const captured = viewer.captured();

@@ -2,9 +2,10 @@
 // its edge, closer by cropping, and off the plane by a part of the scene's distance.
 
 import type { PerspectiveCamera } from "three";
-import { type CaptureCamera, type EigenField, novelCamera, placeCamera } from "eigenfield-three";
-import { add, dot, scaled, turned, type Vector } from "./geometry";
-import { approach, clamp, type Frame, type Mode, type Push } from "./mode";
+import { novelCamera, placeCamera } from "eigenfield-three";
+import type { CaptureCamera, EigenField, Frame, Vector } from "eigenfield-three";
+import { add, dot, scaled, turned } from "./geometry";
+import { approach, clamp, type Mode, type Push } from "./mode";
 
 const SPAN = 2.6; // view-plane units that a drag across the smaller side of the canvas moves
 const GIVE = 0.14; // how far beyond the edge a hand can pull

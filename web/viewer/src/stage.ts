@@ -4,7 +4,7 @@ import {
   Color, DirectionalLight, GLSL3, Group, HemisphereLight, LinearSRGBColorSpace, Mesh, type Object3D,
   PerspectiveCamera, PlaneGeometry, Scene, ShaderMaterial, SRGBColorSpace, type Texture, Vector4, WebGLRenderer,
 } from "three";
-import type { Frame } from "./mode";
+import type { Frame } from "eigenfield-three";
 
 const FINEST = 2; // device pixels a CSS pixel, at most
 

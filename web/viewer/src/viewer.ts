@@ -1,17 +1,18 @@
 // One scene on the stage, and everything that can be done with it. The panel, the keys, the address and the embedding
 // page all act through this; each of its parts is in a file of its own.
 
+import type { Frame } from "eigenfield-three";
 import { type CameraOrder } from "./camera-order";
 import { createCaptured } from "./captured";
 import type { Config } from "./config";
 import { createLoop } from "./loop";
-import type { Frame, Mode } from "./mode";
+import type { Mode } from "./mode";
 import { createMovement } from "./movement";
 import { createOpening } from "./opening";
 import type { Options } from "./options";
 import { createPace, type Detail, FULL } from "./pace";
 import { createPhotographs } from "./photographs";
-import { createPicture } from "./picture";
+import { createPainter } from "./painter";
 import { createPlaces } from "./places";
 import { emptySession, type Message, type ModeName, type Progress, type Scene, type Status } from "./session";
 import type { Source } from "./source";
@@ -95,7 +96,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   };
   const draw = (next: Detail): void => {
     detail = next;
-    picture.draw(detail);
+    painter.draw(detail);
     for (const listener of drawListeners) listener();
   };
   const loop = createLoop(
@@ -122,7 +123,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
   const places = createPlaces(session, stage);
   const captured = createCaptured(session, places, photographs, changed);
   const movement = createMovement(session, stage, places, captured, changed);
-  const picture = createPicture(session, stage, places, captured);
+  const painter = createPainter(session, stage, places, captured);
 
   const removeWireframe = (): void => {
     wireframe?.dispose();
@@ -207,7 +208,7 @@ export function createViewer(canvas: HTMLCanvasElement, config: Config, pushed: 
       loop.touch();
       return movement.moving();
     },
-    frame: picture.frame,
+    frame: painter.frame,
     detail: () => detail,
     request: loop.request,
     frames: loop.frames,

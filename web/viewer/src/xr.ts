@@ -28,12 +28,12 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
   let base: Matrix4 | null = null; // scene to room, before `shift`; null until the head is known
   let last = 0;
 
-  const look = async (): Promise<void> => {
+  const showIfPossible = async (): Promise<void> => {
     const possible = await navigator.xr?.isSessionSupported("immersive-vr").catch(() => false);
     root.hidden = possible !== true || !viewer.scene()?.field;
   };
-  navigator.xr?.addEventListener("devicechange", () => void look());
-  viewer.onChange(() => void look());
+  navigator.xr?.addEventListener("devicechange", () => void showIfPossible());
+  viewer.onChange(() => void showIfPossible());
 
   const metres = (): number => {
     const info = viewer.scene()?.field?.info;

@@ -1,8 +1,7 @@
-"""A decoded photograph and its mask, held against the size that its capture was opened with."""
+"""Pixels and mask of a photograph, held against the size that its capture was opened with."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -10,23 +9,6 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.photographs.read import decode, decode_mask
 from eigenfield.core.errors import CaptureError
-
-
-@dataclass(frozen=True, eq=False)
-class Photograph:
-    """One decoded photograph, lens removed.
-
-    pixels: (H, W, 3) float32, 0..1, sRGB-coded.
-    mask: (H, W) float32, 0..1, 1 where the photograph counts; None when all of it does.
-    """
-
-    pixels: NDArray[np.float32]
-    mask: NDArray[np.float32] | None
-
-    @staticmethod
-    def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:
-        """The photograph, without a mask that leaves nothing out."""
-        return Photograph(pixels, None if mask is not None and mask.min() >= 1 else mask)
 
 
 def decode_masked(

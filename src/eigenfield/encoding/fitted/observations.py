@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.fitted.kernels import count_places, place_pixels
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering.software.drawing import Frame, Surface, cover, make_surface, median_footprint, smooth_edges
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_stream
-
-Decode = Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +73,7 @@ class Shots:
 @contextlib.contextmanager
 def open_shots(
     cameras: Sequence[Camera],
-    decode: Decode,
+    observations: Observations,
     mesh: Mesh,
     atlas: tuple[int, int],
     work: Path | None = None,
@@ -93,9 +92,9 @@ def open_shots(
     ):
 
         def put(index: int) -> bool:
-            pixels, mask = decode(index)
-            part = slice(starts[index], starts[index + 1])
-            codes[part] = to_codes(pixels).reshape(-1, 3)
+            photograph = observations.photograph(index)
+            mask, part = photograph.mask, slice(starts[index], starts[index + 1])
+            codes[part] = to_codes(photograph.pixels).reshape(-1, 3)
             counts[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
             return mask is not None
 

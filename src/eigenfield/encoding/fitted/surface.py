@@ -32,12 +32,13 @@ from scipy.sparse.linalg import cg
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
 from eigenfield.encoding.fitted.kernels import aim, draw, put_back
 from eigenfield.encoding.fitted.model import Model
-from eigenfield.encoding.fitted.observations import Decode, Shots, on_mesh, open_shots, thinned
+from eigenfield.encoding.fitted.observations import Shots, on_mesh, open_shots, thinned
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
@@ -102,7 +103,7 @@ def fit_surface(
     mesh: Mesh,
     lattice: Lattice | None,
     cameras: Sequence[Camera],
-    decode: Decode,
+    observations: Observations,
     side: int,
     work: Path | None = None,
     progress: Progress | None = None,
@@ -118,7 +119,7 @@ def fit_surface(
     step = 2 if len(used) >= THINNED_FROM or sum(one.width * one.height for one in used) > PIXELS else 1
     sheet = _sheet(mesh, lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(sheet.lines))
-    with open_shots(used, lambda index: decode(some[index]), mesh, shape, work) as every:
+    with open_shots(used, of_cameras(observations, some), mesh, shape, work) as every:
         for number in range(ROUNDS + 1):
             if progress is not None:
                 progress("fit surface", number, ROUNDS + 1)

@@ -1,6 +1,6 @@
 """A proxy in as few bytes as its pictures are worth: simplified and rounded by what the photographs lose."""
 
-from eigenfield.encoding.geometry.distortion import Effect, Grey, depth_effect, spread_cameras, texels_of
+from eigenfield.encoding.geometry.distortion import Effect, depth_effect, spread_cameras, texels_of
 from eigenfield.encoding.geometry.simplify import slim_mesh
 from eigenfield.encoding.geometry.simplify_relief import Form, slim_relief
 from eigenfield.encoding.geometry.triangle_count import triangles_worth
@@ -8,7 +8,6 @@ from eigenfield.encoding.geometry.triangle_count import triangles_worth
 __all__ = [
     "Effect",
     "Form",
-    "Grey",
     "depth_effect",
     "slim_mesh",
     "slim_relief",

@@ -11,7 +11,7 @@ picture is black.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,11 +21,11 @@ from scipy.ndimage import distance_transform_edt, uniform_filter
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
+from eigenfield.imaging.metrics import LUMA
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.parallel import parallel_stream
-
-Grey = Callable[[int], NDArray[np.float32]]  # (h, w) of the camera of that number
 
 CAMERAS = 25  # of the array, spread over it, are looked at
 OUTERMOST = 9  # of them for holes
@@ -51,10 +51,22 @@ class Effect:
         return _places(uv, *self.to_ground)
 
 
-def depth_effect(mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[Camera], grey: Grey) -> Effect:
-    """The effect of lattice depths of a relief on photographs, in squared units of those, all cameras together.
+def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
+    """(h, w) BT.709's luma of an observation, from its sRGB-coded numbers."""
+    return np.asarray(observations.photograph(index).pixels @ np.array(LUMA, np.float32), np.float32)
 
-    pixel: steps of the lattice. grey: photographs of `cameras`, of which CAMERAS are asked for.
+
+def depth_effect(
+    mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[Camera], observations: Observations
+) -> Effect:
+    """The effect of lattice depths of a relief on photographs, in squared units of those, all of them together.
+
+    Args:
+        mesh: the relief, with UVs.
+        lattice: of the relief.
+        pixel: steps of the lattice.
+        cameras: of the observations.
+        observations: those of CAMERAS cameras, spread over the array, are decoded.
     """
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)
@@ -69,17 +81,19 @@ def depth_effect(mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[C
     depth[given] = points[:, 2]
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
 
-    def look(index: int) -> NDArray[np.float64]:
-        return _looked(mesh, cameras[index], grey(index), world, deeper)
-
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    some = of_cameras(observations, chosen)
+
+    def look(index: int) -> NDArray[np.float64]:
+        return _looked(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
+
     seen, first, second, most, black, pixels = np.zeros((6, len(points)))
-    for found in parallel_stream(look, chosen):  # in order: the same numbers at any number of threads
+    for found in parallel_stream(look, range(len(some))):  # in order: the same numbers at any number of threads
         for total, one in zip((seen, first, second, most, black, pixels), found, strict=True):
             total += one
     if not seen.any():
         return Effect(_ground(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
-    of_texel = len(cameras) / len(chosen) * float(pixels[0] / seen.sum())
+    of_texel = len(observations) / len(some) * float(pixels[0] / seen.sum())
     curve = second - np.square(first) / np.maximum(seen, 1)
     for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
         values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
@@ -148,20 +162,24 @@ def _covering(points: NDArray[np.float64]) -> NDArray[np.bool_]:
     return points[:, 2] > farthest[cell] * (1 + APART)
 
 
-def opened(given: Mesh, mesh: Mesh, cameras: Sequence[Camera], grey: Grey) -> tuple[float, NDArray[np.int64]]:
-    """Squared error of luma, summed over all pictures, where a camera sees through `mesh` but not through `given`, and
-    the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of what
-    lies behind."""
-    some = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+def opened(
+    given: Mesh, mesh: Mesh, cameras: Sequence[Camera], observations: Observations
+) -> tuple[float, NDArray[np.int64]]:
+    """Squared error of luma, summed over all observations, where a camera sees through `mesh` but not through `given`,
+    and the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of
+    what lies behind."""
+    chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+    some = of_cameras(observations, chosen)
     error, seen = 0.0, []
-    for index in some:
-        before = rasterise_view(given, cameras[index]).face
-        through = (rasterise_view(mesh, cameras[index]).face < 0) & (before >= 0)
+    for index in range(len(some)):
+        camera = cameras[chosen[some.camera_of(index)]]
+        before = rasterise_view(given, camera).face
+        through = (rasterise_view(mesh, camera).face < 0) & (before >= 0)
         if through.any():
-            error += float(np.square(grey(index)[through], dtype=np.float64).sum())
+            error += float(np.square(luma_of(some, index)[through], dtype=np.float64).sum())
             seen.append(given.faces[before[through]].reshape(-1))
     vertices = np.unique(np.concatenate(seen)) if seen else np.zeros(0, np.int64)
-    return error * len(cameras) / len(some), vertices.astype(np.int64)
+    return error * len(observations) / len(some), vertices.astype(np.int64)
 
 
 def _ground(

@@ -24,9 +24,10 @@ from eigenfield.coding.mesh.coder import encode_mesh
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.observations import Observations
 from eigenfield.encoding.geometry.coded import UV_BITS
 from eigenfield.encoding.geometry.collapse_kernels import BORDER, INSIDE, KEPT, Sheet, collapse, fallen
-from eigenfield.encoding.geometry.distortion import Effect, Grey, depth_effect, opened, texel_weights
+from eigenfield.encoding.geometry.distortion import Effect, depth_effect, opened, texel_weights
 from eigenfield.encoding.geometry.raster_kernels import draw_owners, sheet_cost
 
 log = logging.getLogger("eigenfield.encode")
@@ -54,14 +55,27 @@ class Form:
 
 
 def slim_relief(
-    mesh: Mesh, lattice: Lattice, fine: int, cameras: Sequence[Camera], grey: Grey, price: float, texels: float
+    mesh: Mesh,
+    lattice: Lattice,
+    fine: int,
+    cameras: Sequence[Camera],
+    observations: Observations,
+    price: float,
+    texels: float,
 ) -> Form:
-    """lattice, fine: of `format.relief_lattice`. grey: photographs of `cameras`, see `depth_effect`. price: squared
-    error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in, of which there are
-    `texels` to a pixel. Raises ValueError where no form can be coded."""
+    """The relief whose bytes and errors together are least. Raises ValueError where no form can be coded.
+
+    Args:
+        mesh: the relief, with UVs.
+        lattice, fine: of `relief_lattice`.
+        cameras: of the observations.
+        observations: some of them are decoded, see `depth_effect`.
+        price: squared error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in.
+        texels: for a pixel.
+    """
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)
-    effect = depth_effect(mesh, lattice, 2.0**fine, cameras, grey)
+    effect = depth_effect(mesh, lattice, 2.0**fine, cameras, observations)
     price *= effect.seen / texels / LEFT
     found: list[tuple[float, Form]] = []
     whole = _form(mesh, lattice, fine, effect, 0, 1.0)  # all of a grid is cheap
@@ -79,7 +93,7 @@ def slim_relief(
             last = True  # no vertex falls
         more = kept
         if best is not None:
-            holes, seen = opened(mesh, best.mesh, cameras, grey)
+            holes, seen = opened(mesh, best.mesh, cameras, observations)
             found.append((best.cost(price) + HOLES * holes, best))
             log.info(
                 "relief: %d of %d triangles in %d bytes, %d vertices went, squared error of holes %.4g",

@@ -21,7 +21,8 @@ from scipy.ndimage import uniform_filter
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, Grey, spread_cameras
+from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, luma_of, spread_cameras
 from eigenfield.encoding.geometry.simplify_relief import LEFT
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import DEFAULT_TRIANGLES, simplified, welded
@@ -40,10 +41,18 @@ PAYS = 0.6  # of the triangles, or less, must be enough for new charts to be cut
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """What a camera shows of the mesh. grey, right, down: luma and its gradient; around: its variance around. pixels:
-    of the photograph, for one of these."""
+    """What an observation shows of the mesh.
+
+    Attributes:
+        camera, time: of the observation, the camera made smaller.
+        grey, right, down: luma and its gradient.
+        around: luma's variance around.
+        inverse_depth: of the mesh.
+        pixels: of the photograph, for one of these.
+    """
 
     camera: Camera
+    time: int
     grey: NDArray[np.float32]
     right: NDArray[np.float32]
     down: NDArray[np.float32]
@@ -55,7 +64,7 @@ class _View:
 @dataclass(frozen=True, eq=False)
 class _Points:
     """Some pixels (row, column) of a view and the mesh's points there. each: how many of its pixels one stands for.
-    beside: for each other view whether it sees the points and, where it does, its gradient there."""
+    beside: for each other view at the same time whether it sees the points and, where it does, its gradient there."""
 
     pixel: tuple[NDArray[np.int64], NDArray[np.int64]]
     world: NDArray[np.float64]
@@ -68,21 +77,31 @@ class _Points:
         return np.ones(len(self.world), np.int64) + sum(there for _, there, _, _ in self.beside)
 
 
-def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: float) -> int | None:
+def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observations, price: float) -> int | None:
     """The number of triangles, by `proxy.simplified`, at which bytes and errors together are least; None where those
     that it has, or DEFAULT_TRIANGLES, are.
 
-    grey: photographs of `cameras`, of which CAMERAS are asked for. price: squared error that a byte takes off the
-    pictures elsewhere, for each pixel that a texel is seen in, per texel for a pixel.
+    Args:
+        mesh: to be simplified.
+        cameras: of the observations.
+        observations: those of CAMERAS cameras, spread over the array, are decoded.
+        price: squared error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in, per
+            texel for a pixel.
     """
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    views = parallel_map(lambda index: _view(mesh, cameras[index], grey(index)), chosen)
+    some = of_cameras(observations, chosen)
+
+    def view(index: int) -> _View:
+        return _view(mesh, cameras[chosen[some.camera_of(index)]], some.time_of(index), luma_of(some, index))
+
+    views = parallel_map(view, range(len(some)))
     looked = parallel_map(lambda number: _points(views, number), range(len(views)))
-    share = len(cameras) / len(chosen)
+    share = len(observations) / len(some)
     seen = np.concatenate([points.seen for points in looked])
     if not (seen > 1).any():
         return None  # one camera tells no depth
-    price *= share * float(np.median(seen)) * TRIANGLE_BYTES
+    times = len({view.time for view in views})  # a texel is seen about as often at each
+    price *= share * times * float(np.median(seen)) * TRIANGLE_BYTES
     plain = welded(mesh)
     best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
     least, count = price * most, float(most)
@@ -101,7 +120,7 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], grey: Grey, price: fl
     return best if best <= PAYS * most else None
 
 
-def _view(mesh: Mesh, camera: Camera, grey: NDArray[np.float32]) -> _View:
+def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _View:
     pixels = max(1.0, camera.width * camera.height / LARGEST)
     if pixels > 1:
         camera = camera.resized(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
@@ -109,7 +128,7 @@ def _view(mesh: Mesh, camera: Camera, grey: NDArray[np.float32]) -> _View:
     mean = uniform_filter(grey, AROUND)
     around = np.maximum(uniform_filter(np.square(grey), AROUND) - np.square(mean), 0)
     down, right = np.asarray(np.gradient(grey, axis=0)), np.asarray(np.gradient(grey, axis=1))
-    return _View(camera, grey, right, down, around, rasterise_view(mesh, camera).inverse_depth, pixels)
+    return _View(camera, time, grey, right, down, around, rasterise_view(mesh, camera).inverse_depth, pixels)
 
 
 def _points(views: Sequence[_View], number: int) -> _Points:
@@ -119,7 +138,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     world = _unprojected(view.camera, row, column, view.inverse_depth[row, column])
     beside = []
     for other in views:
-        if other is not view:
+        if other is not view and other.time == view.time:
             (at, depth), camera = other.camera.project(world), other.camera
             x, y = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
             there = (depth > 0) & (x >= 0) & (y >= 0) & (x < camera.width) & (y < camera.height)

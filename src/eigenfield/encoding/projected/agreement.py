@@ -19,8 +19,8 @@ log = logging.getLogger("eigenfield.encode")
 STRANGE = (5.0, 0.6, 4.0)
 NORMAL = 1.4826  # standard deviation of a normal distribution over its median deviation
 SHARED = 0.5  # of the photographs' contrast that the mean texture must hold; real captures: 0.95, three of noise: 0.33
-BESIDE = 24  # cameras nearest to one: what they have too, such as light that falls off towards a corner, is not strange
-FEWEST_SEEN = 50  # texels or pixels of a camera from which it is judged
+BESIDE = 24  # observations nearest to one: what they have too, as light that falls off towards corners, is no fault
+FEWEST_SEEN = 50  # texels or pixels of an observation from which it is judged
 
 
 def disagreement_of(
@@ -31,8 +31,16 @@ def disagreement_of(
     places: NDArray[np.float64],
     aligned: bool = False,
 ) -> NDArray[np.float64]:
-    """`warn_of_disagreement` of texture maps. gram: (Nc, Nc) of `basis.gram_matrix`; its diagonal holds the squared
-    deviations from the mean. aligned: the maps were aligned, which may have failed for one."""
+    """`warn_of_disagreement` of texture maps.
+
+    Args:
+        maps: of No observations.
+        mean: of the maps.
+        gram: (No, No) of `gram_matrix`; its diagonal holds the squared deviations from the mean.
+        names: of each observation's camera.
+        places: (No, 2) of each observation's camera on the view plane.
+        aligned: the maps were aligned, which may have failed for one.
+    """
     seen = np.array([int(np.count_nonzero(row)) for row in maps.seen])
     squares = np.diag(gram)
     count, values = mean.count.astype(np.float64)[:, None], mean.values.astype(np.float64)
@@ -50,12 +58,20 @@ def warn_of_disagreement(
     places: NDArray[np.float64],
     aligned: bool = False,
 ) -> NDArray[np.float64]:
-    """Log a warning for each camera whose photograph is far from the mean texture, farther than those beside it, or
-    one if all of them are.
+    """Log a warning for each observation that is far from the mean texture, farther than those beside it, or one if
+    all of them are.
 
-    squares: (Nc,) squared deviations from the mean, of values 0..1, over `seen` (Nc,) texels or pixels of so many
-    channels. total: squared deviations of all of them from one colour. places: (Nc, 2) of the cameras. Returns (Nc,)
-    the root mean square deviations in grey levels, NaN for a camera that sees next to nothing.
+    Args:
+        squares: (No,) squared deviations from the mean, of values 0..1.
+        seen: (No,) texels or pixels that these are over.
+        channels: of each texel or pixel.
+        total: squared deviations of all observations from one colour.
+        names: of each observation's camera.
+        places: (No, 2) of each observation's camera on the view plane.
+        aligned: texture maps were aligned, which may have failed for one.
+
+    Returns:
+        (No,) the root mean square deviations in grey levels, NaN for an observation that shows next to nothing.
     """
     error = np.where(seen >= FEWEST_SEEN, 255 * np.sqrt(squares / np.maximum(seen * channels, 1)), np.nan)
     for index in np.flatnonzero(seen < FEWEST_SEEN).tolist():
@@ -86,7 +102,8 @@ def warn_of_disagreement(
 
 
 def _beside(error: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(Nc,) the median error of each camera and the BESIDE nearest to it; NaN for those that see next to nothing."""
+    """(No,) the median error of each observation and the BESIDE nearest to it; NaN for those that show next to
+    nothing."""
     known = np.flatnonzero(np.isfinite(error))
     nearest = KDTree(places[known]).query(places[known], min(BESIDE + 1, len(known)))[1].reshape(len(known), -1)
     result = np.full(len(error), np.nan)

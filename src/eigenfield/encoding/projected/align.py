@@ -1,7 +1,7 @@
-"""Optical-flow alignment of the texture maps to the reference camera (the paper's section 3.3).
+"""Optical-flow alignment of the texture maps to a reference (the paper's section 3.3: the reference camera's map).
 
-Geometry and calibration are never exact, so one point of the surface lands on slightly different texels from camera
-to camera. Each map is warped so that it matches the reference camera's.
+Geometry and calibration are never exact, so one point of the surface lands on slightly different texels from map to
+map. Each map is warped so that it matches the reference.
 """
 
 from __future__ import annotations
@@ -50,10 +50,20 @@ def align_map(
     reference_seen: NDArray[np.uint8],
     method: str = "dis",
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    """Warp one camera's (n, C) map, seen (n,), onto the reference camera's; returns both warped.
+    """Warp one map onto the reference.
 
-    Where only one of the two sees a texel it lends the other its value for finding the flow, so the flow is 0 there. A
+    Where only one of the two shows a texel it lends the other its value for finding the flow, so the flow is 0 there. A
     warped texel counts as seen if all texels it is interpolated from are.
+
+    Args:
+        atlas: whose n chart texels the maps have.
+        values: (n, C) of the map.
+        seen: (n,) where the map has values.
+        reference, reference_seen: likewise of the reference.
+        method: one of METHODS.
+
+    Returns:
+        Values and visibility, warped.
     """
     flow = METHODS[method](
         _grey(atlas, np.where(reference_seen[:, None] > 0, reference, values), seen | reference_seen),
@@ -74,7 +84,7 @@ def align_map(
 
 
 def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress: Progress | None = None) -> None:
-    """Align all maps in place to the camera at index `reference`. Raises OptionError for an unknown method.
+    """Align all maps in place to the one at index `reference`. Raises OptionError for an unknown method.
 
     The mean must be taken again afterwards (equation 1): it changes the fill of every map (equation 2).
     """
@@ -88,7 +98,7 @@ def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress:
                 maps.atlas, maps.values[index], maps.seen[index], fixed, fixed_seen, method
             )
 
-    for _ in track(parallel_stream(align, range(maps.cameras)), "alignment", maps.cameras, progress):
+    for _ in track(parallel_stream(align, range(maps.count)), "alignment", maps.count, progress):
         pass
 
 

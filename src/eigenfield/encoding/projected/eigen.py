@@ -1,8 +1,9 @@
-"""Eigen textures by the Gram matrix of the cameras (the paper's equations 3 to 6), streamed over texels.
+"""Eigen textures by the Gram matrix of the texture maps (the paper's equations 3 to 6), streamed over texels.
 
-The paper stacks the filled maps less their mean as the columns of a matrix and takes its singular value
-decomposition. With far fewer cameras than texels the same vectors come from the Nc x Nc matrix of inner products
-(Sirovich's method of snapshots, 1987), which needs two passes over the maps and memory for one tile of them.
+The paper stacks the filled maps of Nc cameras less their mean as the columns of a matrix and takes its singular value
+decomposition. Here the columns are No observations. With far fewer of them than texels the same vectors come from the
+No x No matrix of inner products (Sirovich's method of snapshots, 1987), which needs two passes over the maps and memory
+for one tile of them.
 """
 
 from __future__ import annotations
@@ -24,11 +25,12 @@ log = logging.getLogger("eigenfield.basis")
 
 @dataclass(frozen=True, eq=False)
 class Spectrum:
-    """The decomposition of the cameras, before any texture is formed.
+    """The decomposition of the observations, before any texture is formed.
 
-    vectors: (Nc, Nc - 1) float64, orthonormal columns by falling eigenvalue, each orthogonal to (1, ..., 1) and with
-        its entry of largest magnitude positive.
-    values: (Nc - 1,) float64, eigenvalues of the Gram matrix: squared singular values of equation 4.
+    Attributes:
+        vectors: (No, No - 1) float64, orthonormal columns by falling eigenvalue, each orthogonal to (1, ..., 1) and
+            with its entry of largest magnitude positive.
+        values: (No - 1,) float64, eigenvalues of the Gram matrix: squared singular values of equation 4.
     """
 
     vectors: NDArray[np.float64]
@@ -36,21 +38,21 @@ class Spectrum:
 
 
 def _deviations(maps: TextureMaps, mean: Mean, first: int, last: int) -> NDArray[np.float32]:
-    """(Nc, (last - first) C): equation 3 on a tile of the filled maps; zero where the fill is the mean itself."""
+    """(No, (last - first) C): equation 3 on a tile of the filled maps; zero where the fill is the mean itself."""
     tile = maps.values[:, first:last] - mean.values[first:last]
     tile *= maps.seen[:, first:last, None]
-    return tile.reshape(maps.cameras, -1)
+    return tile.reshape(maps.count, -1)
 
 
 def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None) -> NDArray[np.float64]:
-    """(Nc, Nc) float64 inner products of the maps' deviations from the mean. Tiles are summed in float64 and in a fixed
+    """(No, No) float64 inner products of the maps' deviations from the mean. Tiles are summed in float64 and in a fixed
     order: float32 sums lose the small eigenvalues, free order changes the last bits with the number of threads."""
 
     def product(part: tuple[int, int]) -> NDArray[np.float64]:
         tile = _deviations(maps, mean, *part).astype(np.float64)
         return tile @ tile.T
 
-    total = np.zeros((maps.cameras, maps.cameras))
+    total = np.zeros((maps.count, maps.count))
     parts = pieces(maps.atlas.count, TILE)
     with threadpool_limits(1, "blas"):
         for gram in track(parallel_stream(product, parts), "inner products", len(parts), progress):
@@ -61,7 +63,7 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
 def spectrum(gram: NDArray[np.float64]) -> Spectrum:
     """Eigenvectors of a Gram matrix within the complement of (1, ..., 1), on which deviations from a mean live.
 
-    Working there leaves exactly Nc - 1 components, which span every set of maps even where eigenvalues vanish.
+    Working there leaves exactly No - 1 components, which span every set of maps even where eigenvalues vanish.
     """
     count = len(gram)
     complement = _helmert(count)
@@ -82,15 +84,16 @@ def _helmert(count: int) -> NDArray[np.float64]:
     return columns
 
 
-def component_count(asked: int, cameras: int) -> int:
-    """At most Nc - 1 components exist (equation 6); asking for more is no error."""
-    if asked > cameras - 1:
-        log.warning("%d eigen textures were asked for; %d cameras give at most %d", asked, cameras, cameras - 1)
-    return min(asked, cameras - 1)
+def component_count(asked: int, observations: int) -> int:
+    """At most No - 1 components exist (equation 6); asking for more is no error."""
+    most = observations - 1
+    if asked > most:
+        log.warning("%d eigen textures were asked for; %d photographs give at most %d", asked, observations, most)
+    return min(asked, most)
 
 
 def weights_of(decomposition: Spectrum, count: int) -> NDArray[np.float32]:
-    """(Nc, N) float32 ω(c, j), scaled to unit mean square over the cameras: the textures carry the amplitudes."""
+    """(No, N) float32 ω(c, j), scaled to unit mean square over the observations: the textures carry the amplitudes."""
     vectors = decomposition.vectors[:, :count]
     return (vectors * np.sqrt(len(vectors))).astype(np.float32)
 
@@ -98,10 +101,10 @@ def weights_of(decomposition: Spectrum, count: int) -> NDArray[np.float32]:
 def eigen_textures(
     maps: TextureMaps, mean: Mean, weights: NDArray[np.float32], progress: Progress | None = None
 ) -> NDArray[np.float32]:
-    """(N, n, C) float32 T_E(j) at the chart texels: the deviations projected on the weights, Σ_c ω(c, j) D(c) / Nc."""
+    """(N, n, C) float32 T_E(j) at the chart texels: the deviations projected on the weights, Σ_c ω(c, j) D(c) / No."""
     count = weights.shape[1]
     textures = np.zeros((count, maps.atlas.count, maps.channels), np.float32)
-    projection = np.ascontiguousarray(weights.T.astype(np.float64) / maps.cameras)
+    projection = np.ascontiguousarray(weights.T.astype(np.float64) / maps.count)
 
     def piece(part: tuple[int, int]) -> None:
         first, last = part

@@ -1,11 +1,12 @@
-"""Colour harmonisation: what each camera's exposure and white balance did is taken out of its texture map.
+"""Colour harmonisation: what exposure and white balance did to each photograph is taken out of its texture map.
 
-The model, for each channel on its own: camera c shows the point x of the surface as
+The model, for each channel on its own: observation c, of the camera c where there is one time, shows the point x of the
+surface as
 
     T(c, x) = (M(x) - o(c)) / g(c) + noise,    hence    g(c) T(c, x) + o(c) = M(x) up to noise,
 
-with one mean map M for all cameras, as in the compensation of exposures for panoramas (Brown and Lowe, IJCV 2007). The
-noise stands on the photograph's side: fitted the other way round, noise in T would pull every gain towards 0.
+with one mean map M for all observations, as in the compensation of exposures for panoramas (Brown and Lowe, IJCV 2007).
+The noise stands on the photograph's side: fitted the other way round, noise in T would pull every gain towards 0.
 
 An exposure changes the whole picture alike; a gloss that comes and goes with the viewpoint does not, and taking the
 average of it for an exposure would only spoil the maps. So the fit also looks at how far the blocks of the surface
@@ -51,7 +52,7 @@ FEWEST = 8  # cells that a camera must share with others
 def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | None = None) -> NDArray[np.float32]:
     """Fit the cameras' colours to their common mean and change all maps in place; the values are not cut to 0..1.
 
-    model: "gain", or "affine" for gain and offset. Returns (Nc, 2, C) float32, gains then offsets: the maps become
+    model: "gain", or "affine" for gain and offset. Returns (No, 2, C) float32, gains then offsets: the maps become
     gain * T + offset. In each channel the gains have the geometric mean 1 and the offsets the mean 0 over the cameras
     that have something in common with others; the rest keep (1, 0), with a warning. Texels at either end of the range
     do not count. Raises OptionError for an unknown model.
@@ -62,16 +63,16 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     with threadpool_limits(1, "blas"):
         fits = parallel_map(lambda c: fit_colours(values[..., c], weights[..., c], blocks, model), channels)
     colours = np.stack(fits, axis=2).astype(np.float32)
-    left = maps.cameras - int(np.any([_sharing(weights[..., c]) for c in channels], axis=0).sum())
+    left = maps.count - int(np.any([_sharing(weights[..., c]) for c in channels], axis=0).sum())
     if left:
-        log.warning("%d of %d cameras share too little with others: their colours stay", left, maps.cameras)
+        log.warning("%d of %d cameras share too little with others: their colours stay", left, maps.count)
     gains = colours[:, 0]
     log.info("harmonised: gains %.3f to %.3f", gains.min(), gains.max())
 
     def change(index: int) -> None:
         maps.values[index] = harmonised(maps.values[index], maps.seen[index], colours[index])
 
-    for _ in track(parallel_stream(change, range(maps.cameras)), "harmonise", maps.cameras, progress):
+    for _ in track(parallel_stream(change, range(maps.count)), "harmonise", maps.count, progress):
         pass
     return colours
 
@@ -93,9 +94,9 @@ def harmonised(
 def fit_colours(
     values: NDArray[np.float64], weights: NDArray[np.float64], blocks: NDArray[np.int64], model: str = "gain"
 ) -> NDArray[np.float64]:
-    """(Nc, 2) gains and offsets of one channel.
+    """(No, 2) gains and offsets of one channel.
 
-    values: (Nc, m), what each camera shows of m places. weights: (Nc, m), 0 where that does not count.
+    values: (No, m), what each camera shows of m places. weights: (No, m), 0 where that does not count.
     blocks: (m,) in which part of the surface each place lies.
 
     Iteratively reweighted least squares (Cauchy's weights) of T - a M - b with a = 1 / g, b = -o / g. Each round is a
@@ -159,7 +160,7 @@ def _belief(
 
 
 def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(Nc,) cameras with enough places that some other such camera shows too."""
+    """(No,) cameras with enough places that some other such camera shows too."""
     active = np.ones(len(weights), bool)
     while True:
         counts = weights > 0
@@ -225,19 +226,19 @@ def _blocks(positions: NDArray[np.float64]) -> NDArray[np.int64]:
 def _cells(
     maps: TextureMaps, progress: Progress | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
-    """(Nc, m, C) averages over square cells of the atlas and (Nc, m, C) how much each counts: the part of the cell that
+    """(No, m, C) averages over square cells of the atlas and (No, m, C) how much each counts: the part of the cell that
     charts cover where the camera sees the cell and no texel of it is at an end of the range, else 0. (m,) the block of
     the surface in which the cell lies.
 
     Averages, since single texels differ from camera to camera by what calibration and proxy are off.
     """
     atlas = maps.atlas
-    most = min(CELLS, max(NUMBERS // maps.cameras, 64))
+    most = min(CELLS, max(NUMBERS // maps.count, 64))
     side = max(1, int(np.ceil(np.sqrt(atlas.width * atlas.height / most))))
     row, column = np.divmod(atlas.texel, atlas.width)
     _, cell = np.unique((row // side) * atlas.width + column // side, return_inverse=True)
     texels = np.bincount(cell)
-    shape = (maps.cameras, len(texels), maps.channels)
+    shape = (maps.count, len(texels), maps.channels)
     values, weights = np.zeros(shape), np.zeros(shape)
 
     def average(index: int) -> None:
@@ -252,7 +253,7 @@ def _cells(
             values[index, :, channel] = np.bincount(part, shown, len(texels)) / np.maximum(number, 1)
             weights[index, :, channel] = np.where(usable, texels / side**2, 0)
 
-    for _ in track(parallel_stream(average, range(maps.cameras)), "colours", maps.cameras, progress):
+    for _ in track(parallel_stream(average, range(maps.count)), "colours", maps.count, progress):
         pass
     place = np.stack([np.bincount(cell, atlas.position[:, axis], len(texels)) for axis in range(3)], axis=1)
     return values, weights, _blocks(place / texels[:, None])

@@ -1,4 +1,4 @@
-"""The mean texture and the filling of what a camera does not see (the paper's equations 1 and 2)."""
+"""The mean texture and the filling of what an observation does not show (the paper's equations 1 and 2)."""
 
 from __future__ import annotations
 
@@ -16,19 +16,24 @@ TILE = 4096  # chart texels worked on at a time
 
 @dataclass(frozen=True, eq=False)
 class Mean:
-    """values: (n, C) float32, 0 where no camera sees the texel. count: (n,) int32, how many cameras see it."""
+    """The mean of all maps.
+
+    Attributes:
+        values: (n, C) float32, 0 where no observation shows the texel.
+        count: (n,) int32, how many observations show it.
+    """
 
     values: NDArray[np.float32]
     count: NDArray[np.int32]
 
     @property
     def seen(self) -> NDArray[np.bool_]:
-        """(n,) bool, texels that at least one camera sees."""
+        """(n,) bool, texels that at least one observation shows."""
         return self.count > 0
 
 
 def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
-    """Equation 1: at each texel the mean over the cameras that see it, Σ v(c) T(c) / Σ v(c), summed in float64."""
+    """Equation 1: at each texel the mean over the observations that show it, Σ v(c) T(c) / Σ v(c), in float64."""
     values = np.zeros((maps.atlas.count, maps.channels), np.float32)
     count = np.zeros(maps.atlas.count, np.int32)
 
@@ -37,8 +42,8 @@ def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
         seen = maps.seen[:, first:last] > 0
         number = seen.sum(axis=0, dtype=np.int32)
         total = np.zeros((last - first, maps.channels))
-        for camera in range(maps.cameras):
-            total += maps.values[camera, first:last] * seen[camera, :, None]
+        for index in range(maps.count):
+            total += maps.values[index, first:last] * seen[index, :, None]
         values[first:last] = total / np.maximum(number, 1)[:, None]
         count[first:last] = number
 
@@ -49,5 +54,5 @@ def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
 
 
 def filled(values: NDArray[np.float32], seen: NDArray[np.uint8], mean: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Equation 2: a camera's map with the mean where it sees nothing. All (n, C) or (n,) over chart texels."""
+    """Equation 2: a map with the mean where nothing is seen. All (n, C) or (n,) over chart texels."""
     return np.where(seen[:, None] > 0, values, mean)

@@ -1,9 +1,9 @@
-"""One texture map for each camera (the paper's section 3.2)."""
+"""One texture map for each observation (the paper's section 3.2)."""
 
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
+from eigenfield.core.observations import Observations
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected import kernels
 from eigenfield.encoding.projected.atlas import Atlas
@@ -25,10 +26,12 @@ GRAZING = 0.0872  # cosine of 85 degrees
 
 @dataclass(frozen=True, eq=False)
 class TextureMaps:
-    """What every camera sees of the atlas' chart texels, before filling.
+    """What every observation shows of the atlas's chart texels, before filling. The paper has one for each camera c.
 
-    values: (Nc, n, C) float32, T(c); zero where not seen.
-    seen: (Nc, n) uint8, v(c): 1 where the camera sees the texel.
+    Attributes:
+        atlas: whose n chart texels the maps have.
+        values: (No, n, C) float32, T(c); zero where not seen.
+        seen: (No, n) uint8, v(c): 1 where the texel is seen.
     """
 
     atlas: Atlas
@@ -36,11 +39,13 @@ class TextureMaps:
     seen: NDArray[np.uint8]
 
     @property
-    def cameras(self) -> int:
+    def count(self) -> int:
+        """No, the number of maps, one for each observation."""
         return int(self.values.shape[0])
 
     @property
     def channels(self) -> int:
+        """C, of each map."""
         return int(self.values.shape[2])
 
 
@@ -51,10 +56,19 @@ def texture_map(
     mask: NDArray[np.float32] | None = None,
     resampling: str = "bicubic",
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    """Project one (H, W, C) photograph into the atlas: (n, C) float32 values and (n,) uint8 visibility.
+    """Project one photograph into the atlas.
 
-    resampling: "bilinear", "bicubic" (Catmull-Rom) or "lanczos", stretched where the photograph is denser than the
-    atlas. mask: (H, W) 0..1; what it hides is not seen. Bicubic and Lanczos values may overshoot its range.
+    Args:
+        atlas: of the mesh that is seen.
+        camera: of the photograph.
+        pixels: (H, W, C) float32.
+        mask: (H, W) 0..1; what it hides is not seen.
+        resampling: "bilinear", "bicubic" (Catmull-Rom) or "lanczos", stretched where the photograph is denser than the
+            atlas.
+
+    Returns:
+        (n, C) float32 values, which may overshoot the photograph's range (bicubic and Lanczos), and (n,) uint8
+        visibility.
     """
     depth = rasterise_view(atlas.mesh, camera).inverse_depth
     covered = depth[depth > 0]
@@ -73,27 +87,35 @@ def texture_map(
 def texture_maps(
     atlas: Atlas,
     cameras: Sequence[Camera],
-    photograph: Callable[[int], tuple[NDArray[np.float32], NDArray[np.float32] | None]],
+    observations: Observations,
     channels: int = 3,
     *,
     resampling: str = "bicubic",
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[TextureMaps]:
-    """The texture maps of all cameras, in a memory-mapped scratch file that lives as long as the block.
+    """The texture maps of all observations, in a memory-mapped scratch file that lives as long as the block.
 
-    photograph: index to (pixels, mask), called once a camera, from several threads. work: folder for the scratch file.
-    Memory does not grow with the number of cameras: as many photographs and maps as there are threads are held.
+    Memory does not grow with their number: as many photographs and maps as there are threads are held.
+
+    Args:
+        atlas: of the mesh that is seen at all times.
+        cameras: of the observations.
+        observations: each is decoded once, from several threads.
+        channels: of a photograph.
+        resampling: as `texture_map`.
+        work: folder for the scratch file.
+        progress: reports the maps that are made.
     """
-    total = len(cameras)
+    total = len(observations)
     with (
         scratch_array((total, atlas.count, channels), np.float32, work) as values,
         scratch_array((total, atlas.count), np.uint8, work) as seen,
     ):
 
         def project(index: int) -> None:
-            pixels, mask = photograph(index)
-            values[index], seen[index] = texture_map(atlas, cameras[index], pixels, mask, resampling)
+            photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
+            values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask, resampling)
 
         for _ in track(parallel_stream(project, range(total)), "texture maps", total, progress):
             pass

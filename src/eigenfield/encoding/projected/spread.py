@@ -16,7 +16,7 @@ GUTTER = 4.0  # texels round each chart that repeat the nearest chart texel: bic
 
 @dataclass(frozen=True, eq=False)
 class Spreader:
-    """Fills an atlas from the texels that some camera sees. The filling is linear, the same for mean and textures, so
+    """Fills an atlas from the texels that are seen. The filling is linear, the same for mean and textures, so
     a sum of filled pictures is the filled sum.
 
     known: (H, W) bool, texels with a value of their own.
@@ -39,7 +39,7 @@ class Spreader:
 
 
 def make_spreader(atlas: Atlas, seen: NDArray[np.bool_]) -> Spreader:
-    """seen: (n,) bool, chart texels that at least one camera sees."""
+    """seen: (n,) bool, chart texels that at least one observation shows."""
     shape = (atlas.height, atlas.width)
     chart = np.zeros(shape, bool)
     chart.reshape(-1)[atlas.texel] = True

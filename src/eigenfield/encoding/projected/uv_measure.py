@@ -1,4 +1,4 @@
-"""The paper's measure: a camera's texture map against the one put together again, in UV space."""
+"""The paper's measure: an observation's texture map against the one put together again, in UV space."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.basis")
 
-SAMPLE = 24  # cameras that narrow the number down before all of them decide
+SAMPLE = 24  # observations that narrow the number down before all of them decide
 
 
 def measure_map(
@@ -30,11 +30,17 @@ def measure_map(
     values: NDArray[np.float32],
     seen: NDArray[np.uint8],
 ) -> tuple[NDArray[np.uint8], list[tuple[float | None, float | None]]]:
-    """SSIM and PSNR (dB) of each of `pictures` against a camera's map, over the texels that the camera sees.
+    """SSIM and PSNR (dB) of each of `pictures` against a map, over the texels that are seen in it.
 
-    pictures: (H, W, C), put together with more and more textures. mean: (H, W, C), which fills what the camera does not
-    see (equation 2), in both pictures. values (n, C), seen (n,): the map at the chart texels. Returns the filled map,
-    (H, W, C) uint8, and a pair for each picture; None where the camera sees no texel.
+    Args:
+        pictures: (H, W, C), put together with more and more textures.
+        mean: (H, W, C), which fills what is not seen (equation 2), in both pictures.
+        atlas: whose n chart texels the map has.
+        values: (n, C) of the map.
+        seen: (n,) where the map has values.
+
+    Returns:
+        The filled map, (H, W, C) uint8, and a pair for each picture, of None where no texel is seen.
     """
     filled = np.array(to_codes(mean))
     visible = np.zeros(filled.shape[:2], bool)
@@ -58,14 +64,22 @@ def smallest_count(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> int:
-    """The smallest number of eigen textures whose mean UV SSIM over the cameras reaches `target`; all of them, with a
-    warning, if none does. The textures are those before coding. A sample of cameras finds about where, all decide.
+    """The smallest number of eigen textures whose mean UV SSIM over the observations reaches a target; all of them,
+    with a warning, if none does. The textures are those before coding. A sample of the observations finds about where,
+    all decide.
 
-    average: (H, W, C), the mean without holes, as the file will keep it. work: folder for a scratch file.
+    Args:
+        maps: of No observations.
+        mean: of the maps.
+        average: (H, W, C), the mean without holes, as the file will keep it.
+        decomposition: of the maps.
+        target: the SSIM to reach.
+        work: folder for a scratch file.
+        progress: reports each pass.
     """
-    most = maps.cameras - 1
-    sample = np.unique(np.linspace(0, maps.cameras - 1, min(SAMPLE, maps.cameras)).round().astype(int)).tolist()
-    everyone = list(range(maps.cameras))
+    most = maps.count - 1
+    sample = np.unique(np.linspace(0, maps.count - 1, min(SAMPLE, maps.count)).round().astype(int)).tolist()
+    everyone = list(range(maps.count))
     limit = min(8, most)
     while True:
         weights = weights_of(decomposition, limit)
@@ -89,15 +103,15 @@ def _decide(
     average: NDArray[np.float32],
     textures: NDArray[np.float32],
     weights: NDArray[np.float32],
-    cameras: Sequence[int],
+    chosen: Sequence[int],
     guess: int,
     target: float,
     progress: Progress | None,
 ) -> int | None:
-    """From a guess outwards, a few counts at a time, until all cameras say which count is the first to reach it."""
+    """From a guess outwards, a few counts at a time, until all of them say which count is the first to reach it."""
     low, high = max(guess - 1, 0), min(guess + 1, len(textures))
     while True:
-        first = _first(_curve(maps, mean, average, textures, weights, cameras, range(low, high + 1), progress), target)
+        first = _first(_curve(maps, mean, average, textures, weights, chosen, range(low, high + 1), progress), target)
         if first is None:
             if high == len(textures):
                 return None
@@ -118,24 +132,24 @@ def _curve(
     average: NDArray[np.float32],
     textures: NDArray[np.float32],
     weights: NDArray[np.float32],
-    cameras: Sequence[int],
+    chosen: Sequence[int],
     counts: range,
     progress: Progress | None,
 ) -> list[float]:
-    """Mean SSIM over `cameras` for each number of textures in `counts`."""
+    """Mean SSIM over the chosen observations for each number of textures in `counts`."""
 
-    def pictures(camera: int) -> Iterator[NDArray[np.float32]]:
+    def pictures(row: int) -> Iterator[NDArray[np.float32]]:
         total, done = mean.values.copy(), 0
         for count in counts:
             for index in range(done, count):
-                total += weights[camera, index] * textures[index]
+                total += weights[row, index] * textures[index]
             done = count
             yield maps.atlas.image(total)
 
-    def score(camera: int) -> list[float | None]:
-        values, seen = np.array(maps.values[camera]), np.array(maps.seen[camera])
-        return [pair[0] for pair in measure_map(pictures(camera), average, maps.atlas, values, seen)[1]]
+    def score(row: int) -> list[float | None]:
+        values, seen = np.array(maps.values[row]), np.array(maps.seen[row])
+        return [pair[0] for pair in measure_map(pictures(row), average, maps.atlas, values, seen)[1]]
 
-    rows = list(track(parallel_stream(score, cameras), "UV measure", len(cameras), progress))
+    rows = list(track(parallel_stream(score, chosen), "UV measure", len(chosen), progress))
     seen = np.array([row for row in rows if None not in row], float)
     return [0.0] * len(counts) if len(seen) == 0 else seen.mean(axis=0).tolist()

@@ -24,8 +24,17 @@ def write_maps(
     folder: Path,
     progress: Progress | None = None,
 ) -> None:
-    """Write `NAME.map.png` (filled by equation 2, gutters dilated) and `NAME.seen.png` for every camera, and
-    `mean.png`, into a folder that is made. Existing files of these names are replaced; each is whole or absent."""
+    """Write `NAME.map.png` (filled by equation 2, gutters dilated) and `NAME.seen.png` for every observation, and
+    `mean.png`. Existing files of these names are replaced; each is whole or absent.
+
+    Args:
+        maps: of No observations.
+        mean: (n, C) at the chart texels.
+        spreader: of the maps' atlas.
+        names: of the observations, each once.
+        folder: is made.
+        progress: reports the maps that are written.
+    """
     with mended(folder):
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -42,5 +51,5 @@ def write_maps(
         write_bytes(folder / f"{stem}.seen.png", png_bytes(visibility), overwrite=True)
 
     write_bytes(folder / "mean.png", png_bytes(spreader(mean)), overwrite=True)
-    for _ in track(parallel_stream(write, range(maps.cameras)), "maps as pictures", maps.cameras, progress):
+    for _ in track(parallel_stream(write, range(maps.count)), "maps as pictures", maps.count, progress):
         pass

@@ -19,6 +19,7 @@ from scipy.optimize import minimize
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.core.progress import Progress, track
 from eigenfield.proxy.primitives.shapes import Sphere
 
@@ -41,8 +42,6 @@ PRIOR = 1.0  # cost of the squared deviation from the box, in parts of its size
 SEARCH = 5.0  # pixels on both sides of the outline in which its step is looked for
 SEEN = 0.3  # of the outline that a view must have in its frame to be asked
 CLEAR = 0.06  # mean step below which there is no outline
-
-Picture = Callable[[int], NDArray[np.float32]]
 
 
 @dataclass(frozen=True)
@@ -125,16 +124,23 @@ def fit_sphere(
     view: int,
     region: Region,
     cameras: Sequence[Camera],
-    picture: Picture,
+    observations: Observations,
     *,
     depth: float | None = None,
     progress: Progress | None = None,
 ) -> SphereFit:
-    """The sphere whose outline lies in `region` of view `view`, from up to 25 photographs spread over the array.
+    """The sphere whose outline lies in `region` of one view, from up to 25 photographs spread over the array.
 
-    picture: picture(i) is photograph i, (H, W, 3) float32 0..1, lens removed. depth: of the sphere's middle along the
-    view's axis, as far as it is known; without it depths are swept. Raises OptionError `fit-sphere-region` for a box
-    outside the view, ProxyError `fit-sphere-outline` where no outline is found.
+    Args:
+        view: number of the camera that shows the region.
+        region: the box around the sphere.
+        cameras: of the observations.
+        observations: at any times: the sphere stands still.
+        depth: of the sphere's middle along the view's axis, as far as it is known; without it depths are swept.
+        progress: reports the photographs that are read.
+
+    Raises OptionError `fit-sphere-region` for a box outside the view, ProxyError `fit-sphere-outline` where no outline
+    is found.
     """
     camera = cameras[view]
     middle = np.array([region.x + region.width / 2, region.y + region.height / 2])
@@ -145,7 +151,7 @@ def fit_sphere(
             remedy="give the box in pixels of that photograph, its top-left corner first",
         )
     chosen = _spread(view, cameras)
-    looks = _looks(chosen, cameras, picture, progress)
+    looks = _looks(chosen, cameras, observations, progress)
     baseline = float(np.median([np.linalg.norm(cameras[i].centre - camera.centre) for i in chosen[1:]]))
     frame = _Frame(camera, baseline)
     start = np.array([*middle, (region.width + region.height) / 4])
@@ -241,10 +247,13 @@ def _spread(view: int, cameras: Sequence[Camera]) -> list[int]:
     return chosen
 
 
-def _looks(chosen: Sequence[int], cameras: Sequence[Camera], picture: Picture, progress: Progress | None) -> _Looks:
+def _looks(
+    chosen: Sequence[int], cameras: Sequence[Camera], observations: Observations, progress: Progress | None
+) -> _Looks:
+    some = of_cameras(observations, chosen)
     small, blurred, scales = [], [], []
-    for index in track(chosen, "fit sphere", len(chosen), progress):
-        camera, pixels = cameras[index], picture(index)
+    for index in track(range(len(some)), "fit sphere", len(some), progress):
+        camera, pixels = cameras[chosen[some.camera_of(index)]], some.photograph(index).pixels
         scale = min(1.0, LONGEST / max(camera.width, camera.height))
         small.append(camera.resized(max(1, round(camera.width * scale)), max(1, round(camera.height * scale))))
         if scale < 1:

@@ -1,20 +1,20 @@
 // One frame: which camera sees it, with what weights, and what lies over it.
 
-import { placeCamera } from "eigenfield-three";
+import { type Frame, placeCamera } from "eigenfield-three";
 import type { Captured } from "./captured";
-import { type Frame, WHOLE } from "./mode";
+import { WHOLE } from "./mode";
 import type { Detail } from "./pace";
 import type { Places } from "./places";
 import type { Session } from "./session";
 import type { Stage } from "./stage";
 
-export interface Picture {
+export interface Painter {
   draw(detail: Detail): void;
   /** Where the captured picture lies in the canvas. */
   frame(): Frame;
 }
 
-export function createPicture(session: Session, stage: Stage, places: Places, captured: Captured): Picture {
+export function createPainter(session: Session, stage: Stage, places: Places, captured: Captured): Painter {
   let frame = WHOLE;
 
   const place = (): Frame => {

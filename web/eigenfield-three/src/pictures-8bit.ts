@@ -1,15 +1,13 @@
-// Pictures of codes, decoded by the browser with colour management off.
+// Pictures of 8-bit codes, decoded by the browser with colour management off.
 
-import { decodeCodes, smallerCodes, type Codes } from "./deep.js";
 import { SceneError, damaged } from "./errors.js";
 import { readHeader } from "./headers.js";
-import type { ViewBytes } from "./info.js";
 import * as limits from "./limits.js";
-import type { Picture, PictureFile, Plane, Precision } from "./planes.js";
+import type { PictureDecoder, PictureFile } from "./pieces.js";
 
 const OPTIONS: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
 
-// Eight grey texels square and one: what tells a browser without the codec from a damaged picture.
+// Eight grey texels square and one: they distinguish a browser without the codec from a damaged picture.
 const PROBES: Record<string, string> = {
   "image/avif":
     "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAA" +
@@ -20,14 +18,20 @@ const PROBES: Record<string, string> = {
 };
 
 /** The size that a picture's header states, checked against limits and, where there is one, the announced size. */
-export function checkPicture(bytes: ArrayBuffer, picture: PictureFile, size: [number, number] | null): [number, number] {
+export function checkPicture(
+  bytes: ArrayBuffer,
+  picture: PictureFile,
+  size: [number, number] | null,
+): [number, number] {
   const header = readHeader(bytes);
   if (!header) throw damaged(picture.where, "no picture");
   const { width, height, bits } = header;
   if (size && (width !== size[0] || height !== size[1])) {
     throw damaged(picture.where, `a picture of ${width} x ${height}, not of ${size[0]} x ${size[1]}`);
   }
-  if (picture.bits !== 8 && picture.bits !== bits) throw damaged(picture.where, `no picture of ${picture.bits} bits`);
+  if (picture.codec.bits !== 8 && picture.codec.bits !== bits) {
+    throw damaged(picture.where, `no picture of ${picture.codec.bits} bits`);
+  }
   const texels = width * height;
   if (!texels || width > limits.MAX_SIDE || height > limits.MAX_STACKED || texels > limits.MAX_TEXELS) {
     throw damaged(picture.where, `a picture of ${width} x ${height}`);
@@ -36,16 +40,16 @@ export function checkPicture(bytes: ArrayBuffer, picture: PictureFile, size: [nu
 }
 
 /** Decodes a picture, `down` times smaller along each side. Raises SceneError: `damaged`, `codec`. */
-export async function decodePicture(
+async function decodePicture(
   bytes: ArrayBuffer,
   picture: PictureFile,
-  size: [number, number] | null,
-  down = 1,
+  size: [number, number],
+  down: number,
 ): Promise<ImageBitmap> {
   const [width, height] = checkPicture(bytes, picture, size);
   const [w, h] = [Math.ceil(width / down), Math.ceil(height / down)];
   const resize: ImageBitmapOptions = down === 1 ? {} : { resizeWidth: w, resizeHeight: h, resizeQuality: "high" };
-  const type = readHeader(bytes)?.type ?? picture.mimeType;
+  const type = readHeader(bytes)?.type ?? picture.codec.mimeType;
   let bitmap: ImageBitmap;
   try {
     bitmap = await createImageBitmap(new Blob([bytes], { type }), { ...OPTIONS, ...resize });
@@ -57,60 +61,8 @@ export async function decodePicture(
   throw damaged(picture.where, `decoded to ${bitmap.width} x ${bitmap.height}, not to ${w} x ${h}`);
 }
 
-/** Part of a picture: `rows` of it from `row`. */
-export interface Piece<Kind extends ImageBitmap | Codes = ImageBitmap | Codes> {
-  picture: Kind;
-  row: number;
-  rows: number;
-}
-
-/** A mean, and where it has one the picture of its precision. */
-export interface Mean {
-  pieces: Piece[];
-  precision: ImageBitmap | null;
-}
-
-/** Decodes the mean of a plane. Whoever takes it closes it. */
-export async function decodeMean(plane: Plane, bytes: ViewBytes, down = 1): Promise<Mean> {
-  const { mean, meanSize } = plane;
-  const precision = plane.precision && (await decodePrecision(await bytes(plane.precision.view), plane.precision));
-  return { pieces: await decodePieces(await bytes(mean.view), mean, meanSize, down), precision };
-}
-
-async function decodePrecision(bytes: ArrayBuffer, precision: Precision): Promise<ImageBitmap> {
-  const { type } = readHeader(bytes) ?? {};
-  if (type && type !== precision.mimeType) throw damaged(precision.where, `${type}, not ${precision.mimeType}`);
-  return decodePicture(bytes, precision, precision.size);
-}
-
-/** Decodes a mean or eigen textures into pieces in their order: a whole texture of R, G and B, or one channel of a
- * texture. Codes of 10 bits are kept where the browser gives them. Whoever takes pieces closes them. */
-export async function decodePieces(
-  bytes: ArrayBuffer,
-  picture: Picture,
-  size: [number, number] | null,
-  down = 1,
-): Promise<Piece[]> {
-  if (picture.bits === 8) return decodeBitmaps(bytes, picture, size, down);
-  const count = picture.pieces * picture.textures;
-  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
-  const codes = await decodeCodes(bytes, width, rows);
-  if (!codes) return decodeBitmaps(bytes, picture, size, down);
-  const height = rows / count;
-  return Array.from({ length: count }, (_, i): Piece => {
-    if (down === 1) return { picture: codes, row: i * height, rows: height };
-    const smaller = smallerCodes(codes, i * height, height, down);
-    return { picture: smaller, row: 0, rows: smaller.height };
-  });
-}
-
-/** As `decodePieces`, with the upper eight bits of codes that have more. */
-export async function decodeBitmaps(
-  bytes: ArrayBuffer,
-  picture: Picture,
-  size: [number, number] | null,
-  down = 1,
-): Promise<Piece<ImageBitmap>[]> {
+/** Any picture, with the upper eight bits of codes that have more. */
+export const decodeBitmaps: PictureDecoder<ImageBitmap> = async (bytes, picture, size, down = 1) => {
   const count = picture.pieces * picture.textures;
   const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
   const bitmap = await decodePicture(bytes, picture, [width, rows], count === 1 ? down : 1);
@@ -126,16 +78,7 @@ export async function decodeBitmaps(
   );
   bitmap.close();
   return parts.map((part) => ({ picture: part, row: 0, rows: h }));
-}
-
-export function closePieces(pieces: Piece[]): void {
-  for (const { picture } of pieces) if ("close" in picture) picture.close();
-}
-
-export function closeMean({ pieces, precision }: Mean): void {
-  closePieces(pieces);
-  precision?.close();
-}
+};
 
 async function canDecode(type: string): Promise<boolean> {
   const probe = PROBES[type];

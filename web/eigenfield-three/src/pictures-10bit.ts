@@ -1,30 +1,39 @@
 // Pictures of 10-bit codes, all ten of them: an ImageBitmap keeps eight.
 
+import { checkPicture, decodeBitmaps } from "./pictures-8bit.js";
+import type { Codes, Piece, PictureDecoder } from "./pieces.js";
+
 const FORMATS = new Set(["I420P10", "I422P10", "I444P10"]);
 
-/** Codes of two bytes each, the lower first, in rows of `stride` bytes. */
-export interface Codes {
-  data: Uint8Array;
-  width: number;
-  height: number;
-  stride: number;
-}
+/** All ten bits where the browser gives them, else the upper eight. */
+export const decodeTenBits: PictureDecoder = async (bytes, picture, size, down = 1) => {
+  const count = picture.pieces * picture.textures;
+  const [width, rows] = checkPicture(bytes, picture, size && [size[0], count * size[1]]);
+  const codes = await decodeCodes(bytes, width, rows);
+  if (!codes) return decodeBitmaps(bytes, picture, size, down);
+  const height = rows / count;
+  return Array.from({ length: count }, (_, i): Piece => {
+    if (down === 1) return { picture: codes, row: i * height, rows: height };
+    const smaller = smallerCodes(codes, i * height, height, down);
+    return { picture: smaller, row: 0, rows: smaller.height };
+  });
+};
 
 /** The first channel of an AVIF picture of that size; null where the browser does not give its codes. */
-export async function decodeCodes(bytes: ArrayBuffer, width: number, height: number): Promise<Codes | null> {
+async function decodeCodes(bytes: ArrayBuffer, width: number, height: number): Promise<Codes | null> {
   if (typeof ImageDecoder === "undefined") return null;
   let decoder: ImageDecoder | null = null;
   let frame: VideoFrame | null = null;
   try {
     decoder = new ImageDecoder({ data: bytes, type: "image/avif" });
     frame = (await decoder.decode()).image;
-    const seen = frame.visibleRect;
-    if (!FORMATS.has(frame.format ?? "") || seen?.width !== width || seen.height !== height) return null;
+    const visible = frame.visibleRect;
+    if (!FORMATS.has(frame.format ?? "") || visible?.width !== width || visible.height !== height) return null;
     const data = new Uint8Array(frame.allocationSize());
     const [luma] = await frame.copyTo(data);
     return luma ? { data: data.subarray(luma.offset), width, height, stride: luma.stride } : null;
   } catch {
-    return null; // who decodes it in another way hears what is wrong
+    return null; // another decoder reports what is wrong
   } finally {
     frame?.close();
     decoder?.close();
@@ -32,7 +41,7 @@ export async function decodeCodes(bytes: ArrayBuffer, width: number, height: num
 }
 
 /** Rows of codes `down` times smaller along each side: means of the codes that they take the place of. */
-export function smallerCodes(codes: Codes, row: number, rows: number, down: number): Codes {
+function smallerCodes(codes: Codes, row: number, rows: number, down: number): Codes {
   const [width, height] = [Math.ceil(codes.width / down), Math.ceil(rows / down)];
   const made = new Uint8Array(2 * width * height);
   for (let y = 0; y < height; y++) {

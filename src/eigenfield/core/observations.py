@@ -1,0 +1,95 @@
+"""What is seen is an observation: a photograph, taken by one camera at one instant."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Photograph:
+    """One decoded photograph, without lens distortion.
+
+    Attributes:
+        pixels: (H, W, 3) float32, 0..1, sRGB-coded; other attributes than colour have their own channels and range.
+        mask: (H, W) float32, 0..1, 1 where the photograph counts; None where all of it does.
+    """
+
+    pixels: NDArray[np.float32]
+    mask: NDArray[np.float32] | None
+
+    @staticmethod
+    def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:
+        """The photograph, without a mask that leaves nothing out."""
+        return Photograph(pixels, None if mask is not None and mask.min() >= 1 else mask)
+
+
+class Observations(Protocol):
+    """Photographs of one scene, each by a camera at an instant: `LightField`, `PhotoSet`, parts of them, or arrays.
+
+    Cameras and instants are counted from 0. Functions that need the cameras themselves are handed them beside the
+    observations, in that order. Rows of weights, texture maps and errors are observations, in their order here.
+    """
+
+    def __len__(self) -> int:
+        """How many observations there are."""
+
+    def camera_of(self, index: int) -> int:
+        """The camera that took an observation."""
+
+    def time_of(self, index: int) -> int:
+        """The instant at which an observation was taken."""
+
+    def photograph(self, index: int) -> Photograph:
+        """Decode one observation now, pixels and mask at once. May be called from any thread."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Selection:
+    """Some of `whole`, whose cameras are counted anew."""
+
+    whole: Observations
+    indices: tuple[int, ...]
+    camera: Mapping[int, int]
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    def camera_of(self, index: int) -> int:
+        return self.camera[self.whole.camera_of(self.indices[index])]
+
+    def time_of(self, index: int) -> int:
+        return self.whole.time_of(self.indices[index])
+
+    def photograph(self, index: int) -> Photograph:
+        return self.whole.photograph(self.indices[index])
+
+
+def of_cameras(observations: Observations, cameras: Sequence[int]) -> Observations:
+    """The observations of some cameras, which are counted in the order given.
+
+    Args:
+        observations: those to choose from.
+        cameras: numbers of cameras, each once.
+
+    Returns:
+        The observations of these cameras at all instants: one instant after the other, at each in the cameras' order.
+    """
+    place = {camera: number for number, camera in enumerate(cameras)}
+    chosen = [index for index in range(len(observations)) if observations.camera_of(index) in place]
+    chosen.sort(key=lambda index: (observations.time_of(index), place[observations.camera_of(index)]))
+    return _Selection(observations, tuple(chosen), place)
+
+
+def cameras_of(observations: Observations) -> NDArray[np.int64]:
+    """(No,) the camera of each observation."""
+    return np.array([observations.camera_of(index) for index in range(len(observations))], np.int64)
+
+
+def times_of(observations: Observations) -> NDArray[np.int64]:
+    """(No,) the instant of each observation."""
+    return np.array([observations.time_of(index) for index in range(len(observations))], np.int64)

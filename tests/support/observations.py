@@ -1,0 +1,53 @@
+"""Observations in memory: any photographs by any cameras at any times."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from eigenfield.core.observations import Photograph
+
+
+@dataclass(frozen=True, eq=False)
+class InMemory:
+    """Arrays as observations.
+
+    Attributes:
+        pixels: (H, W, C) of each observation.
+        masks: (H, W) or None of each; () for none at all.
+        cameras, times: of each; () for a camera each, at one time.
+        decoded: which observations were asked for, in order.
+    """
+
+    pixels: Sequence[np.ndarray]
+    masks: Sequence[np.ndarray | None] = ()
+    cameras: Sequence[int] = ()
+    times: Sequence[int] = ()
+    decoded: list[int] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.pixels)
+
+    def camera_of(self, index: int) -> int:
+        return self.cameras[index] if self.cameras else index
+
+    def time_of(self, index: int) -> int:
+        return self.times[index] if self.times else 0
+
+    def photograph(self, index: int) -> Photograph:
+        self.decoded.append(index)
+        return Photograph.of(self.pixels[index], self.masks[index] if self.masks else None)
+
+
+def repeated(pixels: Sequence[np.ndarray], times: int, masks: Sequence[np.ndarray | None] = ()) -> InMemory:
+    """The same photographs at each of so many times, one time after the other."""
+    cameras = list(range(len(pixels))) * times
+    instants = [time for time in range(times) for _ in pixels]
+    return InMemory(list(pixels) * times, list(masks) * times, cameras, instants)
+
+
+def greys(levels: Sequence[np.ndarray]) -> InMemory:
+    """Photographs without colour, of (H, W) luma."""
+    return InMemory([np.repeat(level[..., None], 3, axis=2).astype(np.float32) for level in levels])
