@@ -18,6 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.metrics import Picture, extent, to_codes
 from eigenfield.runtime.parallel import pieces
 
@@ -197,9 +198,7 @@ def _detectors() -> tuple[Kernel, Kernel, Kernel]:
 
 def _linear_codes() -> NDArray[np.float32]:
     """(1, 256): linear light of each 8-bit sRGB code."""
-    codes = np.arange(256) / 255
-    linear = np.where(codes <= 0.04045, codes / 12.92, ((codes + 0.055) / 1.055) ** 2.4)
-    return linear.astype(np.float32)[None]
+    return linear_of_srgb(np.arange(256) / 255).astype(np.float32)[None]
 
 
 def _greatest() -> float:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.raster import (
     BAND,
     BOUND_SLACK,
@@ -265,8 +265,8 @@ def _footprint(surface: Surface, camera: Camera, faces: NDArray[np.int32]) -> fl
     corners = np.where((depth > 0)[:, None], pixels, np.nan).reshape(-1, 3, 2)
     middle = corners.mean(axis=1)
     shown = ((middle >= 0) & (middle < (camera.width, camera.height))).all(axis=1)
-    screen = _areas(corners[shown])
-    atlas = _areas(surface.texels[faces[shown]])
+    screen = np.abs(signed_areas(corners[shown]))
+    atlas = np.abs(signed_areas(surface.texels[faces[shown]]))
     kept = screen > 0
     if not kept.any():
         return 0.0
@@ -275,9 +275,3 @@ def _footprint(surface: Surface, camera: Camera, faces: NDArray[np.int32]) -> fl
     order = np.argsort(footprints, kind="stable")
     total = np.cumsum(screen[order])
     return float(footprints[order[np.searchsorted(total, total[-1] / 2)]])
-
-
-def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T,) areas of (T, 3, 2) triangles."""
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
