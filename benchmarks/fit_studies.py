@@ -25,9 +25,10 @@ from numpy.typing import NDArray
 import eigenfield as ef
 import measure
 from eigenfield import LightField
-from eigenfield.encoding import plan as draft
-from eigenfield.encoding.encode import Options, open_fitted
+from eigenfield.encoding import EncodeOptions, plan
+from eigenfield.encoding import options as encode_options
 from eigenfield.encoding.fitted import fit, planes, rate
+from eigenfield.encoding.fitted.encoder import open_fitted
 from eigenfield.encoding.geometry.coded import coded_mesh
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import to_codes
@@ -39,7 +40,7 @@ from evidence.prepared import Prepared
 from evidence.runner import kept
 
 QUALITIES = (80, 88, 94)
-NO_OPTIONS = Options()
+NO_OPTIONS = EncodeOptions()
 KEYS = ("psnr", "psnr_luma", "ssim")
 
 
@@ -50,12 +51,14 @@ class Lever:
     words: str
     change: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
     coding: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
-    options: Options = NO_OPTIONS
+    options: EncodeOptions = NO_OPTIONS
     filter: str = "bicubic"
 
 
-def _kinds(change: Callable[[planes.Kind], planes.Kind]) -> contextlib.AbstractContextManager[Any]:
-    return patch.dict(planes.KINDS, {"luma-chroma": tuple(map(change, planes.KINDS["luma-chroma"]))})
+def _plane_presets(
+    change: Callable[[planes.PlanePreset], planes.PlanePreset],
+) -> contextlib.AbstractContextManager[Any]:
+    return patch.dict(planes.PLANE_PRESETS, {"luma-chroma": tuple(map(change, planes.PLANE_PRESETS["luma-chroma"]))})
 
 
 def _open_loop() -> contextlib.AbstractContextManager[Any]:
@@ -71,9 +74,9 @@ def _whole(mesh: Any, cameras: Any, reference: int, *_: Any) -> Any:
 
 
 def _no_rounds() -> contextlib.AbstractContextManager[Any]:
-    none = {name: replace(one, rounds=0) for name, one in planes.PRESETS.items()}
+    none = {name: replace(one, rounds=0) for name, one in encode_options.PRESETS.items()}
     stack = contextlib.ExitStack()
-    stack.enter_context(patch.dict(planes.PRESETS, none))
+    stack.enter_context(patch.dict(encode_options.PRESETS, none))
     stack.enter_context(patch.object(planes, "FEW_ROUNDS", 0))
     return stack
 
@@ -89,15 +92,16 @@ LEVERS = {
     "all": Lever("all on"),
     "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
     "loop": Lever("open loop: weights and mean not fitted to the coded textures", coding=_open_loop),
-    "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=Options(planes="rgb")),
+    "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=EncodeOptions(planes="rgb")),
     "dense": Lever(
         "the mean as coarse as the textures",
-        lambda: _kinds(lambda kind: replace(kind, mean_share=kind.texture_share)),
+        lambda: _plane_presets(lambda one: replace(one, mean_share=one.texture_share)),
     ),
     "coarse": Lever(
-        "textures as dense as the mean", lambda: _kinds(lambda kind: replace(kind, texture_share=kind.mean_share))
+        "textures as dense as the mean",
+        lambda: _plane_presets(lambda one: replace(one, texture_share=one.mean_share)),
     ),
-    "rank": Lever("15 textures", options=Options(textures=15)),
+    "rank": Lever("15 textures", options=EncodeOptions(textures=15)),
     "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
     "worth": Lever("all components kept, worth their bytes or not", coding=_all_kept),
     "step": Lever("textures coded at their usual step", coding=lambda: patch.object(rate, "OTHER_STEPS", ())),
@@ -106,13 +110,13 @@ LEVERS = {
     ),
     "unseen": Lever("texels that no photograph sees left as they are", lambda: patch.object(fit, "fill_unseen")),
     "surface": Lever(
-        "the proxy's surface as it was given", lambda: patch.object(draft, "fit_surface", lambda mesh, *_: mesh)
+        "the proxy's surface as it was given", lambda: patch.object(plan, "fit_surface", lambda mesh, *_: mesh)
     ),
     "edges": Lever(
         "one sample a pixel at edges too, in the fit and in drawing",
         lambda: patch.object(drawing, "STANDARD", drawing.CENTRE),
     ),
-    "relief": Lever("the relief not simplified", lambda: patch.object(draft, "slim_mesh", _whole)),
+    "relief": Lever("the relief not simplified", lambda: patch.object(plan, "slim_mesh", _whole)),
     "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
 }
 
@@ -178,10 +182,10 @@ def of_lever(
 ) -> dict[str, Any]:
     """The curve without a lever, and what is reached without coding. covered: asked for once there is a file."""
     lever, points = LEVERS[name], []
-    with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as coded:
+    with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as encoder:
         for quality in QUALITIES:
             with lever.coding():
-                scene = coded(quality)
+                scene = encoder.coded(quality)
             path = ready.work / f"{name}-{quality}.glb"
             save(scene, path, overwrite=True)
             figures = drawn_figures(path, photographs, covered(), field.names, lever.filter)
@@ -216,10 +220,10 @@ def drawn_figures(
 def held_out(ready: Prepared) -> dict[str, Any]:
     """Quality of captured and of held-out views against bytes, all of a view and outside the capture's circles."""
     points = []
-    with open_fitted(ready.light_field, ready.mesh, Options(hold_out=ready.hold_out), work=ready.work) as coded:
+    with open_fitted(ready.light_field, ready.mesh, EncodeOptions(hold_out=ready.hold_out), work=ready.work) as encoder:
         for quality in QUALITIES:
             path = ready.work / f"held-{quality}.glb"
-            save(coded(quality), path, overwrite=True)
+            save(encoder.coded(quality), path, overwrite=True)
             scene = ef.load(path)
             figures = ef.evaluate(scene, ready.light_field, path=path, circles=ready.circles(), png_maps="none")
             image = figures["image"]

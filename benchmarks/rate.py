@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 import measure
-from eigenfield.encoding.encode import Options
+from eigenfield.encoding import EncodeOptions
 from eigenfield.evaluation.session import evenly
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
@@ -40,12 +40,12 @@ CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
 PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
 # a fit for each preset, and one with the mesh that the lowest quality has; the finest mesh says what is covered
 FITS: tuple[ours.Fit, ...] = (
-    (Options(preset="best"), (94, 97)),
-    (Options(), (84, 88, 91, 92)),
-    (Options(preset="small"), (70, 78)),
-    (Options(preset="small", quality=60), (60,)),
+    (EncodeOptions(preset="best"), (94, 97)),
+    (EncodeOptions(), (84, 88, 91, 92)),
+    (EncodeOptions(preset="small"), (70, 78)),
+    (EncodeOptions(preset="small", quality=60), (60,)),
 )
-BEST: tuple[ours.Fit, ...] = ((Options(preset="best", quality=88), (78, 84, 88, 91)),)
+BEST: tuple[ours.Fit, ...] = ((EncodeOptions(preset="best", quality=88), (78, 84, 88, 91)),)
 CRF = (32, 40, 48, 56, 63)
 DOUBLING = 2.0  # dB of luma for twice the bytes, by which the orders are compared: they differ in both
 KEYS = ("psnr", "psnr_luma", "ssim")

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.encoding.encode import Options, open_fitted
-from eigenfield.encoding.plan import DEFAULT_PRESET
+from eigenfield.encoding import EncodeOptions
+from eigenfield.encoding.fitted.encoder import open_fitted
+from eigenfield.encoding.options import DEFAULT_PRESET
 from eigenfield.gltf import parts, save
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_stream
@@ -21,10 +22,10 @@ from evidence import rates
 from evidence.codecs import evict
 from evidence.prepared import Prepared, drawn
 
-Fit = tuple[Options, Sequence[int]]  # and the qualities at which it is coded, the same for all captures
+Fit = tuple[EncodeOptions, Sequence[int]]  # and the qualities at which it is coded, the same for all captures
 
-QUALITIES: tuple[Fit, ...] = ((Options(), (84, 91, 95)), (Options(preset="small", quality=70), (70,)))
-QUICK_QUALITIES: tuple[Fit, ...] = ((Options(), (84, 91)),)
+QUALITIES: tuple[Fit, ...] = ((EncodeOptions(), (84, 91, 95)), (EncodeOptions(preset="small", quality=70), (70,)))
+QUICK_QUALITIES: tuple[Fit, ...] = ((EncodeOptions(), (84, 91)),)
 
 Setting = tuple[float, int | None, int, int]
 
@@ -58,11 +59,11 @@ def fitted(
     for options, some in asked:
         preset = options.preset or DEFAULT_PRESET
         started = time.perf_counter()
-        with open_fitted(light_field, ready.mesh, options, work=ready.work) as coded:
+        with open_fitted(light_field, ready.mesh, options, work=ready.work) as encoder:
             fit = time.perf_counter() - started
             for quality in some:
                 started = time.perf_counter()
-                scene = coded(quality)
+                scene = encoder.coded(quality)
                 path = ready.work / f"{stem}-{quality}.glb"
                 save(scene, path, overwrite=True)
                 seconds = time.perf_counter() - started

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 import eigenfield as ef
 from eigenfield.capture import LightField
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.encode import DEFAULT_DENSITY
+from eigenfield.encoding.options import DEFAULT_DENSITY
 from eigenfield.gltf import encode_scene
 from eigenfield.gltf.write import QUALITY
 from eigenfield.imaging.metrics import psnr, ssim

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +53,7 @@ def true_geometry(
     return result
 
 
-def compare(scenes: dict[str, tuple[Scene, LightField]], names: Sequence[str]) -> dict[str, Any]:
+def compare(scenes: Mapping[str, tuple[Scene, LightField]], names: Sequence[str]) -> dict[str, Any]:
     """The same cameras, by name, drawn from scenes of "true" and "estimated" geometry; see `true_geometry`."""
     drawn: dict[str, Pictures] = {}
     covered: dict[int, NDArray[np.bool_]] = {}

@@ -33,9 +33,11 @@ if TYPE_CHECKING:
     from eigenfield.core.errors import ProxyError as ProxyError
     from eigenfield.core.mesh import Mesh as Mesh
     from eigenfield.core.progress import Progress as Progress
+    from eigenfield.core.scene import EncodedScene as EncodedScene
     from eigenfield.core.scene import Scene as Scene
-    from eigenfield.encoding.encode import Target as Target
-    from eigenfield.encoding.encode import encode as encode
+    from eigenfield.encoding import EncodeOptions as EncodeOptions
+    from eigenfield.encoding import Target as Target
+    from eigenfield.encoding import encode as encode
     from eigenfield.evaluation import evaluate as evaluate
     from eigenfield.gltf import load as load
     from eigenfield.gltf import save as save
@@ -48,6 +50,8 @@ _HOME = {
     "Camera": "core.camera",
     "CaptureError": "core.errors",
     "EigenfieldError": "core.errors",
+    "EncodeOptions": "encoding",
+    "EncodedScene": "core.scene",
     "FormatError": "core.errors",
     "LightField": "capture",
     "Mesh": "core.mesh",
@@ -58,8 +62,8 @@ _HOME = {
     "ProxyError": "core.errors",
     "Reconstruction": "reconstruction",
     "Scene": "core.scene",
-    "Target": "encoding.encode",
-    "encode": "encoding.encode",
+    "Target": "encoding",
+    "encode": "encoding",
     "evaluate": "evaluation",
     "load": "gltf",
     "open_any": "capture",

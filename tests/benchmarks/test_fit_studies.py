@@ -6,7 +6,7 @@ import pytest
 
 import fit_studies
 import rate_tables
-from eigenfield.encoding import plan as draft
+from eigenfield.encoding import options, plan
 from eigenfield.encoding.fitted import fit, planes, rate
 from evidence import prepared
 from evidence.captures import Capture
@@ -23,22 +23,22 @@ def ready(tmp_path_factory):
 
 def test_levers_are_put_back():
     before = (
-        planes.PRESETS.copy(),
-        planes.KINDS.copy(),
+        options.PRESETS.copy(),
+        planes.PLANE_PRESETS.copy(),
         fit.find_regions,
         fit.fit_weights,
         (rate.LAGRANGE, rate.OTHER_STEPS),
-        draft.slim_mesh,
+        plan.slim_mesh,
         planes.mean_precision,
         fit.fill_unseen,
-        draft.fit_surface,
+        plan.fit_surface,
     )
     for lever in fit_studies.LEVERS.values():
         with lever.change(), lever.coding():
             pass
     after = (
-        planes.PRESETS, planes.KINDS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
-        draft.slim_mesh, planes.mean_precision, fit.fill_unseen, draft.fit_surface,
+        options.PRESETS, planes.PLANE_PRESETS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
+        plan.slim_mesh, planes.mean_precision, fit.fill_unseen, plan.fit_surface,
     )  # fmt: skip
     assert before == after
 

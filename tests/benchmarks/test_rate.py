@@ -10,7 +10,7 @@ import pytest
 
 import rate
 import rate_tables
-from eigenfield.encoding.encode import Options
+from eigenfield.encoding import EncodeOptions
 from evidence import codecs, pictures, prepared
 from evidence.captures import Capture
 from support.captures import write_capture
@@ -38,8 +38,8 @@ def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     fast = dataclasses.replace(
         codecs.VIDEO[0], options=tuple((k, "10" if k == "preset" else v) for k, v in codecs.VIDEO[0].options)
     )
-    monkeypatch.setattr(rate, "FITS", ((Options(), (90,)), (Options(preset="small", quality=50), (50,))))
-    monkeypatch.setattr(rate, "BEST", ((Options(preset="best"), (70,)),))
+    monkeypatch.setattr(rate, "FITS", ((EncodeOptions(), (90,)), (EncodeOptions(preset="small", quality=50), (50,))))
+    monkeypatch.setattr(rate, "BEST", ((EncodeOptions(preset="best"), (70,)),))
     monkeypatch.setattr(rate, "CRF", (30, 50, 60))
     found = rate.of_capture(
         Capture("nine", "Nine", folder, proxy=folder / "proxy.ply"), tmp_path / "work", [fast], True

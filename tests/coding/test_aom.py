@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from eigenfield.coding.pictures import aom
-from eigenfield.coding.pictures.pictures_10bit import SVT, TOP, decode_deep, encode_deep
+from eigenfield.coding.pictures.pictures_10bit import SVT, TOP, decode_10bit, encode_10bit
 from eigenfield.encoding.fitted import planes
+from eigenfield.encoding.options import PRESETS
 
 HAS_AOM = aom.aom_program() is not None
 
@@ -34,12 +35,12 @@ def codes() -> np.ndarray:
 
 
 def error(data: bytes) -> float:
-    return float(np.square(decode_deep(data, "picture") - codes().astype(float)).mean())
+    return float(np.square(decode_10bit(data, False, "picture") - codes().astype(float)).mean())
 
 
 @pytest.mark.skipif(not HAS_AOM, reason="no ffmpeg program with libaom")
 def test_fewer_bytes_at_the_same_error():
-    made = [encode_deep(codes(), crf, 4) for crf in (24, 32, 40)]
+    made = [encode_10bit(codes(), crf, 4) for crf in (24, 32, 40)]
     data = aom.encode_aom(codes(), 32)
     sizes, errors = [len(one) for one in made], [error(one) for one in made]
     assert len(data) < 0.96 * np.exp(np.interp(error(data), errors, np.log(sizes)))
@@ -50,7 +51,7 @@ def test_fewer_bytes_at_the_same_error():
 def test_every_code_is_kept_within_the_step_and_all_sides_fit():
     for height, width in ((64, 64), (66, 130), (64, 4096)):
         ramp = np.broadcast_to(np.linspace(0, TOP, width), (height, width)).astype(np.uint16)
-        back = decode_deep(aom.encode_aom(ramp, 4), "ramp")
+        back = decode_10bit(aom.encode_aom(ramp, 4), False, "ramp")
         assert back.shape == ramp.shape
         assert np.abs(back.astype(int) - ramp).max() <= 8
 
@@ -97,7 +98,7 @@ def test_a_program_that_leaves_nothing_is_not_used(tmp_path, monkeypatch):
 
 
 def test_the_best_preset_alone_is_patient():
-    assert [name for name, preset in planes.PRESETS.items() if preset.patient] == ["best"]
-    rate = planes.KINDS["luma-chroma"][0].rate(0.01, patient=True)
+    assert [name for name, preset in PRESETS.items() if preset.patient] == ["best"]
+    rate = planes.PLANE_PRESETS["luma-chroma"][0].rate(0.01, patient=True)
     assert rate.coder is aom.encode_aom
     assert rate.trial is SVT

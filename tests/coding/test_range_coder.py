@@ -111,10 +111,10 @@ def test_tables_are_those_of_their_formulas_wherever_they_are_computed():
 
 def test_headers_are_checked():
     with pytest.raises(FormatError) as caught:
-        range_coder.check_header(b"\x01", 8, "mesh")
+        range_coder.check_header(b"\x01", 8, 1, "mesh")
     assert caught.value.code == "coded-truncated"
     with pytest.raises(FormatError) as caught:
-        range_coder.check_header(b"\x07" * 8, 8, "mesh")
+        range_coder.check_header(b"\x07" * 8, 8, 1, "mesh")
     assert caught.value.code == "coded-version"
     with pytest.raises(FormatError) as caught:
         range_coder.check_numbers(bytes(10), 10**6, 2**28, "mesh")

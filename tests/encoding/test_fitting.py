@@ -15,27 +15,26 @@ from eigenfield.cli import group
 from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Plane
-from eigenfield.encoding.encode import Options
+from eigenfield.encoding import Target
 from eigenfield.encoding.fitted import (
-    PRESETS,
+    FitData,
     Pixels,
     PlaneSettings,
     Rate,
-    Shots,
-    Target,
     code_plane,
     coded_psnr,
     fit_plane,
     fitted_textures,
-    open_shots,
-    thinned,
+    open_fit_data,
+    subsampled,
 )
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
-from eigenfield.encoding.fitted.kernels import aim, bend, distrust, draw, put_back, squares_of
-from eigenfield.encoding.fitted.model import Block, Model, make_composer
-from eigenfield.encoding.fitted.observations import doubtable
-from eigenfield.encoding.fitted.passes import look, psnr_of
+from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
+from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
+from eigenfield.encoding.fitted.observations import with_robust_weights
+from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual, whiten
+from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
@@ -50,12 +49,12 @@ RGB = np.eye(3, dtype=np.float32)
 CAMERAS = row_grid(9, 72, 60)
 
 
-def true_model(cameras: int, seed: int = 0) -> Model:
+def true_model(cameras: int, seed: int = 0) -> PlaneModel:
     """A mean and three components of luma and the rest, far from the borders of 0..1."""
     mean = 0.5 + 0.2 * smooth_pictures(1, SIDE, SIDE, 3, seed)[0].transpose(2, 0, 1)
     textures = 0.06 * smooth_pictures(3, *GRID, 3, seed + 1).transpose(0, 3, 1, 2)
     block = Block((0, GRID[0], 0, GRID[1]), np.ascontiguousarray(textures), unit_weights(cameras, 3, seed + 2))
-    return Model(RGB, np.ascontiguousarray(mean.astype(np.float32)), GRID, [block])
+    return PlaneModel(RGB, np.ascontiguousarray(mean.astype(np.float32)), GRID, [block])
 
 
 def whole(drawn):
@@ -63,13 +62,13 @@ def whole(drawn):
     return drawn.image / np.maximum(drawn.coverage, 0.25)[..., None]
 
 
-def middles(shots, index):
-    """(h, w, 2) of `Shots.places`: of each pixel's places the middle, -1 where there is none."""
-    many, places = shots.places(index)
-    pixels = np.repeat(np.arange(many.size), many.reshape(-1))
-    sums = np.stack([np.bincount(pixels, places[:, k], many.size) for k in range(2)], axis=1)
-    found = np.where(many.reshape(-1, 1) > 0, sums / np.maximum(many.reshape(-1, 1), 1), -1)
-    return found.reshape(*many.shape, 2)
+def middles(data, index):
+    """(h, w, 2) of a footprint: of each pixel's points the middle, -1 where there is none."""
+    counts, points = data.footprint(index)
+    pixels = np.repeat(np.arange(counts.size), counts.reshape(-1))
+    sums = np.stack([np.bincount(pixels, points[:, k], counts.size) for k in range(2)], axis=1)
+    found = np.where(counts.reshape(-1, 1) > 0, sums / np.maximum(counts.reshape(-1, 1), 1), -1)
+    return found.reshape(*counts.shape, 2)
 
 
 @pytest.fixture(scope="module")
@@ -88,32 +87,33 @@ def world():
         plain = replace(scene.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
         drawn = Renderer(replace(scene, planes=(plain,))).draw(camera, np.zeros(9))
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
-    with open_shots(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as shots:
-        yield shots, composer, model
+    with open_fit_data(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as data:
+        yield data, composer, model
 
 
 def test_the_fit_draws_what_the_renderer_draws(world):
-    shots, composer, model = world
+    data, composer, model = world
     for how, most in ((composer, 0.5 / 255), (None, 0.8 / 255)):  # rounding to codes alone: a deviation of 0.29
-        found = residual(shots, model, composer=how)
+        found = residual(data, model, composer=how)
         assert (np.sqrt(found.squares / found.pixels / 3) < most).all()
         assert (found.pixels > 1000).all()
 
 
-def test_thinned_pixels_are_some_of_all(world):
-    shots, _, _ = world
-    with thinned(shots, 2) as some:
-        assert len(some) == len(shots)
-        for index in range(len(shots)):
-            (many, places), (fewer, left) = shots.places(index), some.places(index)
-            assert many.sum() == len(places) and fewer.sum() == len(left)
+def test_subsampled_pixels_are_some_of_all(world):
+    data, _, _ = world
+    with subsampled(data, 2) as some:
+        assert len(some) == len(data)
+        for index in range(len(data)):
+            (counts, points), (fewer, left) = data.footprint(index), some.footprint(index)
+            assert counts.sum() == len(points) and fewer.sum() == len(left)
             rows, columns = slice(7 * index // 2 % 2, None, 2), slice(index % 2, None, 2)
-            np.testing.assert_array_equal(some.photograph(index), shots.photograph(index)[rows, columns])
-            np.testing.assert_array_equal(fewer, many[rows, columns])
-            np.testing.assert_array_equal(middles(some, index), middles(shots, index)[rows, columns])
-            assert 0.2 < np.prod(some.shapes[index]) / np.prod(shots.shapes[index]) < 0.3
-    with thinned(shots, 1) as same:
-        assert same is shots
+            codes = [one.observations.codes_of(index) for one in (some, data)]
+            np.testing.assert_array_equal(codes[0], codes[1][rows, columns])
+            np.testing.assert_array_equal(fewer, counts[rows, columns])
+            np.testing.assert_array_equal(middles(some, index), middles(data, index)[rows, columns])
+            assert 0.2 < codes[0].size / codes[1].size < 0.3
+    with subsampled(data, 1) as same:
+        assert same is data
 
 
 @settings(max_examples=30, deadline=None)
@@ -121,54 +121,54 @@ def test_thinned_pixels_are_some_of_all(world):
 def test_drawing_and_its_transpose(height, width, channels, seed):
     random = np.random.default_rng(seed)
     size = (int(random.integers(2, 60)), int(random.integers(2, 60)))
-    many = random.choice(np.array([0, 1, 1, 2, 3, 4], np.uint8), (7, 9))
-    places = random.uniform(0, 1, (int(many.sum()), 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
-    covered = many > 0
+    counts = random.choice(np.array([0, 1, 1, 2, 3, 4], np.uint8), (7, 9))
+    points = random.uniform(0, 1, (int(counts.sum()), 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
+    covered = counts > 0
     texture = random.normal(size=(channels, height, width)).astype(np.float32)
     image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
     codes = random.integers(0, 256, (7, 9)).astype(np.uint8)
     weight = codes / np.float32(255)
     drawn, back = np.zeros_like(image), np.zeros_like(texture)
-    draw(many, places, size, texture, np.float32(1), drawn)
-    put_back(many, places, size, image, codes, back)
+    forward(counts, points, size, texture, np.float32(1), drawn)
+    adjoint(counts, points, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
-    squares, total = squares_of(many, drawn, codes)
+    squares, total = squares_of(counts, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
     ones = np.zeros_like(drawn)
-    draw(many, places, size, np.ones_like(texture), np.float32(1), ones)
-    np.testing.assert_allclose(ones, np.broadcast_to(np.where(many == 1, 4, many) / 4, ones.shape), atol=1e-5)
+    forward(counts, points, size, np.ones_like(texture), np.float32(1), ones)
+    np.testing.assert_allclose(ones, np.broadcast_to(np.where(counts == 1, 4, counts) / 4, ones.shape), atol=1e-5)
     aimed = np.zeros((3, 7, 9), np.float32)
-    aim(many, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
+    target(counts, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
     np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4)
 
 
 def test_the_laplacian_is_that_of_a_quadratic():
     y, x = np.mgrid[0:9, 0:9].astype(np.float32)
     quadratic, out = (x * x + 2 * y * y)[None], np.ones((1, 9, 9), np.float32)
-    product = bend(quadratic, np.float32(0.5), out)
+    product = add_laplacian(quadratic, np.float32(0.5), out)
     np.testing.assert_allclose(out[0, 1:-1, 1:-1], 1 - 3)  # -(2 + 4) / 2
     assert out.sum() == pytest.approx(81, abs=1e-3)
     assert product == pytest.approx(float((quadratic * out).sum()), rel=1e-5)
 
 
 def test_the_weights_of_known_textures_are_found(world):
-    shots, _, model = world
+    data, _, model = world
     true = model.blocks[0].weights
-    guess = Model(RGB, model.mean, GRID, [Block(model.blocks[0].rectangle, model.blocks[0].textures, true * 0)])
-    fit_weights(shots, guess, 12)
+    guess = PlaneModel(RGB, model.mean, GRID, [Block(model.blocks[0].rectangle, model.blocks[0].textures, true * 0)])
+    fit_weights(data, guess, 12)
     np.testing.assert_allclose(guess.blocks[0].weights, true, atol=0.05)
 
 
 def test_mean_and_textures_of_known_weights_draw_the_photographs(world):
-    shots, _, model = world
+    data, _, model = world
     block = model.blocks[0]
-    guess = Model(RGB, np.full_like(model.mean, 0.5), GRID, [replace_textures(block, block.textures * 0)])
-    scales = measure_scales(shots, guess)
-    left = residual(shots, guess)
+    guess = PlaneModel(RGB, np.full_like(model.mean, 0.5), GRID, [replace_textures(block, block.textures * 0)])
+    scales = measure_scales(data, guess)
+    left = residual(data, guess)
     before = left.squares.sum()
-    fit_textures(shots, guess, scales, left, 25)
-    assert residual(shots, guess).squares.sum() < before / 1000
+    fit_textures(data, guess, scales, left, 25)
+    assert residual(data, guess).squares.sum() < before / 1000
 
 
 def replace_textures(block: Block, textures: np.ndarray) -> Block:
@@ -176,13 +176,13 @@ def replace_textures(block: Block, textures: np.ndarray) -> Block:
 
 
 def test_whitening_changes_no_sum_and_orders_by_strength(world):
-    shots, _, model = world
+    data, _, model = world
     block = model.blocks[0]
     mixed = np.array([[1, 0.4, 0], [0.2, 2, 0.1], [0, 0.3, 0.7]], np.float32)
     textures = np.tensordot(np.linalg.inv(mixed), block.textures, 1).astype(np.float32)
-    skewed = Model(RGB, model.mean, GRID, [Block(block.rectangle, textures, block.weights @ mixed)])
+    skewed = PlaneModel(RGB, model.mean, GRID, [Block(block.rectangle, textures, block.weights @ mixed)])
     before = skewed.sums(slice(0, 9))
-    scales = measure_scales(shots, skewed)
+    scales = measure_scales(data, skewed)
     whiten(skewed, scales)
     np.testing.assert_allclose(skewed.sums(slice(0, 9)), before, atol=1e-4)
     weights = skewed.blocks[0].weights
@@ -195,21 +195,21 @@ def settings_of(textures: int = 3) -> PlaneSettings:
     return PlaneSettings(RGB, (SIDE, SIDE), (64, 64), textures)
 
 
-def fit_and_code(shots: Shots, rounds: int) -> tuple[Plane, float, float]:
+def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     """The coded plane, dB before coding and after."""
-    fit = fit_plane(Pixels(shots, shots, shots), settings_of(), "test", rounds)
-    plane = code_plane(fit, Rate(1e-3, 1e-3, svt(8)))
+    fit = fit_plane(Pixels(data, data, data), settings_of(), "test", rounds)
+    plane = code_plane(fit, Rate(1e-3, 1e-3, svt(8))).value
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
 
 def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
-    shots, _, _ = world
-    (_, start, _), (plane, uncoded, coded) = (fit_and_code(shots, rounds) for rounds in (0, 3))
+    data, _, _ = world
+    (_, start, _), (plane, uncoded, coded) = (fit_and_code(data, rounds) for rounds in (0, 3))
     assert uncoded > start + 1
     assert coded > 38
     scene = replace(tiny_scene(cameras=9), mesh=bumpy_square(12), cameras=CAMERAS, planes=(plane,))
     drawn = [Renderer(scene).draw(camera, np.eye(9)[i]) for i, camera in enumerate(CAMERAS)]
-    photographs = [shots.photograph(i) / np.float32(255) for i in range(9)]
+    photographs = [data.observations.codes_of(i) / np.float32(255) for i in range(9)]
     errors = [
         (d.image - d.coverage[..., None] * photograph)[d.coverage > 0.25]
         for d, photograph in zip(drawn, photographs, strict=True)
@@ -218,15 +218,15 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
 
 
 def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(world):
-    shots, _, _ = world
-    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
-    lit = np.random.default_rng(4).uniform(0, 1, (len(shots), 2, 2, 3)).astype(np.float32)
-    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as plain:
+    data, _, _ = world
+    pictures = [data.observations.codes_of(i).astype(np.float32) / 255 for i in range(len(data))]
+    lit = np.random.default_rng(4).uniform(0, 1, (len(data), 2, 2, 3)).astype(np.float32)
+    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as plain:
         for index, picture in enumerate(pictures):
             rows, columns = np.clip((middles(plain, index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
             inside = (rows >= 0) & (rows < 2) & (columns >= 0) & (columns < 2)
             picture[inside] = lit[index][rows[inside], columns[inside]]
-    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glitter:
+    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glitter:
         pixels = Pixels(glitter, glitter, glitter)
         alone = fit_plane(pixels, settings_of(), "test", 1)
         fit = fit_plane(pixels, replace(settings_of(), local=5), "test", 1)
@@ -239,24 +239,24 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
 
 
 def test_pixels_far_off_count_for_less(world):
-    shots, _, _ = world
+    data, _, _ = world
     random = np.random.default_rng(2)
-    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
+    pictures = [data.observations.codes_of(i).astype(np.float32) / 255 for i in range(len(data))]
     spoiled = [random.random(picture.shape[:2]) < 0.002 for picture in pictures]
     for picture, glints in zip(pictures, spoiled, strict=True):
         picture[glints] = 1.0
 
-    def reached(work: Shots) -> float:
+    def reached(work: FitData) -> float:
         model = fit_plane(Pixels(glinting, work, work), settings_of(), "test", 4).model
-        found = residual(shots, model)
+        found = residual(data, model)
         return psnr_of(found.squares, found.pixels, 3)
 
-    with open_shots(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glinting:
-        with doubtable(glinting) as doubted:
-            robust = reached(doubted)
-            weights = np.stack([doubted.weight(i) for i in range(9)])
-            covered = np.stack([doubted.places(i)[0] > 0 for i in range(9)])
-        assert robust > reached(glinting) + 0.7
+    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glinting:
+        with with_robust_weights(glinting) as robust:
+            found = reached(robust)
+            weights = np.stack([robust.observations.weights(i) for i in range(9)])
+            covered = np.stack([robust.footprint(i)[0] > 0 for i in range(9)])
+        assert found > reached(glinting) + 0.7
     glints = np.stack(spoiled)
     assert np.median(weights[glints & covered]) < 128 and np.median(weights[~glints & covered]) > 240
 
@@ -264,19 +264,19 @@ def test_pixels_far_off_count_for_less(world):
 def test_what_a_pixel_counts_for():
     image = np.array([[[0.0, 0.3, 0.1]], [[0.0, 0.4, 0.0]]], np.float32)
     out = np.zeros((1, 3), np.uint8)
-    distrust(image, np.zeros((0, 0), np.uint8), np.float32(0.25), out)
+    robust_weights(image, np.zeros((0, 0), np.uint8), np.float32(0.25), out)
     assert out.tolist() == [[255, 128, 245]]  # 1 / (1 + e^2 / 0.25)
-    distrust(image, np.array([[0, 255, 100]], np.uint8), np.float32(0.25), out)
+    robust_weights(image, np.array([[0, 255, 100]], np.uint8), np.float32(0.25), out)
     assert out.tolist() == [[0, 128, 96]]
 
 
 def test_components_that_are_not_worth_their_bytes_are_left_out(world):
-    shots, _, _ = world
+    data, _, _ = world
     settings = replace(settings_of(), textures=8)  # of which the photographs have three
-    fit = fit_plane(Pixels(shots, shots, shots), settings, "test", 1)
+    fit = fit_plane(Pixels(data, data, data), settings, "test", 1)
     counts, reached = [], []
     for step in (1e-3, 0.05, 0.5):
-        plane = code_plane(fit, Rate(step, step, svt(8)))
+        plane = code_plane(fit, Rate(step, step, svt(8))).value
         counts.append(sum(basis.count for basis in plane.bases))
         reached.append(coded_psnr(fit, plane))
     assert counts[0] >= 3 and counts[0] > counts[1] >= counts[2] == 0, counts
@@ -284,12 +284,12 @@ def test_components_that_are_not_worth_their_bytes_are_left_out(world):
 
 
 def test_the_number_of_threads_changes_nothing(world):
-    shots, _, _ = world
+    data, _, _ = world
     planes = []
     for threads in (1, 3):
         set_threads(threads)
         try:
-            planes.append(fit_and_code(shots, 1)[0])
+            planes.append(fit_and_code(data, 1)[0])
         finally:
             set_threads(None)
     np.testing.assert_array_equal(planes[0].mean, planes[1].mean)
@@ -298,8 +298,8 @@ def test_the_number_of_threads_changes_nothing(world):
 
 
 def test_what_a_mask_hides_does_not_count(world):
-    shots, composer, model = world
-    pictures = [shots.photograph(i).astype(np.float32) / 255 for i in range(len(shots))]
+    data, composer, model = world
+    pictures = [data.observations.codes_of(i).astype(np.float32) / 255 for i in range(len(data))]
     pictures[4][20:40, 20:50] = 1.0  # somebody walked by
     mask = np.ones(pictures[4].shape[:2], np.float32)
     mask[20:40, 20:50] = 0
@@ -309,8 +309,8 @@ def test_what_a_mask_hides_does_not_count(world):
     }  # fmt: skip
     for hidden, good in ((None, False), (mask, True)):
         masked = InMemory(pictures, [hidden if index == 4 else None for index in range(9)])
-        with open_shots(CAMERAS, masked, bumpy_square(12), (SIDE, SIDE)) as others:
-            found = look(others, model, composer=composer, **options)
+        with open_fit_data(CAMERAS, masked, bumpy_square(12), (SIDE, SIDE)) as others:
+            found = render_and_backproject(others, model, composer=composer, **options)
             assert (psnr_of(found.squares[4:5], found.pixels[4:5], 3) > 45) == good
 
 
@@ -386,30 +386,6 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
     assert caught.value.code == "curve" and "--fit none" in caught.value.remedy
     result = CliRunner().invoke(group, ["evaluate", str(output), str(folder)])
     assert result.exit_code == 0 and "none: the scene was fitted" in result.stdout
-
-
-FOR_MAPS = [{"align": "dis"}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
-            {"codec": "png"}]  # fmt: skip
-
-
-@pytest.mark.parametrize("asked", FOR_MAPS, ids=lambda asked: next(iter(asked)))
-def test_what_is_about_texture_maps_alone_is_the_paper_s_way_and_said(asked, caplog):
-    assert Options(**asked).fit == "none"
-    (record,) = caplog.records
-    assert f"--{next(iter(asked)).replace('_', '-')} " in record.getMessage()
-    caplog.clear()
-    assert Options(**asked, fit="none").fit == "none" and not caplog.records
-    for fitted in ({"target": Target(psnr=30)}, {"preset": "best"}, {"fit": "photographs"}):
-        with pytest.raises(OptionError, match="about texture maps"):
-            Options(**asked, **fitted)
-
-
-def test_the_rest_is_fitted_without_a_word(caplog):
-    for asked in ({}, {"quality": 50}, {"textures": 3, "hold_out": "odd"}, {"target": Target(psnr=30)}):
-        assert Options(**asked).fit == "photographs"
-    assert not caplog.records
-    with pytest.raises(OptionError, match="no preset"):
-        Options(fit="none", preset="best")
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding.fitted.coverage import CELL, COARSEST, fill_unseen, mean_precision
-from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.rendering.software.drawing import make_surface
 
@@ -54,7 +54,7 @@ def test_the_unseen_go_on_as_the_seen_do():
         Block((0, 96, 0, 96), texture.astype(np.float32), np.ones((3, 1), np.float32)),
         Block((20, 50, 10, 60), local.astype(np.float32), np.ones((3, 1), np.float32)),
     ]
-    model = Model(np.eye(1, 3, dtype=np.float32), mean.astype(np.float32), (96, 96), blocks)
+    model = PlaneModel(np.eye(1, 3, dtype=np.float32), mean.astype(np.float32), (96, 96), blocks)
     fill_unseen(model, scales(seen.astype(float)), chart(0, 1))
     for found, sign, part in ((model.mean[0], 1, np.s_[:, :]), (blocks[0].textures[0, 0], -1, np.s_[:, :]),
                               (blocks[1].textures[0, 0], -1, np.s_[20:50, 10:60])):  # fmt: skip
@@ -77,7 +77,7 @@ def test_beside_a_chart_what_counts_for_little_goes_on_as_the_chart_does(share, 
     seen[:, :48], seen[:, 48], seen[10, 10] = 8, 8 * share, 0.08
     texture = np.ascontiguousarray(mean[None, :, ::2, ::2])
     block = Block((0, 48, 0, 48), texture.copy(), np.ones((3, 1), np.float32))
-    model = Model(np.eye(1, 3, dtype=np.float32), mean.copy(), (48, 48), [block])
+    model = PlaneModel(np.eye(1, 3, dtype=np.float32), mean.copy(), (48, 48), [block])
     fill_unseen(model, scales(seen, seen[::2, ::2]), chart(0, 0.5))
     assert model.mean[0, 10, 10] == np.float32(0.7)
     assert np.allclose(model.mean[0, :, 48], 0.9 if kept else 0.4, atol=1e-3)

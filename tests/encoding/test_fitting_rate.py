@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 
 from eigenfield.coding.pictures.pictures_10bit import svt
-from eigenfield.core.payloads import files_of
 from eigenfield.encoding.fitted import rate
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
-from eigenfield.encoding.fitted.model import Block, Model
-from eigenfield.encoding.fitted.planes import KINDS
+from eigenfield.encoding.fitted.model import Block, PlaneModel
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS
 from eigenfield.encoding.fitted.rate import Price, Rate, code_worthwhile, price_of, price_of_mean
 from eigenfield.encoding.fitted.solve import Scales
 
@@ -19,7 +18,7 @@ SIZE, CAMERAS, STEP = (48, 64), 8, 0.03
 
 
 @pytest.fixture(scope="module")
-def made() -> tuple[Block, Model, Scales]:
+def made() -> tuple[Block, PlaneModel, Scales]:
     """Four components, each half as strong as the one before, of blobs a few texels wide; each texel of the mean is
     seen in ten pixels."""
     rng = np.random.default_rng(5)
@@ -28,7 +27,7 @@ def made() -> tuple[Block, Model, Scales]:
     soft /= soft.std()
     strength = 0.2 * 0.5 ** np.arange(4, dtype=np.float32)
     block = Block((0, SIZE[0], 0, SIZE[1]), soft[:4] * strength[:, None, None, None], np.ones((CAMERAS, 4), np.float32))
-    model = Model(np.eye(1, 3, dtype=np.float32), 0.5 + 0.1 * soft[4], SIZE, [block])
+    model = PlaneModel(np.eye(1, 3, dtype=np.float32), 0.5 + 0.1 * soft[4], SIZE, [block])
     share = np.full(SIZE, 10.0, np.float32)
     return block, model, Scales(share, share, (0.0, 0.0))
 
@@ -36,8 +35,8 @@ def made() -> tuple[Block, Model, Scales]:
 def left(block: Block, scales: Scales, step: float, price: float) -> float:
     """Squared error and the price of bytes with the best number of components, written out."""
     coded = code_basis(rate._basis_of(block, SIZE), step, rate.QUICK)
-    values = coded.values().transpose(0, 3, 1, 2)
-    sizes = [len(file.data) / file.count for file in files_of(coded) or () for _ in range(file.count)]
+    values = coded.basis.values().transpose(0, 3, 1, 2)
+    sizes = [len(one.data) / one.count for one in coded.pictures for _ in range(one.count)]
     totals = []
     for count in range(block.count + 1):
         drawn = np.zeros_like(block.textures)
@@ -72,9 +71,9 @@ def test_textures_are_coded_at_the_step_that_was_found(made):
         assert coded.count == block.count
         found[search] = coded
     finer = code_basis(rate._basis_of(block, SIZE), STEP / 1.2, svt(8))
-    assert [f.data for f in files_of(found[True])] == [f.data for f in files_of(finer)]
+    assert [one.data for one in found[True].pictures] == [one.data for one in finer.pictures]
     usual = code_basis(rate._basis_of(block, SIZE), STEP, svt(8))
-    assert [f.data for f in files_of(found[False])] == [f.data for f in files_of(usual)]
+    assert [one.data for one in found[False].pictures] == [one.data for one in usual.pictures]
 
 
 def test_what_a_byte_of_the_mean_takes_off_is_measured(made):
@@ -96,15 +95,15 @@ def test_nothing_is_measured_where_nothing_is_looked_for(made):
     block, model, scales = made
     for plain in (
         price_of_mean(model, scales, Rate(STEP, STEP, svt(8))),
-        price_of_mean(Model(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
+        price_of_mean(PlaneModel(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
     ):
         assert plain.measured == plain.reckoned
-    flat = Model(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
+    flat = PlaneModel(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
     even = price_of_mean(flat, scales, Rate(STEP, STEP, svt(8), search=True))
     assert even.measured == even.reckoned
 
 
 def test_luma_is_searched_where_cameras_are_many():
-    luma, chroma = KINDS["luma-chroma"]
+    luma, chroma = PLANE_PRESETS["luma-chroma"]
     assert luma.rate(0.01).search
     assert not luma.rate(0.01, few=True).search and not chroma.rate(0.01).search

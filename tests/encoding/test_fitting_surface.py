@@ -17,7 +17,7 @@ from eigenfield.gltf import encode_scene
 from eigenfield.proxy.relief.find_lattice import relief_lattice
 from eigenfield.rendering import draw_texture
 from support.captures import write_capture
-from support.observations import InMemory
+from support.observations import InMemory, repeated
 from support.scenes import row_grid, smooth_pictures
 from support.surfaces import relief
 
@@ -61,6 +61,14 @@ def test_a_plane_at_the_wrong_depth_is_brought_to_the_right_one(off):
     assert np.median(after) < 0.15 * np.median(before)
     np.testing.assert_allclose(found.vertices[:, :2], wrong.vertices[:, :2], atol=1e-4)  # along the normal alone
     assert found.uv is wrong.uv and found.faces is wrong.faces
+
+
+def test_photographs_again_at_another_time_move_a_surface_alike():
+    cameras, wrong = row_grid(9, 64, 56), sheet(3.1)
+    once = photographs_of(sheet(3.0), cameras)
+    found, again = (fit_surface(wrong, None, cameras, some, SIDE) for some in (once, repeated(once.pixels, 2)))
+    assert np.abs(found.vertices - wrong.vertices).max() > 0.05
+    np.testing.assert_allclose(again.vertices, found.vertices, atol=2e-3)
 
 
 def test_a_relief_stays_on_the_rays_it_was_made_on():

@@ -8,10 +8,11 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.cli import main
-from eigenfield.core.payloads import stream_of
-from eigenfield.encoding.encode import Options
-from eigenfield.encoding.fitted import KINDS, Target, coded_psnr, density_of
+from eigenfield.core.payloads import mesh_key, size_of
+from eigenfield.encoding import EncodeOptions, Target
+from eigenfield.encoding.fitted import PLANE_PRESETS, coded_psnr
 from eigenfield.encoding.fitted.planes import scaled
+from eigenfield.encoding.options import density_of
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, validate
 from support.captures import write_capture
@@ -24,7 +25,7 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     folder, output = fitted
     files, drawn = [], []
     monkeypatch.setattr(
-        "eigenfield.encoding.target.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
+        "eigenfield.encoding.fitted.reach.encode_scene", lambda scene: files.append(encode_scene(scene)) or files[-1]
     )
     monkeypatch.setattr(
         "eigenfield.encoding.fitted.planes.coded_psnr", lambda *given: drawn.append(coded_psnr(*given)) or drawn[-1]
@@ -66,14 +67,15 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", 0.1)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 0.1)
         once = ef.encode(capture, **options, target=asked)
         assert "fitted again for quality" not in caplog.text  # the meshes differ by less
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", 1e-3)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 1e-3)
         found = ef.encode(capture, **options, target=asked)
     assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
     assert len(found.mesh.faces) < len(once.mesh.faces)
-    assert 0 < len(stream_of(found.mesh) or b"") < len(stream_of(once.mesh) or b"")
+    meshes = [size_of(scene.payloads[mesh_key(scene.mesh)]) for scene in (found, once)]
+    assert 0 < meshes[0] < meshes[1]
     sizes = [len(encode_scene(scene)) for scene in (found, once)]
     assert sizes[0] < sizes[1]
     assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 28
@@ -90,7 +92,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):
-        monkeypatch.setattr("eigenfield.encoding.encode.MESH_SHARE", share)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", share)
         with caplog.at_level("INFO", "eigenfield.encode"):
             made.append(ef.encode(capture, **options, target=asked))
         assert ("fitted again" in caplog.text) == (share < 1)
@@ -114,14 +116,14 @@ def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
 def test_the_density_is_what_a_quality_pays_for():
     found = [density_of(quality) for quality in (0, 60, 79, 89, 91, 100)]
     assert found == sorted(found) and found[:2] == [0.9, 0.9] and found[-2:] == [1.5, 1.5]
-    assert Options(fit="photographs", preset="small").atlas_density == density_of(79)
-    assert Options(fit="photographs", quality=60).atlas_density == 0.9
-    assert Options(fit="photographs", quality=60, density=1.2).atlas_density == 1.2
-    assert Options(fit="none").atlas_density == 1.5
+    assert EncodeOptions(preset="small").resolved().density == density_of(79)
+    assert EncodeOptions(quality=60).resolved().density == 0.9
+    assert EncodeOptions(quality=60, density=1.2).resolved().density == 1.2
+    assert EncodeOptions(fit="none").resolved().density == 1.5
 
 
 def test_chroma_gets_less_dense_later_than_luma():
-    luma, chroma = KINDS["luma-chroma"]
+    luma, chroma = PLANE_PRESETS["luma-chroma"]
     for density, share in ((0.9, 1.1 / 0.9), (1.2, 1.4 / 1.2), (1.4, 1.5 / 1.4), (1.5, 1.0), (2.0, 1.0), (0.01, 2.0)):
         assert luma.settings((800, 960), density, 20).mean == (800, 960)
         found = chroma.settings((800, 960), density, 20)

@@ -10,7 +10,6 @@ import pytest
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import stream_of
 from eigenfield.encoding.geometry import depth_effect, slim_mesh, slim_relief
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_mesh
 from eigenfield.encoding.geometry.collapse_kernels import collapse, fallen
@@ -253,8 +252,9 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
     plain = coded_mesh(mesh, cameras, 4)
     sizes, holes = [], []
     for price in (1e-9, 0.05):
-        found = slim_mesh(mesh, cameras, 4, greys(photographs), price, 1.0)
-        sizes.append(len(stream_of(found) or b""))
+        slim = slim_mesh(mesh, cameras, 4, greys(photographs), price, 1.0)
+        found = slim.value
+        sizes.append(slim.payloads.bytes)
         holes.append(opened(mesh, found, cameras, greys(photographs))[0])
         for camera in cameras if price < 1e-6 else ():
             before, after = rasterise_view(mesh, camera), rasterise_view(found, camera)
@@ -264,8 +264,8 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
             assert np.median(np.abs(off)) < 0.01
     assert sizes[1] < 0.6 * sizes[0]
     # more bytes than without any choice only for what they close
-    closed = holes[0] < opened(mesh, plain, cameras, greys(photographs))[0]
-    assert closed or sizes[0] <= 1.05 * len(stream_of(plain) or b"")
+    closed = holes[0] < opened(mesh, plain.value, cameras, greys(photographs))[0]
+    assert closed or sizes[0] <= 1.05 * plain.payloads.bytes
 
 
 def test_other_meshes_keep_their_triangles():
@@ -274,7 +274,7 @@ def test_other_meshes_keep_their_triangles():
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
     assert relief_lattice(bent, cameras, DEPTH_ERROR) is None
     found = slim_mesh(bent, cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0)
-    assert len(found.faces) == len(bent.faces) and stream_of(found) is not None
+    assert len(found.value.faces) == len(bent.faces) and found.payloads.bytes > 0
 
 
 def test_what_a_camera_sees_through_is_found():

@@ -30,16 +30,16 @@ def test_the_largest_file_within_a_size_and_the_smallest_that_reaches_a_psnr(ben
     there = code(at)
     for target in (Target(size=there.size), Target(psnr=there.measured)):
         coded.clear()
-        found, met = search(target, code)
-        assert met and target.met(found) and len(coded) <= TRIES
+        found = search(target, code)
+        assert target.met(found) and len(coded) <= TRIES
         assert found.size >= 0.9 * there.size if target.size else found.quality <= at + 1
 
 
 @pytest.mark.parametrize(("target", "quality"), [(Target(size=1001), LOWEST), (Target(psnr=90), HIGHEST)])
 def test_what_cannot_be_reached_gives_the_nearest(target, quality):
     code, coded = curve(0.3)
-    found, met = search(target, code)
-    assert not met and found.quality == quality and len(coded) <= TRIES
+    found = search(target, code)
+    assert not target.met(found) and found.quality == quality and len(coded) <= TRIES
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def test_targets_that_cannot_be(target):
         (Target(ssim=0.9), [(700, 0.7), (900, 0.89), (1400, 0.91), (1300, 0.9)]),
     ],
 )
-def test_what_a_file_is_worth(target, worst_first):
+def test_the_merit_of_a_file(target, worst_first):
     tried = [Tried(50, size, measured, None) for size, measured in worst_first]
-    worths = [target.worth(one) for one in tried]
-    assert worths == sorted(worths) and len(set(worths)) == len(worths)
+    merits = [target.merit(one) for one in tried]
+    assert merits == sorted(merits) and len(set(merits)) == len(merits)

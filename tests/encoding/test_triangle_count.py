@@ -10,9 +10,10 @@ import pytest
 from eigenfield import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
+from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.geometry import triangles_worth
 from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
-from eigenfield.encoding.plan import Options, make_draft
+from eigenfield.encoding.plan import plan_encoding
 from eigenfield.proxy import simplified, unwrapped
 from support.captures import write_capture
 from support.observations import greys, repeated
@@ -112,14 +113,14 @@ def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_a
     bumps = 1 + 0.03 * np.sin(9 * smooth.vertices).prod(axis=1, keepdims=True)
     given = replace(smooth, vertices=(smooth.vertices * bumps).astype(np.float32))
     field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrapped(given)))
-    coarse = make_draft(field, given, Options(quality=55))
+    coarse = plan_encoding(field, given, EncodeOptions(quality=55))
     fine = coarse.at_quality(92)
-    counts = [len(draft.mesh.faces) for draft in (coarse, fine)]
+    counts = [len(plan.mesh.faces) for plan in (coarse, fine)]
     assert counts[0] < 0.6 * counts[1] and counts[1] <= len(given.faces)
     assert fine.options.quality == 92 and fine.mesh_bytes > coarse.mesh_bytes
     again = fine.at_quality(55)
     np.testing.assert_array_equal(again.mesh.vertices, coarse.mesh.vertices)
-    assert len(make_draft(field, given, Options(fit="none")).mesh.faces) == len(given.faces)
-    asked = make_draft(field, given, Options(quality=55), triangles=3000)
+    assert len(plan_encoding(field, given, EncodeOptions(fit="none")).mesh.faces) == len(given.faces)
+    asked = plan_encoding(field, given, EncodeOptions(quality=55, triangles=3000))
     assert 2900 <= len(asked.mesh.faces) <= 3000
     assert len(asked.at_quality(92).mesh.faces) == len(asked.mesh.faces)

@@ -15,8 +15,8 @@ from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import cameras_stream, stream_of
-from eigenfield.core.scene import Scene
+from eigenfield.core.payloads import Payloads, cameras_key, mesh_key
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.code_planes import coded_plane
 from eigenfield.encoding.geometry.coded import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
 from eigenfield.gltf import parts, save, validate
@@ -28,19 +28,21 @@ from eigenfield.gltf.layout import read_layout
 from eigenfield.proxy.atlas.unwrap import unwrapped
 from eigenfield.proxy.relief.find_lattice import _spacing, relief_lattice
 from support.coded_scenes import coded
+from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
 from support.surfaces import ball, relief
 
 
-def coded_scene() -> Scene:
+def coded_scene() -> EncodedScene:
     """Nine cameras on a grid before a bumpy square."""
     return coded(replace(tiny_scene(3, 4, 9, 64), mesh=bumpy_square(40)), np.arange(9).reshape(3, 3))
 
 
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
-    found = coded_mesh(mesh, cameras, 4)
-    assert len(found.faces) == len(mesh.faces) and len(stream_of(found) or b"") < mesh.vertices.nbytes / 4
+    made = coded_mesh(mesh, cameras, 4)
+    found = made.value
+    assert len(found.faces) == len(mesh.faces) and made.payloads.bytes < mesh.vertices.nbytes / 4
     most = PIXEL_STEP / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
@@ -54,8 +56,9 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     made_in = cameras[5] if not virtual else replace(cameras[4], t=cameras[4].t + np.array([0.07, -0.03, 0.01]))
     mesh = relief(made_in, 0.5, virtual)
     assert relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
-    found = coded_mesh(mesh, cameras, 4)
-    assert len(stream_of(found) or b"") < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
+    made = coded_mesh(mesh, cameras, 4)
+    found = made.value
+    assert made.payloads.bytes < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
@@ -116,7 +119,7 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    found = coded_mesh(mesh, inside, 0)
+    found = coded_mesh(mesh, inside, 0).value
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
 
@@ -126,8 +129,8 @@ def test_cameras_are_near_what_they_were():
     random = np.random.default_rng(0)
     shaken = [replace(c, t=c.t + random.normal(0, 0.01, 3)) for c in cameras]
     found = coded_cameras(shaken, mesh, None)
-    assert len(cameras_stream(found) or b"") < 12 * 4 * 9
-    for before, after in zip(shaken, found, strict=True):
+    assert found.payloads.bytes < 12 * 4 * 9
+    for before, after in zip(shaken, found.value, strict=True):
         moved = np.abs(before.project(mesh.vertices)[0] - after.project(mesh.vertices)[0])
         assert moved.max() < 4 * CAMERA_STEP
 
@@ -146,19 +149,18 @@ def test_a_coded_scene_through_a_file(tmp_path):
         assert (one.width, one.height) == (two.width, two.height)
     save(back, tmp_path / "again.glb")
     assert (tmp_path / "again.glb").read_bytes() == path.read_bytes()
-    plain = replace(scene, mesh=replace(scene.mesh))  # a copy has no stream
-    save(plain, tmp_path / "plain.glb")
+    save(replace(scene, payloads=Payloads()), tmp_path / "plain.glb")
     assert parts(path)["mesh"] < parts(tmp_path / "plain.glb")["mesh"] / 3
 
 
 def test_streams_of_another_mesh_or_other_cameras_are_not_written(tmp_path):
     scene = coded_scene()
-    assert cameras_stream(scene.cameras) is not None and stream_of(scene.mesh) is not None
+    assert cameras_key(scene.cameras) in scene.payloads and mesh_key(scene.mesh) in scene.payloads
     turned = (*scene.cameras[1:], scene.cameras[0])
-    for cameras in (turned, scene.cameras[:-1], (replace(scene.cameras[0]), *scene.cameras[1:])):
-        assert cameras_stream(cameras) is None
+    for cameras in (turned, scene.cameras[:-1], (replace(scene.cameras[0], t=np.ones(3)), *scene.cameras[1:])):
+        assert cameras_key(cameras) not in scene.payloads
     path = tmp_path / "other.glb"
-    save(replace(scene, mesh=bumpy_square(12), cameras=tuple(replace(camera) for camera in scene.cameras)), path)
+    save(replace(scene, mesh=bumpy_square(12), cameras=turned), path)
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
     assert extension["needs"] == ["bits", "codedWeights", "stacks"] and "mesh" not in extension
     assert len(ef.load(path).mesh.faces) == len(bumpy_square(12).faces)
@@ -184,13 +186,15 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
     mean = np.kron(random.random((64, 64, 3)), np.ones((4, 4, 1))).astype(np.float32)
     for contrast, side in ((0.0, 64), (1.0, 128)):
         shown = 0.5 + contrast * (mean - 0.5)
-        planes = tuple(coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3))
-        save(replace(tiny_scene(cameras=4), planes=planes, to_rgb=np.eye(3, dtype=np.float32)), path, overwrite=True)
+        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3)]
+        values = tuple(plane.value for plane in planes)
+        scene = replace(tiny_scene(cameras=4), planes=values, to_rgb=np.eye(3, dtype=np.float32))
+        save(encoded(scene, Payloads.joined(plane.payloads for plane in planes)), path, overwrite=True)
         (mesh,) = trimesh.load(path).geometry.values()
         assert mesh.visual.material.baseColorTexture.size == (side, side)
 
 
-def measured_scene() -> Scene:
+def measured_scene() -> EncodedScene:
     """Names with measured positions, as Stanford's have, of which no pattern is short."""
     scene = coded_scene()
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)

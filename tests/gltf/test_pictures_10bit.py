@@ -10,12 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP, crf_of, decode_deep, encode_deep, encoder_step, svt
+from eigenfield.coding.pictures import stacking
+from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP, crf_of, decode_10bit, encode_10bit, encoder_step, svt
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import files_of, stream_of
-from eigenfield.core.scene import Plane
+from eigenfield.core.payloads import Payloads, weights_key
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean, coded_plane, with_weights
 from eigenfield.gltf import save, validate
+from support.composed import encoded
 from support.scenes import float_basis, smooth_pictures, tiny_scene
 
 
@@ -28,23 +29,23 @@ def picture():
 
 @pytest.fixture(scope="module")
 def data(picture):
-    return encode_deep(picture, 4, 8)
+    return encode_10bit(picture, 4, 8)
 
 
 def test_codes_of_ten_bits_come_back(picture, data):
-    back = decode_deep(data, "here")
+    back = decode_10bit(data, False, "here")
     assert back.dtype == np.uint16 and back.shape == picture.shape and back.max() <= TOP
     assert np.abs(back.astype(int) - picture).mean() < 3
     assert (back % 4 != 0).any()  # more than 8 bits
-    assert encode_deep(picture, 4, 8) == data
+    assert encode_10bit(picture, 4, 8) == data
 
 
 def test_a_coarser_quantiser_takes_fewer_bytes_and_errs_more(picture):
     sizes, errors = [], []
     for crf in (4, 20, 40):
-        coded = encode_deep(picture, crf, 8)
+        coded = encode_10bit(picture, crf, 8)
         sizes.append(len(coded))
-        errors.append(np.square(decode_deep(coded, "here").astype(float) - picture).mean())
+        errors.append(np.square(decode_10bit(coded, False, "here").astype(float) - picture).mean())
     assert sizes[0] > sizes[1] > sizes[2] and errors[0] < errors[1] < errors[2]
 
 
@@ -59,28 +60,27 @@ def test_a_damaged_picture_is_refused(data):
     def damage(place, value, cut):
         broken = data[:place] if cut else data[:place] + bytes([value]) + data[place + 1 :]
         try:
-            decode_deep(broken, "here")
+            decode_10bit(broken, False, "here")
         except FormatError as error:
             assert error.code in ("picture-damaged", "picture-channels") and error.where == "here"
 
     damage()
     with pytest.raises(FormatError):
-        decode_deep(data[: len(data) // 2], "here")
+        decode_10bit(data[: len(data) // 2], False, "here")
 
 
 def test_textures_are_stacked_and_share_one_step():
     basis = float_basis(5, 7, 64, 80, 2)
     coded = code_basis(basis, 1e-3, svt(8))
-    files = files_of(coded)
-    assert files is not None and sum(file.count for file in files) == 7
-    assert coded.textures.dtype == np.uint16 and len(np.unique(coded.scale)) == 1
-    assert np.abs(coded.values() - basis.values()).mean() < 2e-3
-    other = with_weights(coded, coded.weights * 2, b"coded")
-    assert (
-        files_of(other) == files
-        and stream_of(other) == b"coded"
-        and files_of(replace(coded, weights=coded.weights)) is None
-    )
+    made = coded.basis
+    assert sum(picture.count for picture in coded.pictures) == 7 and {p.codec for p in coded.pictures} == {
+        "av1-10bit-1"
+    }
+    assert made.textures.dtype == np.uint16 and len(np.unique(made.scale)) == 1
+    assert np.abs(made.values() - basis.values()).mean() < 2e-3
+    other = with_weights(coded, made.weights * 2, b"coded")
+    assert other.pictures == coded.pictures and other.weights is not None and other.weights.data == b"coded"
+    assert other.payloads.keys() - coded.payloads.keys() == {weights_key(made.weights * 2)}
 
 
 def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatch):
@@ -88,7 +88,7 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
     basis = float_basis(5, 4, 64, 80, 1)
     strength = np.array([1, 1, 0.5, 0.5], np.float32)[:, None, None, None]
     basis = replace(basis, textures=basis.textures * strength)
-    coded = code_basis(basis, 1e-3, svt(8))
+    coded = code_basis(basis, 1e-3, svt(8)).basis
     scale = coded.scale[:, 0]
     assert scale[0] == scale[1] > 3 * scale[2] and scale[2] == scale[3]
     eight = np.rint(np.rint(coded.textures * (255 / 1023)) * (1023 / 255))
@@ -100,8 +100,8 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
 @pytest.mark.parametrize("channels", [1, 2])
 def test_means_of_any_range(channels):
     mean = smooth_pictures(1, 64, 64, channels)[0] * (3 if channels == 2 else 0.5) + (0 if channels == 2 else 0.5)
-    back, file = code_mean(mean, 1e-3, svt(8))
-    assert file.bits == 10 and np.abs(back - mean).mean() < 0.01
+    back, picture = code_mean(mean, 1e-3, svt(8))
+    assert picture.codec == "av1-10bit-1" and np.abs(back - mean).mean() < 0.01
 
 
 def scene_of_planes():
@@ -111,7 +111,7 @@ def scene_of_planes():
     local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, svt(8))
     chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, svt(8))
     matrix = np.array([[1, 0.5, 0.25], [1, -0.5, 0.5], [1, 0.125, -1]], np.float32)
-    return replace(scene, planes=(luma, chroma), to_rgb=matrix)
+    return encoded(replace(scene, planes=(luma.value, chroma.value), to_rgb=matrix), luma.payloads | chroma.payloads)
 
 
 def test_a_file_of_planes_regions_and_stacks(tmp_path):
@@ -133,14 +133,12 @@ def test_a_file_of_planes_regions_and_stacks(tmp_path):
 
 
 def test_stacks_of_eight_bits_are_read():
-    from eigenfield.coding.pictures import pictures_8bit as pictures
-
     random = np.random.default_rng(0)
     for channels in (1, 2, 3):
         codes = random.integers(0, 256, (3, 16, 24, channels)).astype(np.uint8)
-        stacked = np.concatenate([pictures.stacked(one) for one in codes])
-        data = pictures.encode(stacked if channels == 3 else stacked[..., None], "png", 0)
-        back = pictures.decode_stack(memoryview(data), "image/png", 24, 16, channels, 3, 8, "here")
+        stack = np.concatenate([stacking.stacked(one) for one in codes])
+        data = stacking.encode(stack if channels == 3 else stack[..., None], "png", 0)
+        back = stacking.decode(memoryview(data), "png", 24, 16, channels, "here", 3)
         np.testing.assert_array_equal(back, codes)
 
 
@@ -177,9 +175,8 @@ def test_what_is_not_as_specified_is_refused(tmp_path, change, code):
     assert caught.value.code == code
 
 
-def test_a_plane_without_files_is_coded_when_it_is_saved(tmp_path):
+def test_a_plane_without_payloads_is_coded_when_it_is_saved(tmp_path):
     scene = scene_of_planes()
-    plain = replace(scene, planes=tuple(Plane(plane.mean, plane.bases) for plane in scene.planes))
-    save(plain, tmp_path / "a.glb")
+    save(replace(scene, payloads=Payloads()), tmp_path / "a.glb")
     back = ef.load(tmp_path / "a.glb")
     assert np.abs(back.planes[0].mean - scene.planes[0].mean).mean() < 0.01

@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import pictures_8bit as pictures
 from eigenfield.coding.pictures import quantise
+from eigenfield.coding.pictures import stacking as pictures
 from eigenfield.core.errors import FormatError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Basis, Plane, Scene
@@ -371,7 +371,7 @@ def test_progress_counts_the_pictures():
 def test_a_newer_minor_version_is_read(tmp_path):
     path = tmp_path / "scene.glb"
     save(tiny_scene(), path)
-    path.write_bytes(glb_surgery.changed(path.read_bytes(), lambda g, e, b: e.update(version="1.7")))
+    path.write_bytes(glb_surgery.changed(path.read_bytes(), lambda g, e, b: e.update(version="1.8")))
     assert scene_format.load(path).names == tiny_scene().names
     assert [(f.severity, f.code) for f in scene_format.validate(path)] == [("information", "newer-version")]
 

@@ -13,8 +13,10 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from eigenfield.coding import limits
+from eigenfield.coding.codecs import CODECS
 from eigenfield.core.scene import Residual
 from eigenfield.gltf import encode_scene, layout
+from eigenfield.gltf.streams import FEATURES, OTHER_FEATURES
 from support import schema
 from support.coded_scenes import coded_scene, precise_scene
 from support.glb_surgery import DOCUMENT, changed, ours, outcome
@@ -47,7 +49,7 @@ def test_the_schema_is_one():
 
 def test_files_of_every_kind_keep_to_it(files):
     needed = {need for data in files.values() for need in extension_of(data)["needs"]}
-    assert needed >= limits.FEATURES - {"codedNames"}
+    assert needed >= FEATURES.keys() - {"codedNames"}
     for kind, data in files.items():
         assert violation(extension_of(data)) is None, kind
 
@@ -240,7 +242,7 @@ def test_limits_are_those_of_the_code():
 
 
 def test_features_and_keys_are_those_of_the_code():
-    assert set(DEFINITIONS["feature"]["enum"]) == limits.FEATURES
+    assert set(DEFINITIONS["feature"]["enum"]) == FEATURES.keys()
     assert set(SCHEMA["properties"]) == layout._KEYS
 
 
@@ -283,7 +285,9 @@ def test_the_document_names_the_same_keys():
     assert {key for keys in inner for key in keys if f"`{key}`" not in text and f'"{key}"' not in text} == set()
 
 
-def test_the_document_names_the_same_features_and_codecs():
-    assert tables("feature") == {"The root extension": set(DEFINITIONS["feature"]["enum"])}
-    codecs = {codec for name in DEFINITIONS if name.endswith("Codec") for codec in DEFINITIONS[name]["enum"]}
-    assert tables("codec") == {"stream": codecs}
+def test_the_document_names_the_same_features():
+    """Beside those of codecs, which docs/coding.md lists: see tests/coding/test_codecs.py."""
+    assert tables("feature") == {"The root extension": set(OTHER_FEATURES)}
+    assert set(DEFINITIONS["feature"]["enum"]) - set(OTHER_FEATURES) == {codec.needs for codec in CODECS.values()} - {
+        None
+    }

@@ -16,7 +16,7 @@ from PIL import Image
 
 from eigenfield.capture import open_any, open_capture
 from eigenfield.core.errors import CaptureError, OptionError, ProxyError
-from eigenfield.encoding.encode import encode
+from eigenfield.encoding import encode
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, read_mesh
 from eigenfield.reconstruction import looks_one_way, reconstruct

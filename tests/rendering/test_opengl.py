@@ -14,7 +14,7 @@ import eigenfield as ef
 import reference
 from eigenfield.core.errors import EigenfieldError, FormatError, OptionError
 from eigenfield.core.scene import Basis, Plane
-from eigenfield.gltf import file_bytes, save
+from eigenfield.gltf import encode_scene, save
 from eigenfield.rendering import OpenGLRenderer, camera_colour, view_weights, viewpoint, weight_map
 from support.scenes import tiny_scene
 from support.viewer_scenes import FREE, free_camera, scene
@@ -216,7 +216,7 @@ def test_a_machine_without_driver_or_module_says_so(monkeypatch):
 def test_films_and_pictures_by_the_command_line(context, loaded, tmp_path):
     """`--renderer opengl` draws what the software renderer does, in `render` and in `export`."""
     path = tmp_path / "scene.glb"
-    path.write_bytes(file_bytes(loaded))
+    path.write_bytes(encode_scene(loaded))
     for name in ("software", "opengl"):
         for verb, output in (("render", "frame-%d.png"), ("export", "view_qs3x2a1.33.png")):
             more = ["--path", "circle", "--frames", "2"] if verb == "render" else ["--quilt", "3x2"]

@@ -12,15 +12,15 @@ import numpy as np
 
 import eigenfield as ef
 from eigenfield.coding.arrays.weights import code_weights
-from eigenfield.coding.pictures.pictures_8bit import encode
 from eigenfield.coding.pictures.pictures_10bit import svt
-from eigenfield.core.payloads import Affine, PictureFile, keep_files
-from eigenfield.core.scene import Plane, Scene
+from eigenfield.coding.pictures.stacking import encode
+from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key
+from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
 from eigenfield.encoding.geometry.coded import coded_cameras, coded_mesh
 from eigenfield.gltf import save
 from support.captures import write_capture
-from support.composed import keep_png, layered_scene
+from support.composed import encoded, kept_as_png, layered_scene
 from support.scenes import bumpy_square
 from support.viewer_scenes import PLACES, cameras, references, scene
 
@@ -28,23 +28,25 @@ GRID = np.arange(25).reshape(5, 5)
 STEP = 2e-3  # of pictures, in the photographs' range
 
 
-def coded_scene() -> Scene:
+def coded_scene() -> EncodedScene:
     """The scene of `viewer_scenes`, as its streams and pictures keep it: one plane of R, G and B."""
     return coded(scene(), GRID)
 
 
-def coded(plain: Scene, grid: np.ndarray) -> Scene:
+def coded(plain: Scene, grid: np.ndarray) -> EncodedScene:
     """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
     views = coded_cameras(plain.cameras, plain.mesh, grid)
     (plane,) = plain.planes
     (basis,) = plane.bases
     stream, weights = code_weights(basis.weights, 0.01, grid)
     textures = with_weights(code_basis(basis, STEP, svt(8)), weights, stream)
-    mesh = coded_mesh(plain.mesh, views, plain.reference)
-    return replace(plain, mesh=mesh, cameras=views, planes=(coded_plane(plane.mean, (textures,), STEP, svt(8)),))
+    mesh = coded_mesh(plain.mesh, views.value, plain.reference)
+    made = coded_plane(plane.mean, (textures,), STEP, svt(8))
+    scene = replace(plain, mesh=mesh.value, cameras=views.value, planes=(made.value,))
+    return encoded(scene, mesh.payloads | views.payloads | made.payloads)
 
 
-def fitted_scene() -> Scene:
+def fitted_scene() -> EncodedScene:
     """Luma and chroma fitted to nine photographs."""
     with tempfile.TemporaryDirectory() as work:
         folder = write_capture(Path(work) / "nine", cameras(3, 3), bumpy_square(24))
@@ -52,24 +54,23 @@ def fitted_scene() -> Scene:
         return ef.encode(capture, proxy=folder / "proxy.ply", fit="photographs", textures=6)
 
 
-def precise_scene() -> Scene:
+def precise_scene() -> EncodedScene:
     """The layered scene with means of 10 bits, of which one precision says how finely both are coded."""
-    layered = layered_scene()
-    keep_png(layered)  # its textures
+    layered = kept_as_png(layered_scene())  # its textures
     precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
     precision[0, 0] = 1
-    planes = (coded_plane(plane.mean, plane.bases, STEP, svt(8), precision) for plane in layered.planes)
-    return replace(layered, planes=tuple(planes))
+    means = [coded_plane(plane.mean, (), STEP, svt(8), precision) for plane in layered.planes]
+    planes = tuple(replace(plane, mean=mean.value.mean) for plane, mean in zip(layered.planes, means, strict=True))
+    return encoded(replace(layered, planes=planes), Payloads.joined(mean.payloads for mean in means))
 
 
-def shallow(made: Scene) -> Scene:
+def shallow(made: EncodedScene) -> EncodedScene:
     """The scene with a mean of 8 bits that is said to have 10."""
     (plane,) = made.planes
     height, width, channels = plane.mean.shape
     data = encode(np.zeros((channels * height, width, 1), np.uint8), "avif", 70)
-    changed = Plane(plane.mean, plane.bases)
-    keep_files(changed, [PictureFile(data, "image/avif", 10, 1, Affine(np.ones(channels), np.zeros(channels)))])
-    return replace(made, planes=(changed,))
+    affine = Affine(np.ones(channels), np.zeros(channels))
+    return encoded(made, Payloads({mean_key(plane.mean): [PicturePayload("av1-10bit-1", data, 1, affine)]}))
 
 
 def write(folder: Path) -> None:

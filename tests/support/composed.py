@@ -4,18 +4,18 @@ with reference pictures for the tests of the web viewer."""
 from __future__ import annotations
 
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
-from eigenfield.coding.pictures.pictures_8bit import encode, stacked
 from eigenfield.coding.pictures.quantise import mean_codes, mean_values
+from eigenfield.coding.pictures.stacking import encode, stacked
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import Affine, PictureFile, keep_files
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key, textures_key
+from eigenfield.core.scene import Basis, EncodedScene, Plane, Scene
 from eigenfield.gltf import save
 from eigenfield.rendering import draw_texture, view_weights, viewpoint
 from support.scenes import smooth_pictures
@@ -136,9 +136,8 @@ def write(folder: Path) -> None:
         missing = dict.fromkeys(("at", "camera", "free", "count"))
         pictures.append({"scene": f"{name}.glb", "file": file, "filter": filter, **missing, **what, **size})
 
-    layered = layered_scene()
+    layered = kept_as_png(layered_scene())
     level = flat(layered, 0.0, 1.0)
-    keep_png(layered)  # the planes of both
     for name, made in (("layered", layered), ("flat", level)):
         save(made, folder / f"{name}.glb", overwrite=True)
     for filter in ("bilinear", "bicubic"):
@@ -154,17 +153,26 @@ def write(folder: Path) -> None:
     listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")
 
 
-def keep_png(made: Scene) -> None:
-    """Files of PNG for a scene of 8-bit codes: of each basis the first texture alone, the rest in one picture."""
+def kept_as_png(made: Scene) -> EncodedScene:
+    """The scene of 8-bit codes with PNG pictures: of each basis the first texture alone, the rest in one picture."""
+    payloads = Payloads()
     for plane in made.planes:
         codes, affine = mean_codes(plane.mean)
-        keep_files(plane, [PictureFile(encode(codes, "png", 0), "image/png", 8, 1, affine)])
+        payloads |= {mean_key(plane.mean): [PicturePayload("png", encode(codes, "png", 0), 1, affine)]}
         for basis in plane.bases:
-            keep_files(basis, [png_file(basis, part) for part in (slice(0, 1), slice(1, None))])
+            pictures = [png_picture(basis, part) for part in (slice(0, 1), slice(1, None))]
+            payloads |= {textures_key(basis.textures, basis.scale, basis.zero): pictures}
+    return encoded(made, payloads)
 
 
-def png_file(basis: Basis, part: slice) -> PictureFile:
+def encoded(made: Scene, payloads: Payloads) -> EncodedScene:
+    """The scene with what parts of it were coded to."""
+    known = {one.name: getattr(made, one.name) for one in fields(made) if one.init}
+    return EncodedScene(**known | {"payloads": known.get("payloads", Payloads()) | payloads})
+
+
+def png_picture(basis: Basis, part: slice) -> PicturePayload:
     codes = np.concatenate([stacked(texture) for texture in basis.textures[part]])
     affine = Affine(*(numbers[part].ravel().astype(np.float64) for numbers in (basis.scale, basis.zero)))
     data = encode(codes if codes.ndim == 3 else codes[..., None], "png", 0)
-    return PictureFile(data, "image/png", 8, len(basis.textures[part]), affine)
+    return PicturePayload("png", data, len(basis.textures[part]), affine)

@@ -12,7 +12,7 @@ import numpy as np
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import pictures_8bit as pictures
+from eigenfield.coding.pictures import stacking as pictures
 from eigenfield.core.errors import FormatError
 
 EXTENSION = "EIGENFIELD_eigen_textures"

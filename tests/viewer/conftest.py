@@ -6,7 +6,7 @@ import pytest
 
 from eigenfield.capture import open_capture
 from eigenfield.evaluation import match_photographs
-from eigenfield.gltf import file_bytes, outline, save
+from eigenfield.gltf import outline, save
 from eigenfield.viewer import Photographs, Server, make_manifest, page, request
 from support.captures import write_capture
 from support.http_client import Client, write_build
@@ -35,8 +35,8 @@ def build(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def manifest(scene, capture):
-    loaded, opened = outline(scene), open_capture(capture)
-    return make_manifest(file_bytes(loaded), "scene", Photographs(loaded, opened, match_photographs(loaded, opened)))
+    (loaded, data), opened = outline(scene), open_capture(capture)
+    return make_manifest(data, "scene", Photographs(loaded, opened, match_photographs(loaded, opened)))
 
 
 @pytest.fixture

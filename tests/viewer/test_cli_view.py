@@ -16,7 +16,7 @@ from PIL import Image
 from eigenfield.capture import open_capture
 from eigenfield.core.errors import CaptureError
 from eigenfield.evaluation import match_photographs
-from eigenfield.gltf import file_bytes, outline
+from eigenfield.gltf import outline
 from eigenfield.viewer import Photographs, Server, make_manifest, page, photographs
 from support.captures import write_capture
 from support.http_client import Client, until
@@ -25,12 +25,12 @@ from support.viewer_scenes import glb_parts, join_glb
 
 def test_a_damaged_photograph_is_one_line_and_the_server_lives(scene, tmp_path, caplog):
     folder = write_capture(tmp_path / "capture")
-    loaded, opened = outline(scene), open_capture(folder)
+    (loaded, data), opened = outline(scene), open_capture(folder)
     pairs = match_photographs(loaded, opened)
     damaged = folder / "images" / "view_02.png"
     damaged.write_bytes(damaged.read_bytes()[:700])
     (folder / "images" / "view_03.png").unlink()
-    manifest = make_manifest(file_bytes(loaded), "scene", Photographs(loaded, opened, pairs))
+    manifest = make_manifest(data, "scene", Photographs(loaded, opened, pairs))
     with Server(manifest) as started, Client(started.port) as client:
         for index in (2, 3):
             answer = client.request(f"/photographs/{index}")
@@ -52,7 +52,7 @@ def test_a_bug_is_told_on_the_terminal_and_the_server_lives(caplog):
 
 
 def test_photographs_are_kept_and_forgotten_by_size(scene, capture, monkeypatch):
-    loaded, opened = outline(scene), open_capture(capture)
+    loaded, opened = outline(scene)[0], open_capture(capture)
     made = Photographs(loaded, opened, match_photographs(loaded, opened))
     first = made.png(0)
     assert made.png(0) is first
@@ -68,7 +68,7 @@ def test_masks_are_left_alone(scene, capture, tmp_path):
     for path in (capture / "images").iterdir():
         half = np.repeat(np.array([0, 255], np.uint8), 32)
         Image.fromarray(np.tile(half, (56, 1))).save(masks / path.name)
-    loaded, plain, opened = outline(scene), open_capture(capture), open_capture(capture, masks=masks)
+    loaded, plain, opened = outline(scene)[0], open_capture(capture), open_capture(capture, masks=masks)
     pairs = match_photographs(loaded, opened)
     (masks / "view_01.png").write_bytes(b"damaged")
     assert opened.views[1].mask is not None
@@ -78,7 +78,7 @@ def test_masks_are_left_alone(scene, capture, tmp_path):
 def test_photographs_of_another_size_are_refused(scene, tmp_path):
     from support.scenes import row_grid
 
-    loaded, opened = outline(scene), open_capture(write_capture(tmp_path / "capture", row_grid(9, 32, 28)))
+    loaded, opened = outline(scene)[0], open_capture(write_capture(tmp_path / "capture", row_grid(9, 32, 28)))
     with pytest.raises(CaptureError) as caught:
         Photographs(loaded, opened, match_photographs(loaded, opened))
     assert caught.value.code == "photograph-size" and "32x28" in str(caught.value)

@@ -46,7 +46,7 @@ def test_the_page_and_its_files(client, scene):
 
 
 def test_a_photograph_is_the_capture_s_own(client, scene, capture):
-    loaded, opened = outline(scene), open_capture(capture)
+    loaded, opened = outline(scene)[0], open_capture(capture)
     for index in (0, 4, 8):
         answer = client.request(f"/photographs/{index}")
         picture = np.asarray(Image.open(io.BytesIO(answer.body)))

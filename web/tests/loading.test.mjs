@@ -273,6 +273,7 @@ const CODED_CHANGES = {
   "weights in no view": (e) => (e.planes[0].bases[0].codedWeights = "4"),
   "a camera without weights": (e) => (e.cameras.heldOut = [3]),
   "a mesh that is a number": (e) => (e.mesh = 4),
+  "a mesh's view by itself": (e) => (e.mesh = e.mesh.bufferView),
   "a mesh without a view": (e) => (e.mesh = {}),
   "a mesh that is none": (e) => (e.mesh.bufferView = e.planes[0].mean.bufferView),
   "no coarse mesh": (_e, json) => delete json.meshes[0].primitives[0].attributes.POSITION,

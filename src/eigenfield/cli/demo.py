@@ -42,7 +42,7 @@ def command(output: Path, quiet: bool) -> None:
     scene.glb, flight.mp4, evaluation.json and plots/, of which contact-sheet.png shows photograph, drawing and error.
     """  # fmt: skip
     from eigenfield.capture import open_capture
-    from eigenfield.encoding.encode import encode
+    from eigenfield.encoding import encode
     from eigenfield.gltf import save
     from eigenfield.runtime.files import mended
 

@@ -62,20 +62,20 @@ def command(
     nothing is fetched from elsewhere. Ctrl-C ends it, with exit code 0.
     """
     from eigenfield.core.scene import check_scale
-    from eigenfield.gltf import file_bytes, outline, without_residual
+    from eigenfield.gltf import outline, without_residual
     from eigenfield.viewer import Server, make_manifest
 
     check_scale(metres_per_unit)
     options = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     try:
-        loaded = outline(scene)
+        loaded, data = outline(scene)
     except FormatError as error:
         if error.code != "not-a-scene" or capture is not None:
             raise
         note(f"{scene} has no eigen textures: it is shown as the plain glTF file that it is", quiet)
         glb, photographs = scene.read_bytes(), None
     else:
-        glb = without_residual(file_bytes(loaded) or b"")
+        glb = without_residual(data)
         photographs = _photographs(loaded, capture, options, quiet)
     manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
     with Server(manifest, host, port) as server:

@@ -3,20 +3,7 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.6"  # `codedNames`; a reader takes any 1.x
-FIRST = "1.0"  # what a file says that needs nothing of later versions
-SECOND = "1.1"  # colours of cameras
-THIRD = "1.2"  # what "needs" may name, but for `precision` and `codedNames`
-FOURTH = "1.3"  # a residual
-FIFTH = "1.4"  # `precision`
-SIXTH = "1.5"  # a residual of smooth pictures
-VERSIONS = (FIRST, SECOND, THIRD, FOURTH, FIFTH, SIXTH, VERSION)
-FEATURES = frozenset(
-    {
-        "bits", "codedCameras", "codedMesh", "codedNames", "codedTriangles", "codedWeights", "namePattern",
-        "precision", "regions", "sharedPicture", "stacks", "toRGB",
-    }
-)  # fmt: skip  # what an entry of "needs" may be
+VERSION = "1.7"  # of the format without its codecs; a reader takes any 1.x
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk

@@ -1,81 +1,155 @@
-"""Coded forms that hold exactly what a scene's parts are: saved as they are, nothing is coded twice.
+"""Coded streams that travel with a scene, each found by the content that it decodes to.
 
-They are kept beside the objects, not in them: whoever makes a changed copy has an object without files.
+A payload is kept under a key: the kind of the content and a SHA-256 digest of its arrays. Whoever saves a scene
+computes the keys of its parts and writes what it finds under them. So a part that was edited is coded anew, even one
+that was edited in place. A part that was not keeps its bytes through copies, pickles, `dataclasses.replace` and other
+processes.
 """
 
 from __future__ import annotations
 
-import weakref
-from collections.abc import Sequence
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, Generic, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.scene import Basis, Plane
+
+T = TypeVar("T")
+Key = tuple[str, bytes]  # kind, digest
 
 
 @dataclass(frozen=True, eq=False)
 class Affine:
-    """value = (code - zero) * scale per channel, both (C,) float64: an offset may be large beside the range."""
+    """value = (code - zero) * scale per channel, in float64: an offset may be large beside the range.
+
+    Attributes:
+        scale: (C,) float64.
+        zero: (C,) float64.
+    """
 
     scale: NDArray[np.float64]
     zero: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class PictureFile:
-    """data, mime: the file. bits: of its codes, 8 or 10. count: eigen textures in it, one below the other. affine: the
-    way back to numbers, for each channel of each texture; None: code / 255. precision: of a mean, the picture of how
-    finely each place of it is coded (see `precision`); None: all of it alike."""
+class Payload:
+    """A coded stream.
 
+    Attributes:
+        codec: Its name in `coding.codecs.CODECS`.
+        data: The bytes, as a file holds them.
+    """
+
+    codec: str
     data: bytes
-    mime: str
-    bits: int
-    count: int
-    affine: Affine | None
-    precision: bytes | None = None
 
 
-_files: weakref.WeakKeyDictionary[Basis | Plane, tuple[PictureFile, ...]] = weakref.WeakKeyDictionary()
+@dataclass(frozen=True, eq=False)
+class PicturePayload(Payload):
+    """A coded picture, of a mean or of eigen textures.
+
+    Attributes:
+        count: Eigen textures in it, one below the other.
+        affine: From codes to numbers, for each channel of each texture; None: code / 255.
+        precision: Of a mean, the picture of how finely each place of it is coded; None: all of it alike.
+    """
+
+    count: int = 1
+    affine: Affine | None = None
+    precision: Payload | None = None
 
 
-_streams: weakref.WeakKeyDictionary[Basis | Mesh, bytes] = weakref.WeakKeyDictionary()
-_cameras: weakref.WeakKeyDictionary[Camera, tuple[bytes, int, int]] = weakref.WeakKeyDictionary()
+class Payloads(Mapping[Key, tuple[Payload, ...]]):
+    """What the parts of a scene were coded to, by key; immutable. The pictures of a basis come by rank."""
+
+    def __init__(self, found: Mapping[Key, Sequence[Payload]] | None = None) -> None:
+        self._found = {key: tuple(payloads) for key, payloads in (found or {}).items()}
+
+    def __getitem__(self, key: Key) -> tuple[Payload, ...]:
+        return self._found[key]
+
+    def __iter__(self) -> Iterator[Key]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __or__(self, other: Mapping[Key, Sequence[Payload]]) -> Payloads:
+        return Payloads({**self._found, **other})
+
+    def without(self, kind: str) -> Payloads:
+        """All but those of one kind of content."""
+        return Payloads({key: payloads for key, payloads in self._found.items() if key[0] != kind})
+
+    @staticmethod
+    def joined(several: Iterable[Payloads]) -> Payloads:
+        """All of several."""
+        return Payloads({key: payloads for one in several for key, payloads in one.items()})
+
+    @property
+    def bytes(self) -> int:
+        """Of all payloads."""
+        return sum(map(size_of, self._found.values()))
 
 
-def keep_stream(owner: Basis | Mesh, stream: bytes) -> None:
-    """The coded form of a basis's weights, or of a mesh (docs/coding.md)."""
-    _streams[owner] = stream
+@dataclass(frozen=True, eq=False)
+class Coded(Generic[T]):
+    """A value as its file gives it back, and what it was coded to.
+
+    Attributes:
+        value: The decoded value.
+        payloads: Under the keys of its parts.
+    """
+
+    value: T
+    payloads: Payloads
 
 
-def stream_of(owner: Basis | Mesh) -> bytes | None:
-    """What `keep_stream` was told; None where the owner has not been coded."""
-    return _streams.get(owner)
+def size_of(payloads: Iterable[Payload]) -> int:
+    """Bytes of some payloads together."""
+    return sum(len(payload.data) for payload in payloads)
 
 
-def keep_cameras(cameras: Sequence[Camera], stream: bytes) -> None:
-    """The coded form of these cameras together."""
-    for index, camera in enumerate(cameras):
-        _cameras[camera] = (stream, index, len(cameras))
+def mesh_key(mesh: Mesh) -> Key:
+    """Of vertices, faces and texture coordinates."""
+    return _key("mesh", mesh.vertices, mesh.faces, *(() if mesh.uv is None else (mesh.uv,)))
 
 
-def cameras_stream(cameras: Sequence[Camera]) -> bytes | None:
-    """The stream that holds exactly these cameras in this order; None where there is none."""
-    first = _cameras.get(cameras[0])
-    if first is None:
-        return None
-    expected = [(first[0], index, len(cameras)) for index in range(len(cameras))]
-    return first[0] if [_cameras.get(camera) for camera in cameras] == expected else None
+def cameras_key(cameras: Sequence[Camera]) -> Key:
+    """Of the intrinsics and poses of these cameras in this order; a file says the sizes of the photographs apart."""
+    return _key("cameras", *(np.array([getattr(camera, name) for camera in cameras]) for name in ("K", "R", "t")))
 
 
-def keep_files(owner: Basis | Plane, files: Sequence[PictureFile]) -> None:
-    """The files of a basis's textures, by rank, or the one of a plane's mean."""
-    _files[owner] = tuple(files)
+def mean_key(mean: NDArray[np.float32]) -> Key:
+    """Of a plane's mean (H, W, C)."""
+    return _key("mean", mean)
 
 
-def files_of(owner: Basis | Plane) -> tuple[PictureFile, ...] | None:
-    """What `keep_files` was told; None where the owner has not been coded."""
-    return _files.get(owner)
+def textures_key(textures: NDArray[Any], scale: NDArray[np.float32], zero: NDArray[np.float32]) -> Key:
+    """Of a basis's eigen textures (N, H, W, C), and scale and zero (N, C) of their codes."""
+    return _key("textures", textures, scale, zero)
+
+
+def weights_key(weights: NDArray[np.float32]) -> Key:
+    """Of a basis's weights (Ne, N)."""
+    return _key("weights", weights)
+
+
+def preview_key(means: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmonised: bool) -> Key:
+    """Of the picture for other viewers, which is made of the means, whose keys these are. harmonised: whether the scene
+    has `colours`."""
+    digests = np.frombuffer(b"".join(digest for _, digest in means), np.uint8)
+    return _key("preview", digests, np.array([harmonised]), *(() if to_rgb is None else (to_rgb,)))
+
+
+def _key(kind: str, *arrays: NDArray[Any]) -> Key:
+    digest = hashlib.sha256()
+    for array in arrays:
+        digest.update(f"{array.dtype.str}{array.shape}".encode())
+        digest.update(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
+    return kind, digest.digest()

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,18 +15,24 @@ from eigenfield.core import notebook
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payloads
 from eigenfield.core.viewplane import ViewPlane
+
+T = TypeVar("T")
+
+_lock = threading.RLock()  # of what is derived from any scene
 
 
 @dataclass(frozen=True, eq=False)
 class Basis:
     """N eigen textures and what each encoded camera takes of them.
 
-    textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
-    scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
-    weights: (Ne, N) float32, the paper's ω(c, j), a row for each encoded camera in the order of `Scene.names`.
-    grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
-    corner: row and column of the grid at which the textures begin; they are zero elsewhere.
+    Attributes:
+        textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
+        scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
+        weights: (Ne, N) float32, the paper's ω(c, j), a row for each encoded camera in the order of `Scene.names`.
+        grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
+        corner: Row and column of the grid at which the textures begin; they are zero elsewhere.
     """
 
     textures: NDArray[Any]
@@ -61,8 +68,9 @@ class Basis:
 class Plane:
     """Channels that share a mean and bases, which may have densities of their own.
 
-    mean: (H, W, C) float32 in 0..1 (other attributes: any range).
-    bases: summed onto the mean one after the other.
+    Attributes:
+        mean: (H, W, C) float32 in 0..1 (of other attributes than colours: any range).
+        bases: Summed onto the mean one after the other.
     """
 
     mean: NDArray[np.float32]
@@ -78,10 +86,14 @@ class Plane:
 class Residual:
     """Photographs of the encoded cameras minus what the scene draws of them, coded: for captured views alone.
 
-    film: AV1, a frame for each encoded camera. size: (rows, columns) of the pictures in it, whose top left part a
-    photograph is. order: (Ne,) the cameras of the frames, counted among the encoded ones. scale: what a code of luma,
-    and of chroma, stands for. full: chroma is as fine as luma, below it in the frames, not half as fine. smooth: what
-    the scene draws has smooth edges, not one sample a pixel, or k x k (files before 1.5).
+    Attributes:
+        film: The coded film, a frame for each encoded camera.
+        size: (rows, columns) of the pictures in it, whose top left part a photograph is.
+        order: (Ne,) the cameras of the frames, counted among the encoded ones.
+        scale: What a code of luma, and of chroma, stands for.
+        full: Chroma is as fine as luma, below it in the frames, not half as fine.
+        smooth: What the scene draws has smooth edges, not one sample a pixel, or k x k (files before 1.5).
+        codec: Of the film, a name in `coding.codecs.CODECS`.
     """
 
     film: bytes
@@ -90,6 +102,7 @@ class Residual:
     scale: tuple[float, float]
     full: bool = False
     smooth: bool = False
+    codec: str = "video-1"
 
     @property
     def frame(self) -> tuple[int, int]:
@@ -102,19 +115,21 @@ class Residual:
 class Scene:
     """Everything needed to draw any viewpoint on the view plane.
 
-    mesh: the proxy, with UVs.
-    planes: one plane of three channels (R, G, B), or planes that `to_rgb` joins; any channels from other attributes.
-    names, cameras: every capture camera, encoded or held out.
-    held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
-    reference: index into `cameras` of the one nearest the centre, or the one asked for.
-    view_plane, triangles: the plane, and (T, 3) int32 Delaunay triangles on it over the *encoded* cameras.
-    settings, scores: JSON objects: how it was made, and what `evaluate --store` measured.
-    generator: name and version of the program that made it.
-    colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset, so
-        its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
-    to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what is
-        drawn.
-    residual: what is missing from captured views, or None. No other view has anything of it.
+    Attributes:
+        mesh: The proxy, with UVs.
+        planes: One plane of three channels (R, G, B), or planes that `to_rgb` joins; any channels of other attributes.
+        names, cameras: Every capture camera, encoded or held out.
+        held_out: (Nc,) bool; held-out photographs took no part in textures, mean and weights.
+        reference: Index into `cameras` of the one nearest the centre, or the one asked for.
+        view_plane: The plane through the cameras.
+        triangles: (T, 3) int32 Delaunay triangles on it over the *encoded* cameras.
+        settings, scores: JSON objects: how it was made, and what `evaluate --store` measured.
+        generator: Name and version of the program that made it.
+        colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset,
+            so its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
+        to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what
+            is drawn.
+        residual: What is missing from captured views, or None. No other view has anything of it.
     """
 
     mesh: Mesh
@@ -131,6 +146,7 @@ class Scene:
     colours: NDArray[np.float32] | None = None
     to_rgb: NDArray[np.float32] | None = None
     residual: Residual | None = None
+    _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def atlas(self) -> tuple[int, int]:
@@ -153,9 +169,37 @@ class Scene:
         """Number of eigen textures of the largest plane."""
         return max((sum(basis.count for basis in plane.bases) for plane in self.planes), default=0)
 
+    def derived(self, name: str, make: Callable[[], T]) -> T:
+        """What `make` returns, called once and kept as long as this object. Copies, pickles and `replace` have none of
+        it; edits in place do not change it."""
+        if name not in self._derived:
+            with _lock:
+                if name not in self._derived:
+                    self._derived[name] = make()
+        found: T = self._derived[name]
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_derived": {}}
+
     def _repr_html_(self) -> str | None:
         """The viewer in a frame: how a notebook shows a scene."""
         return None if notebook.show is None else notebook.show(self)
+
+
+@dataclass(frozen=True, eq=False)
+class EncodedScene(Scene):
+    """A scene with what its parts were coded to, as `encode` and `load` return it.
+
+    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes those whose content is still there, byte
+    for byte, and codes anew what was edited.
+
+    Attributes:
+        payloads: Of mesh, cameras, means, eigen textures, weights and the picture for other viewers, each under the key
+            of its content. Parts that have not been coded, or that a file holds as plain numbers, have none.
+    """
+
+    payloads: Payloads = field(default_factory=Payloads)
 
 
 def check_scale(metres_per_unit: float | None) -> None:

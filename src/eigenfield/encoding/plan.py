@@ -1,4 +1,4 @@
-"""What a scene is before it has textures: options, cameras, mesh, the atlas's size, which photographs are encoded."""
+"""What a scene is before it has textures: its options, cameras and mesh, and the size of its atlas."""
 
 from __future__ import annotations
 
@@ -13,357 +13,238 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture import Capture, LightField
-from eigenfield.capture.holdout import held_out_cameras
+from eigenfield.capture import LightField
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, of_cameras
-from eigenfield.core.payloads import stream_of
+from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Plane, Scene, check_scale
+from eigenfield.core.scene import EncodedScene, Plane
 from eigenfield.core.version import __version__
-from eigenfield.core.viewplane import ViewPlane, find_grid, fit_view_plane
-from eigenfield.encoding.fitted import KINDS, PRESETS, Preset, Target, byte_price, density_of, fit_surface
+from eigenfield.encoding.fitted import byte_price, fit_surface
 from eigenfield.encoding.geometry import slim_mesh, triangles_worth
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
-from eigenfield.encoding.projected import (
-    FILTERS,
-    SIDE_LIMIT,
-    atlas_side,
-    check_density,
-    check_model,
-    texels_per_pixel,
-)
+from eigenfield.encoding.options import EncodeOptions, known
+from eigenfield.encoding.projected import atlas_side, texels_per_pixel
+from eigenfield.encoding.views import CaptureViews, grid_of, select_views
 from eigenfield.proxy import prepare_proxy
 from eigenfield.proxy.relief.find_lattice import relief_lattice
 from eigenfield.rendering import delaunay_triangles
 
 log = logging.getLogger("eigenfield.encode")
 
-DEFAULT_TEXTURES = 15
-DEFAULT_PRESET = "balanced"
-DEFAULT_PLANES = "luma-chroma"
-DEFAULT_RESAMPLING = "bicubic"
-FITS = ("none", "photographs")
-DEFAULT_DENSITY = 1.5
-ABOUT_MAPS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
-ABOUT_FITS = ("target", "preset", "planes")  # options that nothing else has
 ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
-
-
-@dataclass(frozen=True)
-class Options:
-    """What `encode` was asked for; each is described there.
-
-    fit: where it was not said, which of the two it is: `photographs`, unless something about texture maps was asked
-    for. codec: of the pictures in the file, for those who save with one.
-    """
-
-    textures: int | None = None
-    uv_ssim: float | None = None
-    density: float | None = None
-    atlas: int | tuple[int, int] | None = None
-    align: str | None = None
-    reference: str | None = None
-    hold_out: str | None = None
-    resampling: str | None = None
-    harmonise: str | None = None
-    metres_per_unit: float | None = None
-    fit: str | None = None
-    preset: str | None = None
-    quality: int | None = None
-    target: Target | None = None
-    keep_maps: str | os.PathLike[str] | None = None
-    codec: str | None = None
-    planes: str | None = None
-
-    def __post_init__(self) -> None:
-        self._choose_fit()
-        if self.textures is not None and self.textures < 0:
-            raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
-        check_scale(self.metres_per_unit)
-        if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
-            raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
-        if self.resampling is not None and self.resampling not in FILTERS:
-            raise OptionError(
-                "resampling", f"no filter is called {self.resampling}", remedy=f"use one of {', '.join(FILTERS)}"
-            )
-        check_density(self.atlas_density)
-        if self.harmonise is not None:
-            check_model(self.harmonise)
-        if self.atlas is not None:
-            sides = (self.atlas,) if isinstance(self.atlas, int) else self.atlas
-            if not all(1 <= side <= SIDE_LIMIT for side in sides):
-                raise OptionError(
-                    "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
-                )
-
-    @property
-    def fit_preset(self) -> Preset:
-        """What a fit aims at."""
-        return PRESETS[DEFAULT_PRESET if self.preset is None else self.preset]
-
-    @property
-    def fit_planes(self) -> str:
-        """Which planes a fit has."""
-        return DEFAULT_PLANES if self.planes is None else self.planes
-
-    @property
-    def fit_quality(self) -> int:
-        """At which quality a fit is coded, unless a target says otherwise."""
-        return self.fit_preset.quality if self.quality is None else self.quality
-
-    @property
-    def atlas_density(self) -> float:
-        """Texels per photograph pixel, unless the atlas's size is given: of a fit what its quality pays for."""
-        if self.density is not None:
-            return self.density
-        return DEFAULT_DENSITY if self.fit == "none" else density_of(self.fit_quality)
-
-    def _choose_fit(self) -> None:
-        """Decide what `fit` is where it was not said, and raise OptionError for options that do not go with it."""
-        if self.fit is not None and self.fit not in FITS:
-            raise OptionError("fit", f"no fit is called {self.fit}", remedy=f"use one of {', '.join(FITS)}")
-        if self.preset is not None and self.preset not in PRESETS:
-            raise OptionError("preset", f"no preset is called {self.preset}", remedy=f"use one of {', '.join(PRESETS)}")
-        if self.planes is not None and self.planes not in KINDS:
-            raise OptionError("planes", f"no planes are called {self.planes}", remedy=f"use one of {', '.join(KINDS)}")
-        if self.quality is not None and not 0 <= self.quality <= 100:
-            raise OptionError("quality", f"a quality of {self.quality}", remedy="use 0 to 100")
-        if self.target is not None:
-            self.target.check()
-            if self.quality is not None:
-                raise OptionError("target", "a target is reached by the quality", remedy="leave one of them out")
-        maps = [f"--{name.replace('_', '-')}" for name in ABOUT_MAPS if getattr(self, name) is not None]
-        fits = [name for name in ABOUT_FITS if getattr(self, name) is not None]
-        if self.fit is None:
-            chosen = "none" if maps and not fits else "photographs"
-            object.__setattr__(self, "fit", chosen)
-            if chosen == "none":
-                log.warning(
-                    "%s is about texture maps, which a fit does not make: encoding the paper's way (--fit none)",
-                    maps[0],
-                )
-        if self.fit == "none" and fits:
-            raise OptionError(fits[0], f"--fit none has no {fits[0]}", remedy="leave one of them out")
-        if self.fit != "none" and maps:
-            other = f"leave it or the {fits[0]} out" if fits else "leave it out, or --fit none"
-            raise OptionError("fit", f"{maps[0]} is about texture maps, and a fit makes none", remedy=other)
-
-
-def check_options(capture: Capture, options: Options) -> None:
-    """Raise OptionError for what `encode` will refuse for this capture, before its cameras and proxy are estimated."""
-    if capture.light_field is not None:
-        places = fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
-    elif capture.layout is not None:
-        places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
-    elif options.hold_out == "odd":
-        return  # cameras will tell
-    else:
-        places = np.zeros((len(capture), 2))
-    held = held_out_cameras(options.hold_out, capture.names, places)
-    _reference(options.reference, capture.names, places, np.flatnonzero(~held))
+CAPPED = 0.98  # of the density asked for: what a capped atlas may have before a warning
 
 
 @dataclass(frozen=True, eq=False)
-class Draft:
-    """A scene without its textures.
+class PreparedProxy:
+    """A proxy with an atlas, before it is made ready for a quality.
 
-    again: the same with other options. cameras: all, as the file keeps them. coordinates: (Nc, 2) on the view plane.
-    held_out: (Nc,) bool. reference: index of the reference camera. atlas: width and height.
+    Attributes:
+        given: The file or mesh that it was made from.
+        mesh: With UVs; for a fit its vertices are where the photographs agree on the surface.
+        views: The cameras that it was prepared for.
+        by_quality: Whether another quality needs it prepared anew, with other triangles and charts.
     """
 
-    capture: LightField
-    options: Options
-    again: Callable[[Options], Draft]
+    given: str | os.PathLike[str] | Mesh
     mesh: Mesh
-    cameras: tuple[Camera, ...]
-    view_plane: ViewPlane
-    coordinates: NDArray[np.float64]
-    held_out: NDArray[np.bool_]
-    reference: int
+    views: CaptureViews
+    by_quality: bool
+
+
+@dataclass(frozen=True, eq=False)
+class EncodePlan:
+    """Everything that is decided before textures are made.
+
+    Attributes:
+        asked: The options as they were given.
+        options: What they mean (`EncodeOptions.resolved`), for one quality: a target is left out.
+        proxy: The proxy from which the same plan at another quality is made.
+        views: The cameras as the file keeps them, and which of them are encoded.
+        mesh: The proxy as the file keeps it.
+        payloads: What mesh and cameras were coded to; without a fit they are not.
+        atlas: Width and height of its atlas.
+    """
+
+    asked: EncodeOptions
+    options: EncodeOptions
+    proxy: PreparedProxy
+    views: CaptureViews
+    mesh: Mesh
+    payloads: Payloads
     atlas: tuple[int, int]
-
-    @cached_property
-    def encoded(self) -> NDArray[np.int64]:
-        """(Ne,) indices of the cameras whose photographs count."""
-        return np.flatnonzero(~self.held_out)
-
-    @property
-    def encoded_cameras(self) -> list[Camera]:
-        return [self.cameras[index] for index in self.encoded]
-
-    @property
-    def encoded_reference(self) -> int:
-        """The reference camera, counted among the encoded ones."""
-        return int(np.searchsorted(self.encoded, self.reference))
-
-    @property
-    def encoded_names(self) -> list[str]:
-        return [self.capture.names[index] for index in self.encoded]
-
-    @property
-    def grid(self) -> NDArray[np.int64] | None:
-        """(rows, columns) of the encoded cameras, counted among themselves, where they stand on a grid; else None."""
-        return _grid_of(self.coordinates[self.encoded])
-
-    @cached_property
-    def observations(self) -> Observations:
-        """Those of the encoded cameras, which are counted among themselves."""
-        return of_cameras(self.capture, self.encoded.tolist())
 
     @property
     def mesh_bytes(self) -> int:
         """Of the coded mesh in the file; 0 where it is not coded."""
-        return len(stream_of(self.mesh) or b"")
-
-    def at_quality(self, quality: int) -> Draft:
-        """The same with the mesh and the atlas that it has at another quality."""
-        return self.again(replace(self.options, quality=quality, target=None))
+        return size_of(self.payloads.get(mesh_key(self.mesh), ()))
 
     @cached_property
     def density(self) -> float:
         """The atlas's texels per pixel of the reference photograph, along one axis."""
-        return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, self.cameras[self.reference])
+        camera = self.views.cameras[self.views.reference]
+        return float(np.sqrt(np.prod(self.atlas))) * texels_per_pixel(self.mesh, camera)
+
+    def at_quality(self, quality: int, work: Path | None = None, progress: Progress | None = None) -> EncodePlan:
+        """The same plan with the mesh and the atlas that it has at another quality of the fit, 0 to 100."""
+        asked = replace(self.asked, quality=quality, target=None)
+        if self.proxy.by_quality:
+            return plan_encoding(self.views.capture, self.proxy.given, asked, work, progress)
+        return _at_its_quality(self.proxy, asked)
 
     def scene(
         self,
         planes: tuple[Plane, ...],
         own: Mapping[str, Any],
         *,
+        payloads: Payloads | None = None,
         colours: NDArray[np.float32] | None = None,
         to_rgb: NDArray[np.float32] | None = None,
-    ) -> Scene:
-        """The scene with these planes. own: what the settings say of how they were made."""
+    ) -> EncodedScene:
+        """The scene with these planes.
+
+        Args:
+            planes: As in `Scene`, with a row of weights for each encoded camera.
+            own: What its settings say of how the planes were made.
+            payloads: What the planes were coded to.
+            colours: As in `Scene`.
+            to_rgb: As in `Scene`.
+        """
+        views = self.views
         settings = {
             "textures": max(sum(basis.count for basis in one.bases) for one in planes),
             "atlas": list(self.atlas),
             "density": round(self.density, 4),
             "holdOut": self.options.hold_out,
             **own,
-            **_scale(self.capture, self.options.metres_per_unit),
-            **_lenses(self.capture),
+            **_scale(views.capture, self.options.metres_per_unit),
+            **_lenses(views.capture),
             "photographs": {
-                "count": len(self.encoded),
-                "bytes": sum(self.capture.bytes(int(i)) for i in self.encoded),
-                "pixels": sum(camera.width * camera.height for camera in self.encoded_cameras),
+                "count": len(views.encoded),
+                "bytes": sum(views.capture.bytes(int(index)) for index in views.encoded),
+                "pixels": sum(camera.width * camera.height for camera in views.encoded_cameras),
             },
         }
-        return Scene(
+        return EncodedScene(
             mesh=self.mesh,
             planes=planes,
-            names=tuple(self.capture.names),
-            cameras=self.cameras,
-            held_out=self.held_out,
-            reference=self.reference,
-            view_plane=self.view_plane,
-            triangles=delaunay_triangles(self.coordinates[self.encoded]),
+            names=tuple(views.capture.names),
+            cameras=views.cameras,
+            held_out=views.held_out,
+            reference=views.reference,
+            view_plane=views.view_plane,
+            triangles=delaunay_triangles(views.coordinates[views.encoded]),
             settings=settings,
             generator=f"eigenfield {__version__}",
             colours=colours,
             to_rgb=to_rgb,
+            payloads=self.payloads | (payloads or {}),
         )
 
 
-def make_draft(
+def plan_encoding(
     capture: LightField,
     proxy: str | os.PathLike[str] | Mesh,
-    options: Options,
-    triangles: int | None = None,
+    asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
-) -> Draft:
-    """Cameras as a file keeps them, the proxy with an atlas; for a fit its surface fitted to the photographs, and both
-    as they are coded. triangles, work, errors: as `encode`."""
-    names = [view.name for view in capture.views]
-    cameras = [view.camera.rounded() for view in capture.views]
-    coordinates = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
-    held = held_out_cameras(options.hold_out, names, coordinates)
-    encoded = np.flatnonzero(~held)
-    centre = _reference(options.reference, names, coordinates, encoded)
-    observations, used = of_cameras(capture, encoded.tolist()), [cameras[index] for index in encoded]
-    simplify = options.fit != "none" and triangles is None
+) -> EncodePlan:
+    """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
-    def worth(mesh: Mesh) -> int | None:
-        relief = mesh.uv is not None and relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
-        price = byte_price(options.fit_quality) / options.atlas_density**2
-        return None if relief else triangles_worth(mesh, used, observations, price)
+    Args:
+        capture: Photographs and cameras.
+        proxy: A mesh, or its file.
+        asked: The options; a target is planned for at its preset's quality.
+        work: Folder for scratch files.
+        progress: Reports each stage.
 
-    mesh = prepare_proxy(proxy, cameras, triangles=worth if simplify else triangles, progress=progress)
-    _warn_of_rounding([view.camera for view in capture.views], cameras, mesh)
-    relief = None
-    if options.fit != "none":
-        relief, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[centre], 1.0)
-        mesh = fit_surface(mesh, relief and relief[0], used, observations, side, work, progress)
-    anew = simplify and relief is None  # a relief keeps its atlas
-
-    def again(other: Options) -> Draft:
-        if anew:
-            return make_draft(capture, proxy, other, triangles, work, progress)
-        return _draft(capture, mesh, other, held, centre, simplify, again)
-
-    return _draft(capture, mesh, options, held, centre, simplify, again)
+    Raises:
+        CaptureError, ProxyError, OptionError, OutputError: As `encode`.
+    """
+    views, options = select_views(capture, asked), _for_one_quality(asked)
+    return _at_its_quality(_prepare(proxy, views, options, work, progress), asked)
 
 
-def _draft(
-    capture: LightField,
-    mesh: Mesh,
-    options: Options,
-    held: NDArray[np.bool_],
-    centre: int,
-    simplify: bool,
-    again: Callable[[Options], Draft],
-) -> Draft:
-    """The draft with a proxy that is prepared. simplify: a fit's relief, for its quality."""
-    cameras, encoded = [view.camera.rounded() for view in capture.views], np.flatnonzero(~held)
-    size = _atlas_size(options, mesh, cameras[centre], [cameras[i] for i in encoded])
-    if options.fit != "none":
-        if simplify:
-            texels = float(np.prod(size)) * texels_per_pixel(mesh, cameras[centre]) ** 2
-            mesh = slim_mesh(
-                mesh, [cameras[i] for i in encoded], int(np.searchsorted(encoded, centre)),
-                of_cameras(capture, encoded.tolist()), byte_price(options.fit_quality), texels,
-            )  # fmt: skip
-        else:
-            mesh = coded_mesh(mesh, cameras, centre)
-        grid = _grid_of(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
-        cameras = list(coded_cameras(cameras, mesh, grid))
-    plane = fit_view_plane(cameras)
-    coordinates = plane.coordinates([camera.centre for camera in cameras])
-    return Draft(
-        capture, options, again, mesh, tuple(cameras), plane, coordinates, held, centre, size
-    )  # fmt: skip
+def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
+    """What the options mean; with a target, for the preset's quality, from which the search may lead elsewhere."""
+    return replace(asked, target=None).resolved()
 
 
-def _grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
-    grid = find_grid(coordinates)
-    return None if grid is None else grid.index.astype(np.int64)
+def _simplifies(options: EncodeOptions) -> bool:
+    """Whether the encoder decides on the number of triangles."""
+    return options.fit != "none" and options.triangles is None
 
 
-def _reference(
-    name: str | None, names: Sequence[str], coordinates: NDArray[np.float64], encoded: NDArray[np.int64]
-) -> int:
-    if name is None:
-        return int(encoded[np.argmin(np.linalg.norm(coordinates[encoded], axis=1))])
-    if name not in names:
-        raise OptionError("reference", f"no camera is called {name}", remedy="eigenfield inspect lists the names")
-    index = names.index(name)
-    if index not in encoded:
-        raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")
-    return index
+def _prepare(
+    proxy: str | os.PathLike[str] | Mesh,
+    views: CaptureViews,
+    options: EncodeOptions,
+    work: Path | None,
+    progress: Progress | None,
+) -> PreparedProxy:
+    """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
+    cameras = views.cameras
+    triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
+    mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
+    _warn_of_rounding([view.camera for view in views.capture.views], cameras, mesh)
+    if options.fit == "none":
+        return PreparedProxy(proxy, mesh, views, by_quality=False)
+    relief = relief_lattice(mesh, cameras, DEPTH_ERROR)
+    lattice, side = relief and relief[0], atlas_side(mesh, cameras[views.reference], 1.0)
+    mesh = fit_surface(mesh, lattice, views.encoded_cameras, views.observations, side, work, progress)
+    return PreparedProxy(proxy, mesh, views, by_quality=_simplifies(options) and relief is None)  # it keeps its atlas
 
 
-def _atlas_size(options: Options, mesh: Mesh, camera: Camera, encoded: Sequence[Camera]) -> tuple[int, int]:
-    if options.atlas is None:
-        pixels = sum(one.width * one.height for one in encoded)
-        density = options.atlas_density
-        side = atlas_side(mesh, camera, density, pixels)
-        reached = side * texels_per_pixel(mesh, camera)
-        if reached < 0.98 * density:
-            log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, density)
-        return side, side
-    return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
+    """A function of a mesh as it was read: how many triangles its pictures are worth at the options' quality.
+
+    It returns None for a relief, which is simplified when it is coded.
+    """
+
+    def triangles(mesh: Mesh) -> int | None:
+        if mesh.uv is not None and relief_lattice(mesh, views.cameras, DEPTH_ERROR) is not None:
+            return None
+        price = byte_price(known(options.quality)) / known(options.density) ** 2
+        return triangles_worth(mesh, views.encoded_cameras, views.observations, price)
+
+    return triangles
+
+
+def _at_its_quality(proxy: PreparedProxy, asked: EncodeOptions) -> EncodePlan:
+    """The plan with a prepared proxy: the atlas's size and, for a fit, mesh and cameras as they are coded."""
+    options, views = _for_one_quality(asked), proxy.views
+    atlas = _atlas_size(options, proxy.mesh, views)
+    if options.fit == "none":
+        return EncodePlan(asked, options, proxy, views, proxy.mesh, Payloads(), atlas)
+    mesh = _coded_mesh(proxy.mesh, views, options, atlas)
+    cameras = coded_cameras(views.cameras, mesh.value, grid_of(views.coordinates))
+    views = replace(views, cameras=cameras.value)
+    return EncodePlan(asked, options, proxy, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
+
+
+def _atlas_size(options: EncodeOptions, mesh: Mesh, views: CaptureViews) -> tuple[int, int]:
+    """(width, height): as asked for, or a square of the options' density in the reference camera."""
+    if options.atlas is not None:
+        return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
+    camera, density = views.cameras[views.reference], known(options.density)
+    side = atlas_side(mesh, camera, density, sum(one.width * one.height for one in views.encoded_cameras))
+    reached = side * texels_per_pixel(mesh, camera)
+    if reached < CAPPED * density:
+        log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, density)
+    return side, side
+
+
+def _coded_mesh(mesh: Mesh, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
+    """The mesh as a fitted file keeps it.
+
+    A relief is simplified to what its pictures are worth, unless a number of triangles was asked for.
+    """
+    if not _simplifies(options):
+        return coded_mesh(mesh, views.cameras, views.reference)
+    texels = float(np.prod(atlas)) * texels_per_pixel(mesh, views.cameras[views.reference]) ** 2
+    price = byte_price(known(options.quality))
+    return slim_mesh(mesh, views.encoded_cameras, views.encoded_reference, views.observations, price, texels)
 
 
 def _scale(capture: LightField, asked: float | None) -> dict[str, float]:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from eigenfield.gltf.contents import describe, parts, store_scores, without_residual
 from eigenfield.gltf.findings import Finding
-from eigenfield.gltf.read import file_bytes, load, outline, read_scene, validate
+from eigenfield.gltf.read import load, outline, read_scene, validate
 from eigenfield.gltf.write import encode_scene, save
 
 __all__ = [
     "Finding",
     "describe",
     "encode_scene",
-    "file_bytes",
     "load",
     "outline",
     "parts",

@@ -8,18 +8,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.payloads import Payload
 from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
 
 
 @dataclass
 class Buffer:
-    """The binary chunk while it grows, and the JSON entries that point into it."""
+    """The binary chunk while it grows, the JSON entries that point into it, and the places and codecs of its
+    streams (`streams.PLACES`)."""
 
     parts: list[bytes] = field(default_factory=list)
     length: int = 0
     views: list[dict[str, Any]] = field(default_factory=list)
     accessors: list[dict[str, Any]] = field(default_factory=list)
     once: dict[bytes, int] = field(default_factory=dict)
+    codecs: set[tuple[str, str]] = field(default_factory=set)
 
     def view(self, data: bytes, target: int | None = None) -> int:
         """Append a buffer view at a multiple of 4; its index."""
@@ -31,11 +34,16 @@ class Buffer:
         self.length += len(self.parts[-1])
         return len(self.views) - 1
 
-    def shared(self, data: bytes) -> int:
-        """As `view`; the same one for the same bytes."""
-        if data not in self.once:
-            self.once[data] = self.view(data)
-        return self.once[data]
+    def stream(self, payload: Payload, place: str) -> int:
+        """As `view`, of a coded stream."""
+        self.codecs.add((place, payload.codec))
+        return self.view(payload.data)
+
+    def shared(self, payload: Payload, place: str) -> int:
+        """As `stream`; the same buffer view for the same bytes."""
+        if payload.data not in self.once:
+            self.once[payload.data] = self.stream(payload, place)
+        return self.once[payload.data]
 
     def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
         """Append an array as an accessor of its own buffer view; its index."""

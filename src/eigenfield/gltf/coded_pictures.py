@@ -10,12 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures import pictures_8bit as pictures
 from eigenfield.coding.pictures import quantise
-from eigenfield.core.payloads import Affine, PictureFile, files_of
+from eigenfield.coding.pictures.pictures_8bit import encode_preview
+from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked
+from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Basis, Plane, Scene
 from eigenfield.gltf.coarse import affordable
+from eigenfield.gltf.kept import Kept
 from eigenfield.runtime.parallel import parallel_stream
 
 SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels and quality beside a fit's pictures, the first that is in SHARE
@@ -23,71 +25,88 @@ MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: ther
 
 
 @dataclass(frozen=True, eq=False)
-class CodedPlane:
-    """The files of a plane's mean and of each basis's textures, by rank."""
+class PlanePictures:
+    """The pictures of a plane.
 
-    mean: PictureFile
-    bases: Sequence[Sequence[PictureFile]]
+    Attributes:
+        mean: Of its mean.
+        bases: Of each basis's textures, by rank.
+    """
+
+    mean: PicturePayload
+    bases: Sequence[Sequence[PicturePayload]]
 
 
 @dataclass(frozen=True, eq=False)
-class Coded:
-    """preview: JPEG for `images[0]`, or None where the first plane's mean itself serves."""
+class ScenePictures:
+    """All pictures of a file.
 
-    preview: bytes | None
-    planes: list[CodedPlane]
+    Attributes:
+        preview: For `images[0]`, or None where the first plane's mean itself serves.
+        planes: Those of each plane.
+    """
+
+    preview: Payload | None
+    planes: list[PlanePictures]
 
     @property
     def bytes(self) -> int:
         """Of all planes."""
-        return sum(len(file.data) for plane in self.planes for files in ([plane.mean], *plane.bases) for file in files)
+        return sum(self.sizes.values())
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Bytes by part, named as in `Kept`."""
+        means = {f"planes[{p}].mean": len(plane.mean.data) for p, plane in enumerate(self.planes)}
+        return means | {
+            f"planes[{p}].bases[{b}].textures": size_of(pictures)
+            for p, plane in enumerate(self.planes)
+            for b, pictures in enumerate(plane.bases)
+        }
 
 
-def code_pictures(scene: Scene, codec: str | None, quality: int, progress: Progress | None) -> Coded:
-    """Every picture of the scene, coded, the pictures shared among the threads."""
+def code_pictures(
+    scene: Scene, kept: Kept, codec: str | None, quality: int, progress: Progress | None
+) -> ScenePictures:
+    """Every picture of the scene, those that are kept as they are unless a codec was asked for; coding is shared among
+    the threads."""
     fine = round(100 - MEAN_SHARE * (100 - quality))
     planned = []
-    for plane in scene.planes:
+    for p, plane in enumerate(scene.planes):
         one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.to_rgb is not None
-        bases = [_textures(basis, codec, quality, one_unit) for basis in plane.bases]
-        planned.append([_mean(scene, plane, codec, fine), *bases])
+        parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
+        ways = [partial(_mean, scene, plane, codec or DEFAULT_CODEC, fine)]
+        ways += [partial(_textures, basis, codec or DEFAULT_CODEC, quality, one_unit) for basis in plane.bases]
+        there = [kept.pictures(part) if codec is None else () for part in parts]
+        planned.append(
+            [[partial(_itself, one) for one in some] or way() for some, way in zip(there, ways, strict=True)]
+        )
     jobs = [job for plan in planned for some in plan for job in some]
     done = iter(list(track(parallel_stream(lambda job: job(), jobs), "code textures", len(jobs), progress)))
     planes = []
     for plan in planned:
         files = [[next(done) for _ in some] for some in plan]
-        planes.append(CodedPlane(files[0][0], files[1:]))
-    first, coded = planes[0].mean, Coded(None, planes)
+        planes.append(PlanePictures(files[0][0], files[1:]))
+    first, made = planes[0].mean, ScenePictures(None, planes)
     plain = scene.to_rgb is None and scene.planes[0].mean.shape[2] in (1, 3)
-    if plain and first.mime == "image/png" and first.affine is None:
-        return coded  # the mean itself serves
-    return replace(coded, preview=_preview(scene, coded.bytes))
+    if plain and first.codec == "png" and first.affine is None:
+        return made  # the mean itself serves
+    preview = kept.one("preview") if codec is None else None
+    return replace(made, preview=preview or Payload("jpeg", _preview(scene, made.bytes)))
 
 
-def _mean(scene: Scene, plane: Plane, codec: str | None, quality: int) -> list[Callable[[], PictureFile]]:
-    kept = _kept(plane, codec)
-    if kept:
-        return kept
+def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:
     codes, affine = quantise.mean_codes(plane.mean, _harmonised(scene, plane))
-    return [partial(_code, codes, codec or pictures.DEFAULT_CODEC, quality, affine)]
+    return [partial(_code, codes, codec, quality, affine)]
 
 
-def _textures(basis: Basis, codec: str | None, quality: int, one_unit: bool) -> list[Callable[[], PictureFile]]:
-    kept = _kept(basis, codec)
-    if kept:
-        return kept
+def _textures(basis: Basis, codec: str, quality: int, one_unit: bool) -> list[Callable[[], PicturePayload]]:
     scale, zero = quantise.basis_scale(basis, one_unit)
-    name = codec or pictures.DEFAULT_CODEC
-    return [partial(_code_texture, basis, k, scale, zero, name, quality) for k in range(basis.count)]
+    return [partial(_code_texture, basis, k, scale, zero, codec, quality) for k in range(basis.count)]
 
 
-def _kept(owner: Basis | Plane, codec: str | None) -> list[Callable[[], PictureFile]]:
-    """The files that there are already, unless a codec was asked for."""
-    return [partial(_itself, file) for file in (files_of(owner) or ()) if codec is None]
-
-
-def _itself(file: PictureFile) -> PictureFile:
-    return file
+def _itself(picture: PicturePayload) -> PicturePayload:
+    return picture
 
 
 def _harmonised(scene: Scene, plane: Plane) -> bool:
@@ -95,13 +114,13 @@ def _harmonised(scene: Scene, plane: Plane) -> bool:
     return scene.colours is not None and plane is scene.planes[0]
 
 
-def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: Affine | None) -> PictureFile:
-    return PictureFile(pictures.encode(codes, codec, quality), pictures.MIME_TYPES[codec], 8, 1, affine)
+def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: Affine | None) -> PicturePayload:
+    return PicturePayload(codec, encode(codes, codec, quality), 1, affine)
 
 
 def _code_texture(
     basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32], codec: str, quality: int
-) -> PictureFile:
+) -> PicturePayload:
     affine = Affine(np.array(shortest(scale[index])), np.array(shortest(zero[index])))
     return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
@@ -118,8 +137,8 @@ def _preview(scene: Scene, coded: int) -> bytes:
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
     if scene.to_rgb is None:
-        return pictures.encode_preview(codes)
-    return affordable((pictures.encode_preview(codes, *small) for small in SMALL_PREVIEWS), len, coded)
+        return encode_preview(stacked(codes))
+    return affordable((encode_preview(stacked(codes), *small) for small in SMALL_PREVIEWS), len, coded)
 
 
 def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

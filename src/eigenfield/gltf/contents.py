@@ -14,9 +14,12 @@ from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, front, json_bytes, pa
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.layout import Layout, find_extension
 from eigenfield.gltf.read import naming, open_layout, read_scene
+from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
 from eigenfield.runtime.files import atomic_writer
+
+PARTS = ("mean", "textures", "weights", "mesh", "residual")  # what `parts` counts apart
 
 
 def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
@@ -41,24 +44,18 @@ def _parts(document: Document) -> dict[str, int]:
     root = document.root
     extension = root["extensions"][limits.EXTENSION]
     primitive = root["meshes"].at(0)["primitives"].at(0)
-    planes = list(extension["planes"].items(limits.MAX_PLANES))
-    bases = [basis for plane in planes for basis in plane["bases"].items(limits.MAX_BASES)]
-    pictures = [root["images"].at(0)["bufferView"]] if root.has("images") else []
-    means = [plane["mean"] for plane in planes if plane.has("mean")]
-    pictures += [mean["bufferView"] for mean in means]
-    pictures += [mean["precision"]["bufferView"] for mean in means if mean.has("precision")]
-    textures = [t["bufferView"] for basis in bases for t in basis["textures"].items(limits.MAX_COMPONENTS)]
-    textures = [reference for reference in textures if not document.cut_off(reference)]
-    weights = [_view_of(document, basis["weights"]) for basis in bases if basis.has("weights")]
-    weights += [basis["codedWeights"] for basis in bases if basis.has("codedWeights")]
     attributes = [*(primitive["attributes"][key] for key in ("POSITION", "TEXCOORD_0")), primitive["indices"]]
-    mesh = [_view_of(document, reference) for reference in attributes]
-    if extension.has("mesh"):
-        mesh.append(extension["mesh"]["bufferView"])
-    residual = [extension["residual"]["bufferView"]] if extension.has("residual") and not document.glb.missing else []
+    found: dict[str, list[Value]] = {name: [] for name in PARTS}
+    found["mean"] += [root["images"].at(0)["bufferView"]] if root.has("images") else []
+    found["mesh"] += [_view_of(document, reference) for reference in attributes]
+    for plane in extension["planes"].items(limits.MAX_PLANES):
+        for basis in plane["bases"].items(limits.MAX_BASES):
+            found["weights"] += [_view_of(document, basis["weights"])] if basis.has("weights") else []
+    for place, reference in streams(extension):
+        if place.part in found and not document.cut_off(reference):
+            found[place.part].append(reference)
     counted: set[int] = set()
     made = {"total": document.glb.size}
-    found = {"mean": pictures, "textures": textures, "weights": weights, "mesh": mesh, "residual": residual}
     for name, references in found.items():
         views = {view.index: view.length for view in map(document.view, references) if view.index not in counted}
         counted |= views.keys()

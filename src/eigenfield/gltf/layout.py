@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf.document import Document
@@ -31,6 +32,7 @@ from eigenfield.gltf.layout_geometry import (
 )
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
+from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quoted
 
 _KEYS = {
@@ -41,10 +43,12 @@ _KEYS = {
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """A whole file; a part that could not be read is None (only while validating)."""
+    """A whole file; a part that could not be read is None (only while validating). mesh_payload: its stream, None where
+    it is plain."""
 
     version: str
     mesh: Mesh | None
+    mesh_payload: Payload | None
     planes: tuple[PlaneLayout, ...] | None
     cameras: CameraList | None
     view_plane: ViewPlane | None
@@ -72,7 +76,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     if extension is None:
         return None
     version = extension["version"].text()
-    if version not in limits.VERSIONS:
+    if minor(version) > LATEST:
         findings.note(
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )
@@ -84,7 +88,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         findings.note(
             "warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean"
         )
-    mesh = cameras = planes = view_plane = triangles = reference = to_rgb = residual = None
+    mesh = mesh_payload = cameras = planes = view_plane = triangles = reference = to_rgb = residual = None
     settings: Mapping[str, Any] = {}
     scores: Mapping[str, Any] = {}
     generator = ""
@@ -95,7 +99,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     with findings.part():
         mesh = read_mesh(document)  # of a coded one the coarse one, which is checked too
         if extension.has("mesh"):
-            mesh = read_coded_mesh(document, extension["mesh"])
+            mesh, mesh_payload = read_coded_mesh(document, extension["mesh"])
     with findings.part():
         cameras = read_cameras(document, extension["cameras"])
     with findings.part():
@@ -123,7 +127,8 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     with findings.part():
         generator = extension["generator"].text() if extension.has("generator") else ""
     return Layout(
-        version, mesh, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings, scores, generator
+        version, mesh, mesh_payload, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings,
+        scores, generator,
     )  # fmt: skip
 
 
@@ -154,7 +159,7 @@ def find_extension(document: Document) -> Value:
         )
     if extension.has("needs"):
         for need in extension["needs"].items(limits.MAX_VIEWS):
-            if need.text() not in limits.FEATURES:
+            if need.text() not in FEATURES:
                 raise FormatError(
                     "needs",
                     f"needs the unknown feature {quoted(need.value)}",

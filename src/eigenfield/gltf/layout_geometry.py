@@ -9,24 +9,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.arrays.names import decode_names
+from eigenfield.coding.codecs import CODECS
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import keep_cameras, keep_stream
+from eigenfield.core.payloads import Payload
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document, all_finite
 from eigenfield.gltf.name_pattern import read_pattern
+from eigenfield.gltf.streams import read_stream
 from eigenfield.gltf.strict_json import Value, printable, quoted
 
 
 @dataclass(frozen=True, eq=False)
 class CameraList:
-    """colours: (Nc, 2, 3) float32 gains and offsets, None where the file has none."""
+    """Every camera of a file.
+
+    Attributes:
+        names: Nc.
+        cameras: Nc.
+        held_out: (Nc,) bool.
+        colours: (Nc, 2, 3) float32 gains and offsets, None where the file has none.
+        payload: Their intrinsics and poses, None where they are plain.
+    """
 
     names: tuple[str, ...]
     cameras: tuple[Camera, ...]
     held_out: NDArray[np.bool_]
     colours: NDArray[np.float32] | None
+    payload: Payload | None
 
     @property
     def encoded(self) -> int:
@@ -55,21 +65,18 @@ def read_mesh(document: Document) -> Mesh:
     return Mesh(vertices, indices.astype(np.int32).reshape(-1, 3), uv)
 
 
-def read_coded_mesh(document: Document, entry: Value) -> Mesh:
-    """The proxy itself, where meshes[0] is a coarse one for other viewers; its stream is kept beside it. FormatError:
-    `coded-*`, `view-*`."""
-    from eigenfield.coding.mesh.coder import decode_mesh  # numba: most files need none
-
-    stream = bytes(document.data(entry["bufferView"]))
-    mesh = decode_mesh(stream, entry.where)
+def read_coded_mesh(document: Document, entry: Value) -> tuple[Mesh, Payload]:
+    """The proxy itself, where meshes[0] is a coarse one for other viewers, and its stream. FormatError: `coded-*`,
+    `codec-unknown`, `view-*`."""
+    stream = read_stream(document, entry, "mesh")
+    mesh: Mesh = CODECS[stream.codec].decode(stream.data, entry.where)
     if not len(mesh.faces):
         entry.fail("coded-damaged", "a mesh without faces")
-    keep_stream(mesh, stream)
-    return mesh
+    return mesh, stream
 
 
 def read_cameras(document: Document, entry: Value) -> CameraList:
-    """FormatError: `camera-*`, `accessor-*`."""
+    """FormatError: `camera-*`, `accessor-*`, `coded-*`, `codec-unknown`."""
     names = _read_names(document, entry)
     count = len(names)
     held_out = np.zeros(count, bool)
@@ -80,11 +87,9 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
             entry["heldOut"].fail("camera-held-out", "a camera is named twice")
     if held_out.all():
         entry["heldOut"].fail("camera-held-out", "every camera is held out")
-    stream = bytes(document.data(entry["coded"])) if entry.has("coded") else None
+    stream = read_stream(document, entry["coded"], "cameras") if entry.has("coded") else None
     if stream is not None:
-        from eigenfield.coding.arrays.cameras import decode_cameras  # as above
-
-        intrinsics, matrices = decode_cameras(stream, entry["coded"].where)
+        intrinsics, matrices = CODECS[stream.codec].decode(stream.data, entry["coded"].where)
         poses = matrices.reshape(len(matrices), 12)
         if len(poses) != count:
             entry["coded"].fail("camera-count", f"{len(poses)} cameras in the stream, {count} names")
@@ -98,15 +103,13 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
         sizes = _table(document, entry["sizes"], UINT32, count, 2).astype(np.int64)
     _check_calibration(entry, names, intrinsics, poses.reshape(count, 3, 4), sizes)
     cameras = cameras_of(intrinsics, poses.reshape(count, 3, 4), sizes)
-    if stream is not None:
-        keep_cameras(cameras, stream)
     colours = None
     if entry.has("colour"):
         colours = _table(document, entry["colour"], FLOAT, count, 6).reshape(count, 2, 3)
         gain, offset = colours[:, 0], colours[:, 1]
         good = (gain >= 1 / limits.MAX_GAIN) & (gain <= limits.MAX_GAIN) & (np.abs(offset) <= limits.MAX_OFFSET)
         _refuse(entry, names, "colour", ~good.all(axis=1), "has a gain or an offset outside their range")
-    return CameraList(tuple(names), cameras, held_out, colours)
+    return CameraList(tuple(names), cameras, held_out, colours, stream)
 
 
 def _read_names(document: Document, entry: Value) -> list[str]:
@@ -115,7 +118,8 @@ def _read_names(document: Document, entry: Value) -> list[str]:
     listed = isinstance(given.value, list)
     if entry.has("codedNames"):
         count = given["count"].integer(1, limits.MAX_CAMERAS)
-        names = decode_names(bytes(document.data(given["bufferView"])), count, given.where)
+        stream = read_stream(document, given, "names")
+        names: list[str] = CODECS[stream.codec].decode(stream.data, count, given.where)
         if max(map(len, names)) > limits.MAX_NAME:
             given.fail("coded-damaged", f"names of more than {limits.MAX_NAME} characters")
     elif entry.has("pattern"):
@@ -197,10 +201,9 @@ def read_triangles(document: Document, entry: Value, cameras: CameraList | None)
     most = limits.MAX_CAMERAS if cameras is None else cameras.encoded
     found: NDArray[Any]
     if entry.has("codedTriangles"):
-        from eigenfield.coding.arrays.triangles import decode_triangles  # as above
-
         given = entry["codedTriangles"]
-        found = decode_triangles(bytes(document.data(given)), given.where)
+        stream = read_stream(document, given, "triangles")
+        found = CODECS[stream.codec].decode(stream.data, given.where)
     elif entry.has("triangles"):
         given = entry["triangles"]
         flat = document.array(given, "SCALAR", (UINT16, UINT32), 6 * limits.MAX_CAMERAS)

@@ -9,49 +9,71 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import pictures_8bit as pictures
-from eigenfield.coding.pictures import pictures_10bit as deep
+from eigenfield.coding.codecs import CODECS
+from eigenfield.coding.pictures import stacking
+from eigenfield.coding.pictures.stacking import PICTURES, codec_of
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import Affine
+from eigenfield.core.payloads import Affine, Payload, PicturePayload
 from eigenfield.gltf.document import FLOAT, Document, all_finite
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
-from eigenfield.gltf.strict_json import Value
+from eigenfield.gltf.streams import codec_named, read_stream
+from eigenfield.gltf.strict_json import Value, quoted
+
+MOST_BITS = max(codec.bits for codec in PICTURES.values())
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
     """Codes in the file.
 
-    width, height, channels: of the array that it decodes to.
-    affine: the way back to numbers, per channel (of every texture in it); None: code / 255.
-    bits: of the codes, 8 or 10. count: textures in it, one below the other.
-    precision: of a mean, the picture of how finely each place of it is coded; None: all of it alike.
+    Attributes:
+        data: The picture file.
+        codec: Its name in `CODECS`.
+        width, height, channels: Of the array that it decodes to.
+        affine: The way back to numbers, per channel (of every texture in it); None: code / 255.
+        where: Its place in the JSON.
+        count: Textures in it, one below the other.
+        precision: Of a mean, the picture of how finely each place of it is coded; None: all of it alike.
     """
 
     data: memoryview
-    mime: str
+    codec: str
     width: int
     height: int
     channels: int
     affine: Affine | None
     where: str
-    bits: int = 8
     count: int = 1
     precision: Picture | None = None
 
+    @property
+    def mime(self) -> str:
+        return PICTURES[self.codec].mime
+
+    @property
+    def bits(self) -> int:
+        """Of a code."""
+        return PICTURES[self.codec].bits
+
+    @property
+    def payload(self) -> PicturePayload:
+        """What a scene keeps of it."""
+        precision = None
+        if self.precision is not None:
+            precision = Payload(self.precision.codec, bytes(self.precision.data))
+        return PicturePayload(self.codec, bytes(self.data), self.count, self.affine, precision)
+
     def decode(self) -> NDArray[Any]:
-        """(count, height, width, channels) uint8, of 10 bits uint16. FormatError: see `pictures.decode`."""
+        """(count, height, width, channels) uint8, of 10 bits uint16. FormatError: see `stacking.decode`."""
         size = (self.width, self.height, self.channels)
-        if self.count == 1 and self.bits == 8:
-            return pictures.decode(self.data, self.mime, *size, self.where)[None]
-        return pictures.decode_stack(self.data, self.mime, *size, self.count, self.bits, self.where)
+        return stacking.decode(self.data, self.codec, *size, self.where, self.count)
 
 
 @dataclass(frozen=True, eq=False)
 class BasisLayout:
     """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
-    part, None: all of it. corner: row and column in it. stream: the weights' coded form, None where they are plain.
+    part, None: all of it. corner: row and column in it. payload: the coded weights, None where they are plain.
     lost: textures behind the end of a file that is cut off."""
 
     size: tuple[int, int]
@@ -59,7 +81,7 @@ class BasisLayout:
     weights: NDArray[np.float32]
     grid: tuple[int, int] | None = None
     corner: tuple[int, int] = (0, 0)
-    stream: bytes | None = None
+    payload: Payload | None = None
     lost: int = 0
 
     @property
@@ -79,7 +101,7 @@ class PlaneLayout:
 def read_planes(
     document: Document, entry: Value, cameras: CameraList | None, findings: Findings
 ) -> tuple[PlaneLayout, ...]:
-    """FormatError: `plane-*`, `decoded-size`, `weights-*`, `view-*`."""
+    """FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`."""
     planes = tuple(
         _read_plane(document, plane, index, cameras, findings)
         for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
@@ -107,7 +129,7 @@ def _read_plane(
     channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
     if entry.has("mean"):
         size = _size(entry["mean"]["size"], channels)
-        mean = _picture(document, entry["mean"], size, channels, 1, bare=True)
+        mean = _picture(document, entry["mean"], "mean", size, channels, 1)
         if entry["mean"].has("precision"):
             mean = replace(mean, precision=_precision(document, entry["mean"]["precision"], mean))
     elif index == 0 and channels in (1, 3):
@@ -126,9 +148,9 @@ def read_image(document: Document, channels: int) -> Picture:
     image = document.root["images"].at(0)
     if not image.has("bufferView"):
         image.fail("plane-mean", "the picture lies in another file")
-    data, mime = document.data(image["bufferView"]), image["mimeType"].text()
-    width, height = pictures.dimensions(data, mime, image.where)
-    return Picture(data, mime, width, height, channels, None, image.where)
+    data, codec = document.data(image["bufferView"]), _codec_of(image, 8)
+    width, height = stacking.dimensions(data, codec, image.where)
+    return Picture(data, codec, width, height, channels, None, image.where)
 
 
 def _read_basis(
@@ -146,14 +168,14 @@ def _read_basis(
             if lost or document.cut_off(texture["bufferView"]):
                 lost += count
                 continue
-            textures.append(_picture(document, texture, size, channels, count, bare=False))
+            textures.append(_picture(document, texture, "textures", size, channels, count))
     rows = 0 if cameras is None else cameras.encoded
     weights = np.zeros((rows, 0), np.float32)
-    stream = None
+    stream: Payload | None = None
     if total:
         with findings.part():
             if entry.has("codedWeights"):
-                stream = bytes(document.data(entry["codedWeights"]))
+                stream = read_stream(document, entry["codedWeights"], "weights")
                 weights = _decode_weights(stream, entry["codedWeights"], rows, total)
             else:
                 weights = _read_weights(document, entry["weights"], rows, total)
@@ -175,10 +197,8 @@ def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None
     return (rows, columns), (row, column)
 
 
-def _decode_weights(stream: bytes, entry: Value, rows: int, count: int) -> NDArray[np.float32]:
-    from eigenfield.coding.arrays.weights import decode_weights  # numba: most files need none
-
-    weights = decode_weights(stream, entry.where)
+def _decode_weights(stream: Payload, entry: Value, rows: int, count: int) -> NDArray[np.float32]:
+    weights: NDArray[np.float32] = CODECS[stream.codec].decode(stream.data, entry.where)
     if rows == 0:  # only while validating a file whose cameras are damaged
         return np.zeros((0, count), np.float32)
     if weights.shape != (rows, count) or not all_finite(weights):
@@ -200,34 +220,47 @@ def _read_weights(document: Document, reference: Value, rows: int, count: int) -
 
 def _size(entry: Value, channels: int) -> tuple[int, int]:
     width, height = (item.integer(1, limits.MAX_SIDE) for item in entry.items(2, 2))
-    w, h = pictures.picture_size(width, height, channels)
+    w, h = stacking.picture_size(width, height, channels)
     if h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
         entry.fail("picture-limit", f"a picture of {w}x{h}, {limits.MAX_TEXELS} texels are allowed")
     return width, height
 
 
-def _picture(
-    document: Document, entry: Value, size: tuple[int, int], channels: int, count: int, *, bare: bool
-) -> Picture:
-    """bare: scale and zero may be absent."""
-    data, mime = document.data(entry["bufferView"]), entry["mimeType"].text()
-    bits = entry["bits"].integer(8, deep.BITS) if entry.has("bits") else 8
-    if bits not in (8, deep.BITS) or (bits != 8 and mime != deep.MIME):
-        entry["bits"].fail("picture-type", f"{bits} bits in a picture of type {mime}")
+def _picture(document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int) -> Picture:
+    data, bits = document.data(entry["bufferView"]), entry["bits"].integer(8, MOST_BITS) if entry.has("bits") else 8
+    usual = _codec_of(entry, bits)
+    codec = codec_named(entry, place) or usual
+    if (PICTURES[codec].mime, PICTURES[codec].bits) != (PICTURES[usual].mime, bits):
+        entry["codec"].fail(
+            "picture-type", f"{codec} is no codec of {bits} bits in a picture of type {entry['mimeType'].value}"
+        )
     affine = None
-    if not bare or bits != 8 or entry.has("scale") or entry.has("zero"):
+    if place != "mean" or PICTURES[codec].bits != 8 or entry.has("scale") or entry.has("zero"):
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
-    pictures.check_header(data, mime, *size, channels, entry.where, count, bits)
-    return Picture(data, mime, *size, channels, affine, entry.where, bits, count)
+    stacking.check_picture(data, codec, *size, channels, entry.where, count)
+    return Picture(data, codec, *size, channels, affine, entry.where, count)
+
+
+def _codec_of(entry: Value, bits: int) -> str:
+    """The usual codec of pictures of an entry's type. FormatError `picture-type`."""
+    mime = entry["mimeType"].text()
+    found = codec_of(mime, bits)
+    if found is None and bits != 8:
+        entry["bits"].fail("picture-type", f"{bits} bits in a picture of type {mime}")
+    if found is None:
+        entry.fail("picture-type", f"pictures of type {mime!r} are not read")
+    return found
 
 
 def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
     if mean.bits == 8:
         entry.fail("picture-type", "only pictures of 10 bits have a precision")
     width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
-    data, mime = document.data(entry["bufferView"]), pictures.MIME_TYPES["png"]
-    pictures.check_header(data, mime, width, height, 1, entry.where)
-    return Picture(data, mime, width, height, 1, None, entry.where)
+    data, codec = document.data(entry["bufferView"]), "png"
+    if codec_named(entry, "precision") != codec:
+        entry["codec"].fail("codec-unknown", f"a precision is a {codec}, not {quoted(entry['codec'].value)}")
+    stacking.check_picture(data, codec, width, height, 1, entry.where)
+    return Picture(data, codec, width, height, 1, None, entry.where)
 
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:

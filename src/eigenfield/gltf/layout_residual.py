@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from eigenfield.coding import limits
+from eigenfield.coding.codecs import CODECS
 from eigenfield.coding.pictures.pictures_10bit import SMALLEST
+from eigenfield.coding.video.av1 import Planes
 from eigenfield.core.scene import Residual
 from eigenfield.gltf.document import UINT16, UINT32, Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
+from eigenfield.gltf.streams import read_stream
 from eigenfield.gltf.strict_json import Value
 
 
@@ -18,7 +23,7 @@ def read_residual(
 ) -> Residual | None:
     """The residual, its film not decoded; None where there is none, or where the file is cut off in it.
 
-    FormatError: `residual-*`, `view-*`, `accessor-*`, `json-*`.
+    FormatError: `residual-*`, `codec-unknown`, `view-*`, `accessor-*`, `json-*`.
     """
     if not extension.has("residual"):
         return None
@@ -31,7 +36,7 @@ def read_residual(
     if min(luma, chroma) <= 0:
         entry["scale"].fail("residual-scale", "a scale is not positive")
     full, smooth = (entry.has(key) and entry[key].boolean() for key in ("full", "smooth"))
-    film = bytes(document.data(entry["bufferView"]))
+    film = read_stream(document, entry, "residual")
     if cameras is None:  # only while validating a file whose cameras are damaged
         return None
     sizes = [(one.height, one.width) for one, held in zip(cameras.cameras, cameras.held_out, strict=True) if not held]
@@ -47,4 +52,11 @@ def read_residual(
         order = document.array(entry["order"], "SCALAR", (UINT16, UINT32), limits.MAX_CAMERAS).astype(np.int64)
         if not np.array_equal(np.sort(order), np.arange(len(sizes))):
             entry["order"].fail("residual-order", f"is no order of {len(sizes)} encoded cameras")
-    return Residual(film, (rows, columns), order, (luma, chroma), full, smooth)
+    return Residual(film.data, (rows, columns), order, (luma, chroma), full, smooth, film.codec)
+
+
+def residual_frames(residual: Residual) -> Iterator[Planes]:
+    """The frames of a residual, in its order. FormatError `residual-damaged`."""
+    where = f"/extensions/{limits.EXTENSION}/residual"
+    frames: Iterator[Planes] = CODECS[residual.codec].decode(residual.film, residual.frame, len(residual.order), where)
+    return frames

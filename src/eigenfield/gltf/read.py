@@ -5,8 +5,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import os
-import weakref
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,21 +14,30 @@ import numpy as np
 from eigenfield.coding import limits
 from eigenfield.coding.pictures.precision import spread_precision
 from eigenfield.coding.pictures.quantise import mean_values
-from eigenfield.coding.video.av1 import residual_frames
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import PictureFile, keep_files, keep_stream
-from eigenfield.core.scene import Basis, Plane, Scene
+from eigenfield.core.payloads import (
+    Coded,
+    Payload,
+    Payloads,
+    cameras_key,
+    mean_key,
+    mesh_key,
+    preview_key,
+    textures_key,
+    weights_key,
+)
+from eigenfield.core.scene import Basis, EncodedScene, Plane, Scene
 from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
 from eigenfield.gltf.layout import Layout, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
 from eigenfield.gltf.layout_planes import BasisLayout, Picture, PlaneLayout, read_image
+from eigenfield.gltf.layout_residual import residual_frames
+from eigenfield.gltf.streams import streams
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.format")
-
-_bytes: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # of scenes that came from a file
 
 
 @contextlib.contextmanager
@@ -58,36 +66,30 @@ def _layout_of(data: bytes) -> tuple[Document, Layout]:
     return document, layout
 
 
-def load(path: str | os.PathLike[str]) -> Scene:
-    """Read a scene: float32 means, uint8 textures with their scale and zero.
+def load(path: str | os.PathLike[str]) -> EncodedScene:
+    """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and what they were coded to.
 
     Raises FormatError (a stable `code`, and `where`) for anything that is not as docs/format.md says; limits are
     checked before memory is taken. Never another exception for what is in the file.
     """
-    return _read(path, pictures=True)
+    with naming(path):
+        return read_scene(read_file(Path(path)))
 
 
-def outline(path: str | os.PathLike[str]) -> Scene:
-    """A scene without its planes: checked as `load` does, but no picture is decoded. Raises FormatError."""
-    return _read(path, pictures=False)
-
-
-def read_scene(data: bytes) -> Scene:
+def read_scene(data: bytes) -> EncodedScene:
     """The scene that a file of these bytes holds. Raises FormatError."""
     return _scene_of(data, pictures=True)
 
 
-def file_bytes(scene: Scene) -> bytes | None:
-    """The bytes of the file that `scene` was read from, as they were then; None if it came from no file."""
-    return _bytes.get(scene)
-
-
-def _read(path: str | os.PathLike[str], pictures: bool) -> Scene:
+def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
+    """A scene without its planes, and the bytes of its file: checked as `load` does, but no picture is decoded. Raises
+    FormatError."""
     with naming(path):
-        return _scene_of(read_file(Path(path)), pictures)
+        data = read_file(Path(path))
+        return _scene_of(data, pictures=False), data
 
 
-def _scene_of(data: bytes, pictures: bool) -> Scene:
+def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
     document, layout = _layout_of(data)
     bases = [basis for plane in layout.planes or () for basis in plane.bases]
     if layout.lost:
@@ -98,18 +100,33 @@ def _scene_of(data: bytes, pictures: bool) -> Scene:
         )  # fmt: skip
     elif document.glb.missing:
         log.warning("the file ends within its residual: captured views go without (copy or download it again)")
-    planes = tuple(_decode_plane(plane) for plane in layout.planes or ()) if pictures else ()
-    scene = _scene(layout, planes)
-    _bytes[scene] = data
-    return scene
+    planes = [_decode_plane(plane) for plane in layout.planes or ()] if pictures else []
+    return _scene(layout, planes, _preview(document, layout))
 
 
-def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
+def _preview(document: Document, layout: Layout) -> Payload | None:
+    """The picture for other viewers; None where it is a mean itself, or is none that they show."""
+    with contextlib.suppress(FormatError):
+        image = read_image(document, 3)
+        if image.codec in ("png", "jpeg") and image.where not in [plane.mean.where for plane in layout.planes or ()]:
+            return Payload(image.codec, bytes(image.data))
+    return None
+
+
+def _scene(layout: Layout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
     assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
-    return Scene(
+    payloads = Payloads.joined(plane.payloads for plane in planes)
+    if layout.mesh_payload is not None:
+        payloads |= {mesh_key(layout.mesh): [layout.mesh_payload]}
+    if layout.cameras.payload is not None:
+        payloads |= {cameras_key(layout.cameras.cameras): [layout.cameras.payload]}
+    if planes and preview is not None:
+        means = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
+        payloads |= {preview_key(means, layout.to_rgb, layout.cameras.colours is not None): [preview]}
+    return EncodedScene(
         mesh=layout.mesh,
-        planes=planes,
+        planes=tuple(plane.value for plane in planes),
         names=layout.cameras.names,
         cameras=layout.cameras.cameras,
         held_out=layout.cameras.held_out,
@@ -122,25 +139,20 @@ def _scene(layout: Layout, planes: tuple[Plane, ...]) -> Scene:
         colours=layout.cameras.colours,
         to_rgb=layout.to_rgb,
         residual=layout.residual,
+        payloads=payloads,
     )
 
 
-def _decode_plane(plane: PlaneLayout) -> Plane:
+def _decode_plane(plane: PlaneLayout) -> Coded[Plane]:
     mean = mean_values(plane.mean.decode()[0], plane.mean.affine)
     if plane.mean.precision is not None:
         mean /= spread_precision(plane.mean.precision.decode()[0, ..., 0], *mean.shape[:2])
-    bases = tuple(_decode_basis(basis, plane.mean.channels) for basis in plane.bases)
-    made = Plane(mean, bases)
-    keep_files(made, [_file(plane.mean)])
-    return made
+    bases = [_decode_basis(basis, plane.mean.channels) for basis in plane.bases]
+    payloads = Payloads.joined(basis.payloads for basis in bases) | {mean_key(mean): [plane.mean.payload]}
+    return Coded(Plane(mean, tuple(basis.value for basis in bases)), payloads)
 
 
-def _file(picture: Picture) -> PictureFile:
-    precision = None if picture.precision is None else bytes(picture.precision.data)
-    return PictureFile(bytes(picture.data), picture.mime, picture.bits, picture.count, picture.affine, precision)
-
-
-def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
+def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
     width, height = basis.size
     deep = any(picture.bits > 8 for picture in basis.textures)
     starts = np.cumsum([0, *(picture.count for picture in basis.textures)])
@@ -156,11 +168,12 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Basis:
             zero[part] = picture.affine.zero.reshape(-1, channels)
 
     parallel_map(decode, range(len(basis.textures)))
-    made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
-    keep_files(made, [_file(picture) for picture in basis.textures])
-    if basis.stream is not None:
-        keep_stream(made, basis.stream)
-    return made
+    payloads = Payloads()
+    if basis.textures:
+        payloads |= {textures_key(textures, scale, zero): [picture.payload for picture in basis.textures]}
+    if basis.payload is not None:
+        payloads |= {weights_key(basis.weights): [basis.payload]}
+    return Coded(Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner), payloads)
 
 
 def validate(path: str | os.PathLike[str]) -> list[Finding]:
@@ -238,17 +251,16 @@ def _check_bounds(document: Document, layout: Layout, findings: Findings) -> Non
                 findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
 
 
-_REFERENCES = ("bufferView", "coded", "codedTriangles", "codedWeights")  # keys that name a buffer view
-
-
 def _check_use(document: Document, findings: Findings) -> None:
     """Buffer views that nothing names: bytes without use."""
-    used: set[int] = set()
+    extension = document.root["extensions"][limits.EXTENSION]
+    used = {reference.value for _, reference in streams(extension) if isinstance(reference.value, int)}
     todo = [document.glb.json]
     while todo:
         item = todo.pop()
         if isinstance(item, dict):
-            used |= {item[key] for key in _REFERENCES if isinstance(item.get(key), int)}
+            if isinstance(item.get("bufferView"), int):
+                used.add(item["bufferView"])
             todo.extend(item.values())
         elif isinstance(item, list):
             todo.extend(item)

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from eigenfield.coding import limits
-from eigenfield.coding.pictures import pictures_8bit as pictures
+from eigenfield.coding.pictures.stacking import picture_size
 from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.strict_json import printable
@@ -24,7 +24,7 @@ def check_writable(scene: Scene, path: Path | None) -> None:
         if channels > limits.MAX_CHANNELS:
             refuse(f"{channels} channels")
         for height, width in [plane.mean.shape[:2], *(basis.textures.shape[1:3] for basis in plane.bases)]:
-            w, h = pictures.picture_size(width, height, channels)
+            w, h = picture_size(width, height, channels)
             if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
                 refuse(f"a picture of {w}x{h}")
     bases = [basis for plane in scene.planes for basis in plane.bases]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -11,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.arrays.names import code_names
-from eigenfield.coding.pictures import pictures_8bit as pictures
+from eigenfield.coding.codecs import CODECS, encoder
+from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, PICTURES, check_codec, dimensions
 from eigenfield.core.errors import OutputError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.payloads import PictureFile, cameras_stream, stream_of
+from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Plane, Residual, Scene
 from eigenfield.core.version import __version__
@@ -23,14 +24,18 @@ from eigenfield.gltf import strict_json
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.coarse import shown_mesh
-from eigenfield.gltf.coded_pictures import Coded, CodedPlane, code_pictures, shortest
+from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
 from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.gltf.findings import Findings
+from eigenfield.gltf.kept import Kept, kept_payloads
 from eigenfield.gltf.layout import read_layout
 from eigenfield.gltf.name_pattern import name_pattern
+from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
 from eigenfield.runtime.files import atomic_writer, refuse_existing
+
+log = logging.getLogger("eigenfield.format")
 
 QUALITY = 70  # of the eigen textures, for avif
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
@@ -48,37 +53,46 @@ def save(
 ) -> None:
     """Write `scene` as a .glb, atomically.
 
-    codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy). Without codec and quality what is coded
-    already (by a fit, or read from a file) is kept as it is, and the rest becomes AVIF.
+    Parts of an `EncodedScene` whose content has not changed since they were coded keep their bytes. One line of the log
+    says which parts are coded anew, and what that costs; as a warning where the file grows by it.
+
+    codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy), for all pictures. Without codec and quality
+    those that are coded already (by a fit, or read from a file) are kept as they are, and the rest becomes AVIF.
     quality: 0..100 for avif, QUALITY unless said; the mean is coded finer (MEAN_SHARE).
     Raises OutputError (`output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...) and OptionError (`codec`,
     `codec-missing`, `quality`), and FormatError for a scene that is inconsistent in itself, before anything is written.
     """
     path = Path(path)
     refuse_existing(path, overwrite)
-    blocks = _blocks(scene, codec, quality, progress, path)
+    blocks, anew = _blocks(scene, codec, quality, progress, path)
     with atomic_writer(path, overwrite=overwrite) as file:
         for block in blocks:
             file.write(block)
+    if anew:
+        grows = sum(now - before for now, before in anew.values()) > 0
+        parts = ", ".join(f"{part} ({now:,} bytes, it had {before:,})" for part, (now, before) in anew.items())
+        log.log(logging.WARNING if grows else logging.INFO, "%s: coded anew: %s", path, parts)
 
 
 def encode_scene(
     scene: Scene, *, codec: str | None = None, quality: int | None = None, progress: Progress | None = None
 ) -> bytes:
     """The whole .glb in memory; options and errors as `save`. The same bytes at any number of threads."""
-    return b"".join(_blocks(scene, codec, quality, progress, None))
+    return b"".join(_blocks(scene, codec, quality, progress, None)[0])
 
 
 def _blocks(
     scene: Scene, codec: str | None, quality: int | None, progress: Progress | None, path: Path | None
-) -> list[bytes]:
+) -> tuple[list[bytes], dict[str, tuple[int, int]]]:
+    """The pieces of the file; and of each part that was coded anew since it has changed, its bytes now and before."""
     if codec is None and quality is not None:
-        codec = pictures.DEFAULT_CODEC
-    pictures.check_codec(codec or pictures.DEFAULT_CODEC, quality)
+        codec = DEFAULT_CODEC
+    check_codec(codec or DEFAULT_CODEC, quality)
     check_writable(scene, path)
-    coded = code_pictures(scene, codec, QUALITY if quality is None else quality, progress)
+    kept = kept_payloads(scene)
+    coded = code_pictures(scene, kept, codec, QUALITY if quality is None else quality, progress)
     buffer = Buffer()
-    gltf = _gltf(scene, buffer, coded)
+    gltf = _gltf(scene, buffer, coded, kept)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
         raise OutputError(
@@ -90,7 +104,9 @@ def _blocks(
     head = front(text, CHUNK.size + buffer.length, path)
     binary = b"".join(buffer.parts)
     check_readable(text, binary)
-    return [head, CHUNK.pack(buffer.length, BINARY_CHUNK), binary]
+    sizes = _plain_sizes(scene) | (coded.sizes if codec is None else {})
+    anew = {part: (sizes[part], before) for part, before in kept.lost.items() if part in sizes}
+    return [head, CHUNK.pack(buffer.length, BINARY_CHUNK), binary], anew
 
 
 def check_readable(text: bytes, binary: bytes) -> None:
@@ -99,28 +115,42 @@ def check_readable(text: bytes, binary: bytes) -> None:
     read_layout(Document(written), Findings(strict=True))
 
 
-def _gltf(scene: Scene, buffer: Buffer, coded: Coded) -> dict[str, Any]:
-    """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
-    mesh, poses = stream_of(scene.mesh), cameras_stream(scene.cameras)
-    shown = scene.mesh if mesh is None else shown_mesh(scene.mesh, coded.bytes + len(mesh))
-    primitive = _primitive(shown, buffer, mesh is not None)
-    proxy = {} if mesh is None else {"mesh": {"bufferView": buffer.view(mesh)}}
-    first = coded.planes[0].mean.data if coded.preview is None else coded.preview
-    image = {"bufferView": buffer.view(first), "mimeType": "image/png" if coded.preview is None else "image/jpeg"}
-    planes = [
-        _plane(plane, made, buffer, inline=index > 0 or coded.preview is not None)
-        for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True))
-    ]
-    cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
-    used = {
-        "codedNames": "codedNames" in cameras,
-        "namePattern": "pattern" in cameras,
-        "codedTriangles": "codedTriangles" in view_plane,
-        "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
+def _plain_sizes(scene: Scene) -> dict[str, int]:
+    """Bytes of the parts that are not pictures, as plain numbers."""
+    mesh = scene.mesh
+    assert mesh.uv is not None
+    corner = 2 if _index_type(mesh, False) == UINT16 else 4
+    return {
+        "mesh": 4 * (mesh.vertices.size + mesh.uv.size) + corner * mesh.faces.size,
+        "cameras": 4 * (5 + 12) * len(scene.cameras),
+        **{
+            f"planes[{p}].bases[{b}].weights": 4 * basis.weights.size
+            for p, plane in enumerate(scene.planes)
+            for b, basis in enumerate(plane.bases)
+        },
     }
-    needs = _needs(scene, coded, mesh is not None, poses is not None, used)
+
+
+def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dict[str, Any]:
+    """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
+    mesh, poses = kept.one("mesh"), kept.one("cameras")
+    shown = scene.mesh if mesh is None else shown_mesh(scene.mesh, coded.bytes + len(mesh.data))
+    primitive = _primitive(shown, buffer, mesh is not None)
+    proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
+    if coded.preview is None:
+        image = {"bufferView": buffer.stream(coded.planes[0].mean, "mean"), "mimeType": "image/png"}
+    else:
+        image = {"bufferView": buffer.view(coded.preview.data), "mimeType": PICTURES[coded.preview.codec].mime}
+    planes = []
+    for index, (plane, made) in enumerate(zip(scene.planes, coded.planes, strict=True)):
+        weights = [kept.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
+        planes.append(_plane(plane, made, weights, buffer, inline=index > 0 or coded.preview is not None))
+    cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
+    entries = _by_worth(scene, coded, planes)
+    codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
+    needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes)
     extension: dict[str, Any] = {
-        "version": _version(scene, coded, needs),
+        "version": _version(scene, needs, any(codec_entry(codec, place) for place, codec in codecs)),
         "needs": needs,
         **proxy,
         "planes": planes,
@@ -132,8 +162,8 @@ def _gltf(scene: Scene, buffer: Buffer, coded: Coded) -> dict[str, Any]:
         "scores": dict(scene.scores),
         "generator": scene.generator or f"eigenfield {__version__}",
     }
-    for entry, file in _by_worth(scene, coded, planes):  # last: a file that is still arriving can be drawn
-        entry["bufferView"] = buffer.view(file.data)
+    for entry, picture in entries:  # last: a file that is still arriving can be drawn
+        entry["bufferView"] = buffer.stream(picture, "textures")
     if scene.residual is not None:  # behind all that any view is drawn of: a file that is cut off there loses it alone
         extension["residual"] = _residual(scene.residual, buffer)
     perspective, nodes = _nodes(scene)
@@ -166,7 +196,9 @@ def _gltf(scene: Scene, buffer: Buffer, coded: Coded) -> dict[str, Any]:
     }
 
 
-def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[tuple[dict[str, Any], PictureFile]]:
+def _by_worth(
+    scene: Scene, coded: ScenePictures, planes: list[dict[str, Any]]
+) -> list[tuple[dict[str, Any], PicturePayload]]:
     """The entries of all pictures of eigen textures and their files, so that what takes most squared error off R, G and
     B for its bytes comes first; those of one basis in their order."""
     queues = []
@@ -192,62 +224,74 @@ def _by_worth(scene: Scene, coded: Coded, planes: list[dict[str, Any]]) -> list[
     return found
 
 
-def _version(scene: Scene, coded: Coded, needs: Sequence[str]) -> str:
-    """The first version that has all that the file uses."""
-    if "codedNames" in needs:
-        return limits.VERSION
-    if scene.residual is not None and scene.residual.smooth:
-        return limits.SIXTH
-    if any(plane.mean.precision is not None for plane in coded.planes):
-        return limits.FIFTH
+def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
+    """The first version that has all that the file uses. named: whether a stream names its codec."""
+    found = {FEATURES[need] for need in needs} | {"1.7" if named else "1.0"}
+    if scene.colours is not None:
+        found.add("1.1")
     if scene.residual is not None:
-        return limits.FOURTH
-    return limits.THIRD if needs else limits.FIRST if scene.colours is None else limits.SECOND
+        found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth else "1.0"}
+    return max(found, key=minor)
 
 
 def _primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
     """small: whether indices may have 8 bits, which other viewers read but need not be quick at."""
     assert mesh.uv is not None
-    # the largest index of a type restarts a primitive and may not be used
-    index = UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
     bounds = {"min": shortest(mesh.vertices.min(axis=0)), "max": shortest(mesh.vertices.max(axis=0))}
     return {
         "attributes": {
             "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
             "TEXCOORD_0": buffer.accessor(mesh.uv, FLOAT, "VEC2", _VERTICES),
         },
-        "indices": buffer.accessor(mesh.faces.ravel(), index, "SCALAR", _INDICES),
+        "indices": buffer.accessor(mesh.faces.ravel(), _index_type(mesh, small), "SCALAR", _INDICES),
         "material": 0,
     }
 
 
-def _plane(plane: Plane, coded: CodedPlane, buffer: Buffer, *, inline: bool) -> dict[str, Any]:
-    """A plane's entry without the textures' buffer views; inline: the mean is its own picture, not images[0]."""
+def _index_type(mesh: Mesh, small: bool) -> int:
+    """The largest index of a type restarts a primitive and may not be used."""
+    return UINT8 if small and len(mesh.vertices) < 256 else UINT16 if len(mesh.vertices) < 65_536 else UINT32
+
+
+def _stream(payload: Payload, place: str, buffer: Buffer) -> Any:
+    """The entry of a stream: where it is, and its codec if that is to be said."""
+    index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
+    return index if PLACES[place].bare and not named else {"bufferView": index, **named}
+
+
+def _plane(
+    plane: Plane, coded: PlanePictures, weights: Sequence[Payload | None], buffer: Buffer, *, inline: bool
+) -> dict[str, Any]:
+    """A plane's entry without the textures' buffer views; weights: of each basis, coded; inline: the mean is its own
+    picture, not images[0]."""
     height, width, channels = plane.mean.shape
     made: dict[str, Any] = {"channels": channels}
     if inline:
-        mean: dict[str, Any] = {"bufferView": buffer.view(coded.mean.data), "size": [width, height]}
-        made["mean"] = mean | _picture(coded.mean)
+        mean: dict[str, Any] = {"bufferView": buffer.stream(coded.mean, "mean"), "size": [width, height]}
+        made["mean"] = mean | _picture(coded.mean, "mean")
         if coded.mean.precision is not None:
             made["mean"]["precision"] = _precision(coded.mean.precision, buffer)
     made["bases"] = []
-    for basis, files in zip(plane.bases, coded.bases, strict=True):
+    for basis, files, stream in zip(plane.bases, coded.bases, weights, strict=True):
         entry: dict[str, Any] = {"size": [basis.textures.shape[2], basis.textures.shape[1]]}
         if basis.grid is not None:
             entry |= {"grid": [basis.grid[1], basis.grid[0]], "corner": [basis.corner[1], basis.corner[0]]}
-        stream = stream_of(basis)
         if stream is not None:
-            entry["codedWeights"] = buffer.view(stream)
+            entry["codedWeights"] = _stream(stream, "weights", buffer)
         elif basis.count:
             entry["weights"] = buffer.accessor(basis.weights.ravel(), FLOAT, "SCALAR")
-        entry |= _textures([_picture(file) for file in files])
+        entry |= _textures([_picture(file, "textures") for file in files])
         made["bases"].append(entry)
     return made
 
 
-def _precision(data: bytes, buffer: Buffer) -> dict[str, Any]:
-    size = pictures.dimensions(memoryview(data), pictures.MIME_TYPES["png"], "precision")
-    return {"bufferView": buffer.shared(data), "size": list(size)}
+def _precision(picture: Payload, buffer: Buffer) -> dict[str, Any]:
+    size = dimensions(memoryview(picture.data), picture.codec, "precision")
+    return {
+        "bufferView": buffer.shared(picture, "precision"),
+        "size": list(size),
+        **codec_entry(picture.codec, "precision"),
+    }
 
 
 def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
@@ -262,16 +306,18 @@ def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
     return shared | {"textures": [{"bufferView": -1, **entry} for entry in entries]}
 
 
-def _picture(file: PictureFile) -> dict[str, Any]:
+def _picture(picture: PicturePayload, place: str) -> dict[str, Any]:
     """What a picture's entry says beside where it lies."""
-    made: dict[str, Any] = {"mimeType": file.mime}
-    if file.bits != 8:
-        made["bits"] = file.bits
-    if file.count != 1:
-        made["count"] = file.count
-    if file.affine is not None:
-        made |= {"scale": _repeated(file.affine.scale, file.count), "zero": _repeated(file.affine.zero, file.count)}
-    return made
+    codec = PICTURES[picture.codec]
+    made: dict[str, Any] = {"mimeType": codec.mime}
+    if codec.bits != 8:
+        made["bits"] = codec.bits
+    if picture.count != 1:
+        made["count"] = picture.count
+    if picture.affine is not None:
+        scale, zero = picture.affine.scale, picture.affine.zero
+        made |= {"scale": _repeated(scale, picture.count), "zero": _repeated(zero, picture.count)}
+    return made | codec_entry(picture.codec, place)
 
 
 def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
@@ -289,32 +335,32 @@ def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
         made["smooth"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
-    return made | {"bufferView": buffer.view(residual.film)}
+    return made | _stream(Payload(residual.codec, residual.film), "residual", buffer)
 
 
-def _needs(scene: Scene, coded: Coded, mesh: bool, cameras: bool, used: Mapping[str, bool]) -> list[str]:
-    """The features that a reader must know to draw this scene rightly; used: some of them."""
-    files = [file for plane in coded.planes for some in [[plane.mean], *plane.bases] for file in some]
+def _needs(
+    scene: Scene, coded: ScenePictures, codecs: Iterable[str], cameras: Mapping[str, Any], planes: list[dict[str, Any]]
+) -> list[str]:
+    """The features that a reader must know to draw this scene rightly."""
+    pictures = [file for plane in coded.planes for some in plane.bases for file in some]
     found = {
-        "bits": any(file.bits != 8 for file in files),
-        "codedCameras": cameras,
-        "codedMesh": mesh,
-        "codedWeights": any(stream_of(basis) is not None for plane in scene.planes for basis in plane.bases),
+        "namePattern": "pattern" in cameras,
         "precision": any(plane.mean.precision is not None for plane in coded.planes),
         "regions": any(basis.grid is not None for plane in scene.planes for basis in plane.bases),
-        "stacks": any(file.count != 1 for file in files),
+        "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
+        "stacks": any(picture.count != 1 for picture in pictures),
         "toRGB": scene.to_rgb is not None,
-        **used,
     }
-    return sorted(name for name, needed in found.items() if needed)
+    own = {CODECS[codec].needs for codec in codecs}
+    return sorted({name for name, needed in found.items() if needed} | {need for need in own if need is not None})
 
 
-def _cameras(scene: Scene, buffer: Buffer, stream: bytes | None) -> dict[str, Any]:
+def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, Any]:
     sizes = np.array([[c.width, c.height] for c in scene.cameras])
     made = _names(scene.names, None if stream is None else buffer)
     made["heldOut"] = np.flatnonzero(scene.held_out).tolist()
     if stream is not None:
-        made["coded"] = buffer.view(stream)
+        made["coded"] = _stream(stream, "cameras", buffer)
     else:
         cameras = scene.cameras
         intrinsics = np.array([[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras])
@@ -335,11 +381,19 @@ def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:
     plain: dict[str, Any] = {"names": list(names)}
     if buffer is None:
         return plain
-    pattern, stream = name_pattern(names), code_names(names)
-    told = plain if pattern is None else {"pattern": pattern}
-    if stream is None or len(stream) + CODED_NAMES >= len(json_bytes(told)):
-        return told
-    return {"codedNames": {"bufferView": buffer.view(stream), "count": len(names)}}
+    pattern, stream = name_pattern(names), _encoded("names", names)
+    shorter = plain if pattern is None else {"pattern": pattern}
+    if stream is None or len(stream.data) + CODED_NAMES >= len(json_bytes(shorter)):
+        return shorter
+    return {"codedNames": _stream(stream, "names", buffer) | {"count": len(names)}}
+
+
+def _encoded(place: str, value: Any) -> Payload | None:
+    """What the usual codec of a place makes of a value; None where it cannot code it."""
+    codec = PLACES[place].codec
+    assert codec is not None
+    data: bytes | None = encoder(codec)(value)
+    return None if data is None else Payload(codec, data)
 
 
 def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
@@ -355,13 +409,9 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
         )
     }
     if len(scene.triangles):
-        if short:
-            from eigenfield.coding.arrays.triangles import (  # numba: most files need none
-                code_triangles,
-                sorted_triangles,
-            )
-
-            made["codedTriangles"] = buffer.view(code_triangles(sorted_triangles(scene.triangles)))
+        stream = _encoded("triangles", scene.triangles) if short else None
+        if stream is not None:
+            made["codedTriangles"] = _stream(stream, "triangles", buffer)
         else:
             made["triangles"] = buffer.accessor(scene.triangles.ravel(), UINT32, "SCALAR")
     return made

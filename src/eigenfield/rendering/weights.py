@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import weakref
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -70,17 +68,14 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
     return np.ascontiguousarray(triangles[_area(points[triangles]) > FLAT])
 
 
-_places: weakref.WeakKeyDictionary[Scene, NDArray[np.float64]] = weakref.WeakKeyDictionary()
-
-
 def _coordinates(scene: Scene) -> NDArray[np.float64]:
     """(Ne, 2) view-plane coordinates of the encoded cameras, kept as long as the scene: they are asked for at every
     frame."""
-    found = _places.get(scene)
-    if found is None:
-        found = scene.view_plane.coordinates(np.array([scene.cameras[i].centre for i in scene.encoded]))
-        _places[scene] = found
-    return found
+
+    def make() -> NDArray[np.float64]:
+        return scene.view_plane.coordinates(np.array([scene.cameras[index].centre for index in scene.encoded]))
+
+    return scene.derived("view-plane coordinates", make)
 
 
 def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import html
-import weakref
+from dataclasses import replace
 
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.scene import Scene
-from eigenfield.gltf import encode_scene, file_bytes, without_residual
+from eigenfield.gltf import encode_scene
 from eigenfield.viewer.page import single_file
 
 TITLE = "Eigen-texture scene"
@@ -15,17 +15,15 @@ HEIGHT = 480  # pixels
 MOST = 64 * 2**20  # bytes of a scene's file; notebooks keep what they show, and are slow with more
 ALLOWED = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
 
-_coded: weakref.WeakKeyDictionary[Scene, bytes] = weakref.WeakKeyDictionary()  # scenes that came from no file
-
 
 def scene_html(scene: Scene) -> str:
     """The scene as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
 
-    The bytes are those of the file that it was loaded from; a scene from elsewhere is coded once. The frame is an
+    What has been coded is shown as it is, the rest is coded once; the residual is left out. The frame is an
     origin of its own (`sandbox` without `allow-same-origin`): it can neither read the notebook nor act in it.
     """
     try:
-        glb = _glb(scene)
+        glb = scene.derived("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > MOST:
             return _line(
                 f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"
@@ -37,13 +35,6 @@ def scene_html(scene: Scene) -> str:
         f'<iframe srcdoc="{html.escape(page)}" title="{TITLE}" width="100%" height="{HEIGHT}" style="border: 0" '
         f'allow="{ALLOWED}" allowfullscreen sandbox="allow-scripts allow-downloads"></iframe>'
     )
-
-
-def _glb(scene: Scene) -> bytes:
-    found = file_bytes(scene) or _coded.get(scene)
-    if found is None:
-        found = _coded[scene] = encode_scene(scene)
-    return without_residual(found)
 
 
 def _line(message: str) -> str:

@@ -12,6 +12,7 @@ export const FLOAT = 5126;
 
 type ComponentType = typeof UINT8 | typeof UINT16 | typeof UINT32 | typeof FLOAT;
 const BYTES: Record<ComponentType, number> = { [UINT8]: 1, [UINT16]: 2, [UINT32]: 4, [FLOAT]: 4 };
+const BARE: ReadonlySet<Kind> = new Set<Kind>(["cameras", "triangles", "weights"]);
 const ITEMS: Record<string, number> = { SCALAR: 1, VEC2: 2, VEC3: 3 };
 
 export interface View {
@@ -96,13 +97,14 @@ export function accessorReader(root: Value, views: View[]): AccessorReader {
   };
 }
 
-/** A stream is the index of its buffer view, or an object that names its codec too. */
+/** A stream is an object with a buffer view and, if need be, its codec; of some kinds the buffer view's index may stand
+ * alone. */
 export function streamOf<K extends keyof typeof USUAL>(
   kind: K,
   entry: Value<number | { bufferView: number; codec?: string }>,
   viewOf: ViewReader,
 ): Stream<K> {
-  const alone = typeof entry.raw === "number";
+  const alone = typeof entry.raw === "number" && BARE.has(kind);
   const codec = codecOf(kind, alone ? new Value(undefined, entry.where) : entry.key("codec"), USUAL[kind]);
   return { view: viewOf(alone ? entry : entry.key("bufferView")), codec, where: entry.where };
 }

@@ -19,7 +19,6 @@ from scipy.spatial.transform import Rotation
 from eigenfield.coding import limits
 from eigenfield.coding.arrays.grid import checked_grid, read_grid, write_grid
 from eigenfield.coding.entropy.range_coder import (
-    VERSION,
     check_end,
     check_header,
     check_numbers,
@@ -32,6 +31,7 @@ from eigenfield.coding.entropy.range_coder import (
 from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
 from eigenfield.core.camera import Camera
 
+VERSION = 1
 HEADER = struct.Struct("<BBHHI3d4d8d")  # version, kind, rows, columns, cameras; steps; first rotation; first numbers
 NUMBERS = 11
 ON_GRID, FROM_BEFORE = 1, 2  # bits of the kind
@@ -100,7 +100,7 @@ def code_cameras(
 def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32. Raises
     FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
-    check_header(data, HEADER.size, where)
+    check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, *rest = HEADER.unpack_from(data)
     steps, first, base = np.array(rest[:3]), np.array(rest[3:7]), np.array(rest[7:])
     gridded = bool(kind & ON_GRID)
@@ -110,7 +110,7 @@ def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.floa
         raise damaged("a number of cameras that cannot be", where)
     check_numbers(data, max(NUMBERS * count, rows * columns if gridded else 0), NUMBERS * limits.MAX_CAMERAS, where)
     body = HEADER.size + (3 * NUMBERS * 4 if gridded else 0)
-    check_header(data, body, where)
+    check_header(data, body, VERSION, where)
     planes = np.zeros((3, NUMBERS))
     if gridded:
         planes = float32_numbers(data, 3 * NUMBERS, HEADER.size).reshape(3, NUMBERS)

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.entropy.range_coder import (
-    VERSION,
     check_end,
     check_header,
     check_numbers,
@@ -20,6 +19,7 @@ from eigenfield.coding.entropy.range_coder import (
 )
 from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
 
+VERSION = 1
 HEADER = struct.Struct("<BI")  # version, triangles
 
 
@@ -31,9 +31,9 @@ def sorted_triangles(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
 
 
 def code_triangles(triangles: NDArray[np.int32]) -> bytes:
-    """Sorted triangles (T, 3)."""
+    """Triangles (T, 3), which a decoder finds sorted."""
     count = len(triangles)
-    lines = _lines(triangles)
+    lines = _lines(sorted_triangles(triangles))
     body = coded(
         lambda coder: code_lines(coder, lines.copy(), np.arange(count) - 1), CONTEXTS, MIXTURES, room=4 * count + 256
     )
@@ -42,7 +42,7 @@ def code_triangles(triangles: NDArray[np.int32]) -> bytes:
 
 def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]:
     """(T, 3). Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
-    check_header(data, HEADER.size, where)
+    check_header(data, HEADER.size, VERSION, where)
     _, count = HEADER.unpack_from(data)
     check_numbers(data, 3 * count, 6 * limits.MAX_CAMERAS, where)
     coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)

@@ -17,7 +17,6 @@ from scipy.fft import dctn, idctn
 from eigenfield.coding import limits
 from eigenfield.coding.arrays.grid import checked_grid, read_grid, write_grid
 from eigenfield.coding.entropy.range_coder import (
-    VERSION,
     check_end,
     check_header,
     check_numbers,
@@ -38,6 +37,7 @@ from eigenfield.coding.entropy.table_kernels import (
     code_way,
 )
 
+VERSION = 1
 HEADER = struct.Struct("<BBHHII")  # version, whether there is a grid, its rows and columns, cameras, components
 LARGEST = 2**20  # steps
 
@@ -83,7 +83,7 @@ def code_weights(
 
 def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
     """(Ne, N) float32. Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
-    check_header(data, HEADER.size, where)
+    check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, components = HEADER.unpack_from(data)
     if kind > 1 or count == 0:
         raise damaged("weights of no camera, or of an unknown kind", where)
@@ -91,7 +91,7 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
         rows, columns = 1, count
     check_numbers(data, rows * columns * max(components, 1), limits.MAX_WEIGHTS, where)
     body = HEADER.size + 4 * components
-    check_header(data, body, where)
+    check_header(data, body, VERSION, where)
     steps = float32_numbers(data, components, HEADER.size)
     if not (np.isfinite(steps).all() and (steps > 0).all()) or rows * columns < count:
         raise damaged("steps that are not positive, or a grid with too few cells", where)

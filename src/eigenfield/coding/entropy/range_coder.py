@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from eigenfield.coding.entropy.range_kernels import AT, finish, new_coder
 from eigenfield.core.errors import FormatError
 
-VERSION = 1  # of all coded parts
 RATIO = 16  # numbers, vertices or faces that a byte stands for, at most
 SPARE = 1024  # and so many more
 AHEAD = 4  # bytes that a decoder reads in advance
@@ -44,13 +43,13 @@ def filled_up(data: bytes, numbers: int) -> bytes:
     return data + bytes(max(0, -(-(numbers - SPARE) // RATIO) - len(data)))
 
 
-def check_header(data: bytes, size: int, where: str) -> None:
+def check_header(data: bytes, size: int, version: int, where: str) -> None:
     """Raise FormatError: `coded-truncated` if `data` is shorter than its header of `size` bytes, `coded-version` if it
-    does not begin with VERSION."""
+    does not begin with the version of its codec."""
     if len(data) < size:
         raise FormatError("coded-truncated", f"{len(data)} bytes where a header has {size}", where=where)
-    if data[0] != VERSION:
-        raise FormatError("coded-version", f"coded numbers of version {data[0]}, this reads {VERSION}", where=where)
+    if data[0] != version:
+        raise FormatError("coded-version", f"coded numbers of version {data[0]}, this reads {version}", where=where)
 
 
 def check_numbers(data: bytes, numbers: int, most: int, where: str) -> None:

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from eigenfield.coding import limits
 from eigenfield.coding.entropy.range_coder import (
-    VERSION,
     check_end,
     check_header,
     check_numbers,
@@ -39,6 +38,7 @@ from eigenfield.coding.mesh.value_kernels import CONTEXTS, MIXTURES, code_depths
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
 
+VERSION = 1
 HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
 REACH = 2**20 - 1  # of lattice coordinates, either way
 MOST_FINE = 8  # last digits of x and y
@@ -107,7 +107,7 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
 
 def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     """Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
-    check_header(data, HEADER.size, where)
+    check_header(data, HEADER.size, VERSION, where)
     _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
     if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
         raise damaged(f"{v} vertices and {m} faces, more than a scene may have", where)

@@ -18,7 +18,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.runtime.parallel import ordinary_scheduling
 
-Coder = Callable[[NDArray[np.uint16], int], bytes]  # as `encode_deep`, from codes and crf
+Coder = Callable[[NDArray[np.uint16], int], bytes]  # as `encode_10bit`, from codes and crf
 
 BITS = 10
 TOP = 2**BITS - 1
@@ -43,10 +43,10 @@ def crf_of(step: float) -> int:
 
 def svt(preset: int) -> Coder:
     """SVT-AV1 at a preset, 0 the slowest."""
-    return partial(encode_deep, preset=preset)
+    return partial(encode_10bit, preset=preset)
 
 
-def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
+def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
     """(H, W) codes 0..TOP, sides even and at least SMALLEST, as an .avif; one thread, the same bytes each time.
 
     crf: 0..63, the coarser the higher. preset: SVT-AV1's, 0 the slowest.
@@ -83,8 +83,9 @@ def encode_deep(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
 SVT = svt(4)
 
 
-def decode_deep(data: bytes | memoryview, where: str) -> NDArray[np.uint16]:
-    """(H, W) codes 0..TOP of the first channel. FormatError `picture-damaged`, for 8 bits `picture-channels`."""
+def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[np.uint16]:
+    """(H, W) codes 0..TOP of the first channel; colour: not used, they are all grey. FormatError `picture-damaged`, for
+    8 bits `picture-channels`."""
     import av
 
     try:

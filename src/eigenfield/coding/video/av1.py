@@ -15,10 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding import limits
 from eigenfield.coding.pictures.pictures_10bit import BITS
 from eigenfield.core.errors import FormatError
-from eigenfield.core.scene import Residual
 from eigenfield.runtime.parallel import ordinary_scheduling
 
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
@@ -34,7 +32,7 @@ def encode_film(frames: Iterable[Planes], size: tuple[int, int], crf: int, prese
     """The film of luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023, the same bytes
     each time.
 
-    size: rows and columns, even and at least `deep.SMALLEST`. crf: 1..63, the coarser the higher. preset: SVT-AV1's.
+    size: rows and columns, even and at least `SMALLEST`. crf: 1..63, the coarser the higher. preset: SVT-AV1's.
     """
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
     import av
@@ -69,11 +67,6 @@ def _frame(planes: Planes, number: int) -> Any:
         target.update(values.tobytes())
     frame.pts, frame.time_base = number, Fraction(1, RATE)
     return frame
-
-
-def residual_frames(residual: Residual) -> Iterator[Planes]:
-    """The frames of a residual, in its order. FormatError `residual-damaged`."""
-    return decode_film(residual.film, residual.frame, len(residual.order), f"/extensions/{limits.EXTENSION}/residual")
 
 
 def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:

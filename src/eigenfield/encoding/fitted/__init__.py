@@ -4,44 +4,27 @@ from __future__ import annotations
 
 from eigenfield.encoding.fitted.colour import split_matrix, to_rgb
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.observations import Shots, open_shots, thinned
-from eigenfield.encoding.fitted.planes import (
-    KINDS,
-    PRESETS,
-    Fits,
-    Preset,
-    byte_price,
-    density_of,
-    fitted_textures,
-    open_fits,
-)
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, subsampled
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, byte_price, fitted_textures, open_fits
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.surface import fit_surface
-from eigenfield.encoding.target import Target, compared, reach, warn_of_miss
 
 __all__ = [
-    "KINDS",
-    "PRESETS",
+    "PLANE_PRESETS",
+    "FitData",
     "Fits",
     "Pixels",
     "PlaneSettings",
-    "Preset",
     "Rate",
-    "Shots",
-    "Target",
     "byte_price",
     "code_plane",
     "coded_psnr",
-    "compared",
-    "density_of",
     "fit_plane",
     "fit_surface",
     "fitted_textures",
+    "open_fit_data",
     "open_fits",
-    "open_shots",
-    "reach",
     "split_matrix",
-    "thinned",
+    "subsampled",
     "to_rgb",
-    "warn_of_miss",
 ]

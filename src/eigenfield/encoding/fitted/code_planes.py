@@ -9,15 +9,25 @@ a picture's values allow, so that a decoder of 8 bits loses next to nothing.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_8bit import encode
-from eigenfield.coding.pictures.pictures_10bit import MIME, TOP, Coder, crf_of, decode_deep
+from eigenfield.coding.pictures.pictures_10bit import TOP, Coder, crf_of, decode_10bit
 from eigenfield.coding.pictures.precision import precision_codes, spread_precision
-from eigenfield.core.payloads import Affine, PictureFile, files_of, keep_files, keep_stream
+from eigenfield.coding.pictures.stacking import encode
+from eigenfield.core.payloads import (
+    Affine,
+    Coded,
+    Payload,
+    Payloads,
+    PicturePayload,
+    mean_key,
+    textures_key,
+    weights_key,
+)
 from eigenfield.core.scene import Basis, Plane
 from eigenfield.runtime.parallel import parallel_map
 
@@ -26,20 +36,57 @@ FINEST = 1e-4  # of a code, in the photographs' range
 # what every texture is off by adds up to grey levels.
 ZERO = 341
 ROWS = 4096  # of a picture of several textures, at most
+CODEC = "av1-10bit-1"  # of means and textures
+PRECISION_CODEC = "png"
+WEIGHTS_CODEC = "weights-1"
+
+
+@dataclass(frozen=True, eq=False)
+class CodedBasis:
+    """A basis as its file gives it back, and what it was coded to.
+
+    Attributes:
+        basis: With the decoded textures, uint16.
+        pictures: Of its textures, by rank.
+        weights: Its coded weights; None: they are not coded yet.
+    """
+
+    basis: Basis
+    pictures: tuple[PicturePayload, ...]
+    weights: Payload | None = None
+
+    @property
+    def count(self) -> int:
+        """Its eigen textures."""
+        return self.basis.count
+
+    @property
+    def payloads(self) -> Payloads:
+        """By the keys of a scene."""
+        basis = self.basis
+        found = Payloads({textures_key(basis.textures, basis.scale, basis.zero): self.pictures})
+        return found if self.weights is None else found | {weights_key(basis.weights): [self.weights]}
 
 
 def code_mean(
     mean: NDArray[np.float32], step: float, coder: Coder, precision: NDArray[np.float32] | None = None
-) -> tuple[NDArray[np.float32], PictureFile]:
-    """(H, W, C) float32 as its file gives it back, and the file. One step for all channels. A photograph's means have
-    the codes 0..TOP for 0..1; what a filter overshoots is cut off, for codes twice as coarse need 2 to 3 % more bytes.
-    step: of the quantiser, in the values' unit, where the precision is 1. precision: (h, w) in 0..1, how finely each
-    place is coded; None: all alike."""
-    picture: bytes | None = None
+) -> tuple[NDArray[np.float32], PicturePayload]:
+    """(H, W, C) float32 as its file gives it back, and the picture.
+
+    One step for all channels. A photograph's means have the codes 0..TOP for 0..1; what a filter overshoots is cut off,
+    for codes twice as coarse need 2 to 3 % more bytes.
+
+    Args:
+        mean: (H, W, C) float32.
+        step: Of the quantiser, in the values' unit, where the precision is 1.
+        coder: Of the picture.
+        precision: (h, w) in 0..1, how finely each place is coded; None: all alike.
+    """
+    picture: Payload | None = None
     share = np.ones((1, 1, 1), np.float32)
     if precision is not None:
         fineness = precision_codes(precision)
-        picture = encode(fineness[..., None], "png", 0)
+        picture = Payload(PRECISION_CODEC, encode(fineness[..., None], PRECISION_CODEC, 0))
         share = spread_precision(fineness, *mean.shape[:2])
         mean = mean * share
     if mean.shape[2] in (1, 3):
@@ -49,13 +96,13 @@ def code_mean(
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO)))
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
     data = coder(_stack(codes[None]), crf_of(step / float(affine.scale[0])))
-    stored = _unstack(decode_deep(data, "mean"), codes[None].shape)[0]
+    stored = _unstack(decode_10bit(data, False, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
-    return values, PictureFile(data, MIME, 10, 1, affine, picture)
+    return values, PicturePayload(CODEC, data, 1, affine, picture)
 
 
-def code_basis(basis: Basis, step: float, coder: Coder) -> Basis:
-    """A basis of float textures (N, H, W, C) as its files give it back, uint16, with the files kept beside it.
+def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
+    """A basis of float textures (N, H, W, C), its textures coded.
 
     step: of the quantiser, in the values' unit.
     """
@@ -64,52 +111,43 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> Basis:
     stored, scale = np.empty(values.shape, np.uint16), np.empty((count, channels), np.float32)
     each = max(1, min(ROWS // (height * channels), count))
 
-    def code(first: int) -> PictureFile:
+    def code(first: int) -> PicturePayload:
         part = slice(first, first + each)
         unit = _unit(float(values[part].min()), float(values[part].max()))
         codes = np.rint(values[part] / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
         data = coder(_stack(codes), crf_of(step / unit))
-        stored[part], scale[part] = _unstack(decode_deep(data, "textures"), codes.shape), unit
+        stored[part], scale[part] = _unstack(decode_10bit(data, False, "textures"), codes.shape), unit
         numbers = len(codes) * channels
         affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO)))
-        return PictureFile(data, MIME, 10, len(codes), affine)
+        return PicturePayload(CODEC, data, len(codes), affine)
 
-    files = parallel_map(code, range(0, count, each))
+    pictures = tuple(parallel_map(code, range(0, count, each)))
     made = Basis(stored, scale, np.full_like(scale, ZERO), basis.weights, basis.grid, basis.corner)
-    keep_files(made, files)
-    return made
+    return CodedBasis(made, pictures)
 
 
-def first_pictures(basis: Basis, count: int) -> Basis:
-    """The coded textures of a basis's first `count` picture files, with those."""
-    files = (files_of(basis) or ())[:count]
-    made = basis.truncated(sum(file.count for file in files))
-    keep_files(made, files)
-    return made
+def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:
+    """The textures of the first `count` pictures."""
+    pictures = coded.pictures[:count]
+    return CodedBasis(coded.basis.truncated(sum(picture.count for picture in pictures)), pictures)
 
 
-def with_weights(basis: Basis, weights: NDArray[np.float32], stream: bytes) -> Basis:
+def with_weights(coded: CodedBasis, weights: NDArray[np.float32], stream: bytes) -> CodedBasis:
     """The same coded textures with other weights (Ne, N), and their coded form."""
-    made = replace(basis, weights=weights)
-    keep_stream(made, stream)
-    files = files_of(basis)
-    if files is not None:
-        keep_files(made, files)
-    return made
+    return replace(coded, basis=replace(coded.basis, weights=weights), weights=Payload(WEIGHTS_CODEC, stream))
 
 
 def coded_plane(
     mean: NDArray[np.float32],
-    bases: tuple[Basis, ...],
+    bases: Sequence[CodedBasis],
     step: float,
     coder: Coder,
     precision: NDArray[np.float32] | None = None,
-) -> Plane:
+) -> Coded[Plane]:
     """A plane of coded bases with its mean coded, as its files give it back; see `code_mean`."""
-    values, file = code_mean(mean, step, coder, precision)
-    made = Plane(values, bases)
-    keep_files(made, [file])
-    return made
+    values, picture = code_mean(mean, step, coder, precision)
+    payloads = Payloads.joined(coded.payloads for coded in bases) | {mean_key(values): [picture]}
+    return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
 
 
 def _unit(low: float, high: float) -> float:

@@ -1,4 +1,4 @@
-"""Texels that few cameras see, and those that none sees: what they cost in bytes is to be as little as they matter."""
+"""Texels that few observations show, and those that none shows: they are to cost as few bytes as they matter."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.encoding.projected import push_pull
 from eigenfield.imaging.raster import rasterise
@@ -20,16 +20,16 @@ GUTTER = 0.3  # of what a texel usually counts for: less beside a chart is as go
 WORTHWHILE = 0.97  # mean precision, above which the map is not worth its own bytes
 
 
-def fill_unseen(model: Model, scales: Scales, surface: Surface) -> None:
+def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
     """Mean and textures go on smoothly where no photograph sees them, or beside a chart next to none: a step there
     would be coded as one, and ring into the chart."""
-    model.mean = _extended(model.mean, _told(scales.mean, surface))
-    told = _told(scales.coarse, surface)
+    model.mean = _extended(model.mean, _observed(scales.mean, surface))
+    coarse = _observed(scales.coarse, surface)
     for block in model.blocks:
-        seen = np.ascontiguousarray(told[block.window])
+        observed = np.ascontiguousarray(coarse[block.window])
 
-        def fill(index: int, block: Block = block, seen: NDArray[np.float32] = seen) -> None:
-            block.textures[index] = _extended(block.textures[index], seen)
+        def fill(index: int, block: Block = block, observed: NDArray[np.float32] = observed) -> None:
+            block.textures[index] = _extended(block.textures[index], observed)
 
         parallel_map(fill, range(block.count))
 
@@ -54,9 +54,9 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     return np.asarray(precision, np.float32)
 
 
-def _told(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
-    """(h, w) 1 where the photographs tell a texel: it is seen, and its middle is in a chart or it counts for GUTTER of
-    what most do."""
+def _observed(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
+    """(h, w) 1 where the photographs determine a texel: it is seen, and its middle is in a chart or it counts for
+    GUTTER of what most do."""
     (height, width), (rows, columns) = surface.size, share.shape
     corners = np.ones((len(surface.texels), 3))
     corners[:, :2] = (surface.texels + 0.5) * (columns / width, rows / height)
@@ -69,7 +69,7 @@ def _known(share: NDArray[np.float32]) -> NDArray[np.float32]:
     return (share > 0).astype(np.float32)
 
 
-def _extended(picture: NDArray[np.float32], seen: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(C, rows, columns) as it is where `seen` is 1, filled where it is 0."""
-    known = np.ascontiguousarray((picture * seen).transpose(1, 2, 0))
-    return np.ascontiguousarray(push_pull(known, seen).transpose(2, 0, 1))
+def _extended(picture: NDArray[np.float32], observed: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(C, rows, columns) as it is where `observed` is 1, filled where it is 0."""
+    known = np.ascontiguousarray((picture * observed).transpose(1, 2, 0))
+    return np.ascontiguousarray(push_pull(known, observed).transpose(2, 0, 1))

@@ -1,9 +1,9 @@
 """The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
 
 Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
-weights, in turns, until a round changes less than `STOP`; from the second round on pixels of `doubtable` shots count
-less the farther they are from what is drawn (`DOUBT`). Then closed loop, at any rates: the textures are coded, weights
-and mean are fitted again to what the coded ones draw, and the mean is coded last.
+weights, in turns, until a round changes less than `STOP`; from the second round on pixels with robust weights count
+less the farther they are from what is drawn (`SIGMA_RATIO`). Then closed loop, at any rates: the textures are coded,
+weights and mean are fitted again to what the coded ones draw, and the mean is coded last.
 """
 
 from __future__ import annotations
@@ -17,15 +17,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.arrays.weights import code_weights
+from eigenfield.coding.codecs import encoder
 from eigenfield.core.errors import CaptureError
+from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
-from eigenfield.core.scene import Basis, Plane
-from eigenfield.encoding.fitted.code_planes import coded_plane, with_weights
+from eigenfield.core.scene import Plane
+from eigenfield.encoding.fitted.code_planes import WEIGHTS_CODEC, CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
-from eigenfield.encoding.fitted.model import Block, Composer, Model, make_composer
-from eigenfield.encoding.fitted.observations import Shots
-from eigenfield.encoding.fitted.passes import look, psnr_of
+from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
+from eigenfield.encoding.fitted.observations import FitData
+from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
 from eigenfield.encoding.fitted.rate import Rate, code_worthwhile, price_of_mean
 from eigenfield.encoding.fitted.regions import find_regions
 from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
@@ -34,7 +35,7 @@ from eigenfield.encoding.fitted.start import principal_block, residual_energy
 log = logging.getLogger("eigenfield.fit")
 
 STOP = 0.05  # dB by which a round must change the pictures for another to follow
-DOUBT = 4.0  # times what the round before left, root mean square: an error that makes a pixel count for half
+SIGMA_RATIO = 4.0  # sigma of the robust weights, in root mean squares of what the round before left
 MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
 TEXTURE_STEPS = 5
 WEIGHT_STEPS = 4
@@ -47,8 +48,11 @@ CLOSING_STEPS = 3  # for the mean, after coding
 class PlaneSettings:
     """What one plane is to be.
 
-    matrix: (C, 3) its channels from R, G, B. mean, grid: (rows, columns) of mean and components. textures: N. local:
-    so many more for each region that needs them.
+    Attributes:
+        matrix: (C, 3) its channels from R, G, B.
+        mean, grid: (rows, columns) of mean and components.
+        textures: N.
+        local: so many more for each region that needs them.
     """
 
     matrix: NDArray[np.float32]
@@ -60,17 +64,29 @@ class PlaneSettings:
 
 @dataclass(frozen=True, eq=False)
 class Pixels:
-    """Those of all photographs; those (`thinned`, `doubtable`) that mean and textures, and weights are fitted to."""
+    """The same observations three times, in the same order.
 
-    every: Shots
-    fitted: Shots
-    weighed: Shots
+    Attributes:
+        every: all their pixels.
+        fitted: what mean and textures are fitted to (`subsampled`, `with_robust_weights`).
+        weighed: what weights are fitted to, likewise.
+    """
+
+    every: FitData
+    fitted: FitData
+    weighed: FitData
 
 
 @dataclass(frozen=True, eq=False)
 class MeanAlone:
-    """How far the photographs are from what the mean draws: (Ne,) squared deviations over (Ne,) pixels of so many
-    channels; total: those of all of them from one colour."""
+    """How far the photographs are from what the mean draws.
+
+    Attributes:
+        squares: (No,) squared deviations of each observation.
+        pixels: (No,) that these are over.
+        channels: of a pixel.
+        total: squared deviations of all observations from one colour.
+    """
 
     squares: NDArray[np.float64]
     pixels: NDArray[np.float64]
@@ -80,13 +96,23 @@ class MeanAlone:
 
 @dataclass(frozen=True, eq=False)
 class OpenFit:
-    """A plane fitted, not coded. uncoded: dB of its channels, mean over cameras, what is drawn not rounded."""
+    """A plane fitted, not coded.
+
+    Attributes:
+        name: of the plane.
+        pixels: what it was fitted to.
+        model: what was found.
+        scales: of `pixels.fitted`.
+        composer: by which renderers draw it.
+        mean_alone: what the mean left before there were textures.
+        uncoded: dB of its channels, mean over observations, what is drawn not rounded.
+    """
 
     name: str
     pixels: Pixels
-    model: Model
+    model: PlaneModel
     scales: Scales
-    composer: Composer
+    composer: AtlasComposer
     mean_alone: MeanAlone
     uncoded: float
 
@@ -103,7 +129,7 @@ def fit_plane(
     a pixel."""
     fitted, channels = pixels.fitted, len(settings.matrix)
     grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
-    model = Model(settings.matrix, grey.astype(np.float32), settings.grid, [])
+    model = PlaneModel(settings.matrix, grey.astype(np.float32), settings.grid, [])
     tick = _ticker(progress, f"fit {name}", 3 + 2 * rounds)
     scales = measure_scales(fitted, model)
     if not scales.mean.any():
@@ -121,9 +147,9 @@ def fit_plane(
         whiten(model, scales)
         _add_regions(pixels, model, scales, min(settings.local, len(fitted) - 1), work)
     tick()
-    reached, half = -math.inf, None
+    reached, variance = -math.inf, None
     for number in range(rounds if count else 0):
-        left = residual(fitted, model, half=half)
+        left = residual(fitted, model, variance=variance)
         before, reached = reached, psnr_of(left.squares, left.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
         if abs(reached - before) < STOP:
@@ -131,17 +157,18 @@ def fit_plane(
         fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
         tick()
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
-        half = DOUBT**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
+        variance = SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
-    fill_unseen(model, scales, pixels.every.surface)
-    composer = make_composer(pixels.every.surface, model)
+    surface = pixels.every.footprints.surface
+    fill_unseen(model, scales, surface)
+    composer = make_composer(surface, model)
     uncoded = _drawn(pixels.every, model, composer)
     tick(last=True)
     return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
 
 
-def _add_regions(pixels: Pixels, model: Model, scales: Scales, count: int, work: Path | None) -> None:
+def _add_regions(pixels: Pixels, model: PlaneModel, scales: Scales, count: int, work: Path | None) -> None:
     """So many components for each rectangle of which the model's leave most."""
     if not count:
         return
@@ -157,36 +184,44 @@ def code_plane(
     grid: NDArray[np.int64] | None = None,
     precision: NDArray[np.float32] | None = None,
     progress: Progress | None = None,
-) -> Plane:
+) -> Coded[Plane]:
     """Code a fitted plane in closed loop: textures coded, weights and mean fitted to what they became, the mean coded.
     As its files give it back.
 
-    The fit stays as it is, for other rates. grid: (rows, columns) camera indices where they stand on a regular array,
-    -1 where none stands, None where they do not. precision: of the mean, see `mean_precision`; None: alike everywhere.
+    Args:
+        fit: stays as it is, for other rates.
+        rate: how finely.
+        grid: (rows, columns) of observations, which are the rows of the weights, whose cameras stand on a regular
+            array, -1 where none stands; None where they do not.
+        precision: of the mean, see `mean_precision`; None: alike everywhere.
+        progress: reports the steps.
     """
     pixels, scales, open_loop = fit.pixels, fit.scales, fit.model
     tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
-    bases: list[Basis] = []
+    bases: list[CodedBasis] = []
     price = price_of_mean(open_loop, scales, rate, precision)
     for block in open_loop.blocks:
         coded = code_worthwhile(block, model.grid, scales, rate, price)
         if not coded.count:
             continue
-        values, weights = coded.values().transpose(0, 3, 1, 2), np.ascontiguousarray(block.weights[:, : coded.count])
+        values, weights = (
+            coded.basis.values().transpose(0, 3, 1, 2),
+            np.ascontiguousarray(block.weights[:, : coded.count]),
+        )
         model.blocks.append(replace(block, textures=np.ascontiguousarray(values), weights=weights))
         bases.append(coded)
     tick()
     if bases:
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         for number, block in enumerate(model.blocks):
-            stream, block.weights = code_weights(block.weights, _weight_steps(block, scales), grid)
+            stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, stream)
     tick()
     left = residual(pixels.fitted, model, True, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
-    plane = coded_plane(mean, tuple(bases), rate.mean_step, rate.coder, precision)
+    plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision)
     tick(last=True)
     return plane
 
@@ -203,25 +238,25 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
     return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
-def _drawn(shots: Shots, model: Model, composer: Composer) -> float:
+def _drawn(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
     """dB of the photographs as the renderers draw the model."""
-    found = look(
-        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+    found = render_and_backproject(
+        data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
         weights=[block.weights for block in model.blocks], photographs=True, wanted=(False, False, False),
         composer=composer,
     )  # fmt: skip
     return psnr_of(found.squares, found.pixels, model.channels)
 
 
-def fit_mean(shots: Shots, model: Model, scales: Scales) -> MeanAlone:
+def fit_mean(data: FitData, model: PlaneModel, scales: Scales) -> MeanAlone:
     """Fit the model's mean alone, from one colour."""
-    left = residual(shots, model, mean_only=True)
+    left = residual(data, model, mean_only=True)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
     sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
     total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
-    fit_textures(shots, model, scales, left, MEAN_STEPS, mean_only=True)
-    found = look(
-        shots, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
+    fit_textures(data, model, scales, left, MEAN_STEPS, mean_only=True)
+    found = render_and_backproject(
+        data, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
     )
     return MeanAlone(found.squares, found.pixels, model.channels, total)
 

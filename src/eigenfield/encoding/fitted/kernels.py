@@ -1,5 +1,5 @@
 """Kernels of the fit: what is drawn of textures of any size, its exact transpose, so that least squares can be solved
-by them; coarse textures made finer."""
+by them; upsampling of coarse textures; steps of conjugate gradients."""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -8,73 +8,75 @@ from __future__ import annotations
 import numpy as np
 
 from eigenfield.rendering.software.kernels import filter_weights
-from eigenfield.rendering.software.simd import give_cubic, take_cubic
+from eigenfield.rendering.software.simd import gather_bicubic, scatter_bicubic
 from eigenfield.runtime.jit import kernel
 
-# Where the pixels of a camera land: `many` (h, w) uint8 is how many places of the atlas a pixel shows, 0 to 4; places
-# (n, 2) float32 are their columns and rows, pixel by pixel. A single one is all that the pixel shows, each of several a
-# quarter of it.
+# The footprint of a camera: `counts` (h, w) uint8 is of how many points of the atlas each pixel is the mean, 0 to 4;
+# `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel. A single point is all that its
+# pixel shows, each of several is a quarter of it.
 
 
 @kernel()
-def count_places(near, spans, parted, finer, many):
-    """Fill `many` from a covered `Frame`; how many places that makes. Of a pixel at the border of what there is, those
-    samples that show something are counted, if there are two: a single one tells too little of a photograph's pixel."""
+def footprint_counts(near, spans, parted, finer, counts):
+    """Fill `counts` from a covered `Frame`; returns how many points that makes. Of a pixel at the border of the surface
+    those samples count that show something, if there are two: a single one says too little of a photograph's pixel."""
     total = 0
-    for row in range(many.shape[0]):
-        for pixel in range(many.shape[1]):
-            many[row, pixel] = near[row, pixel] > 0
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            counts[row, pixel] = near[row, pixel] > 0
         for at in range(spans[row, 0], spans[row, 1]):
             hits = 0
             for sample in range(4 * at, 4 * at + 4):
                 hits += finer[0, sample] > 0
-            many[row, parted[at]] = 0 if hits == 1 else hits
-        for pixel in range(many.shape[1]):
-            total += many[row, pixel]
+            counts[row, parted[at]] = 0 if hits == 1 else hits
+        for pixel in range(counts.shape[1]):
+            total += counts[row, pixel]
     return total
 
 
 @kernel(inline=True)
-def put_place(near, column, row, right, bottom, places, at):
-    """places[at] = a sample's column and row, if it shows something, which is returned."""
+def put_coordinates(near, column, row, right, bottom, coordinates, at):
+    """coordinates[at] = a sample's column and row, if it shows something, which is returned."""
     if near > 0:
-        places[at, 0] = min(max(column / near, np.float32(0)), right)
-        places[at, 1] = min(max(row / near, np.float32(0)), bottom)
+        coordinates[at, 0] = min(max(column / near, np.float32(0)), right)
+        coordinates[at, 1] = min(max(row / near, np.float32(0)), bottom)
     return near > 0
 
 
 @kernel()
-def place_pixels(near, column_of, row_of, spans, parted, finer, height, width, many, places):
-    """Fill `places`, for `many` as `count_places` makes it, in an atlas of height x width."""
+def footprint_coordinates(near, column_of, row_of, spans, parted, finer, height, width, counts, coordinates):
+    """Fill `coordinates`, for `counts` as `footprint_counts` makes it, in an atlas of height x width."""
     right, bottom = np.float32(width - 1), np.float32(height - 1)
     count = 0
-    for row in range(many.shape[0]):
+    for row in range(counts.shape[0]):
         at = spans[row, 0]
-        for pixel in range(many.shape[1]):
+        for pixel in range(counts.shape[1]):
             if at < spans[row, 1] and parted[at] == pixel:
-                if many[row, pixel]:
+                if counts[row, pixel]:
                     for s in range(4 * at, 4 * at + 4):
-                        count += put_place(finer[0, s], finer[1, s], finer[2, s], right, bottom, places, count)
+                        count += put_coordinates(
+                            finer[0, s], finer[1, s], finer[2, s], right, bottom, coordinates, count
+                        )
                 at += 1
-            elif many[row, pixel]:
-                count += put_place(
-                    near[row, pixel], column_of[row, pixel], row_of[row, pixel], right, bottom, places, count
+            elif counts[row, pixel]:
+                count += put_coordinates(
+                    near[row, pixel], column_of[row, pixel], row_of[row, pixel], right, bottom, coordinates, count
                 )  # fmt: skip
 
 
 @kernel(inline=True)
 def share_of(count):
-    """What each place of a pixel that has `count` is of it."""
+    """What each point of a pixel that has `count` is of it."""
     return np.float32(1) if count == 1 else np.float32(0.25)
 
 
 @kernel()
-def aim(many, codes, matrix, image):
-    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows what
-    there is."""
-    for row in range(many.shape[0]):
-        for pixel in range(many.shape[1]):
-            part = np.float32(many[row, pixel]) * share_of(many[row, pixel])
+def target(counts, codes, matrix, image):
+    """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows the
+    surface: what `forward` is to draw."""
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            part = np.float32(counts[row, pixel]) * share_of(counts[row, pixel])
             for k in range(image.shape[0]):
                 value = np.float32(0)
                 if part > 0:
@@ -87,54 +89,54 @@ def aim(many, codes, matrix, image):
 
 
 @kernel(inline=True)
-def position(place, ratio, last):
-    """A place in the atlas among texels of another size, `ratio` of them to one of the atlas's; clamped to 0..last."""
+def position(coordinate, ratio, last):
+    """A coordinate in the atlas among texels of another size, `ratio` of them to one of the atlas's; clamped to
+    0..last."""
     half = np.float32(0.5)
-    return min(max((place + half) * ratio - half, np.float32(0)), last)
+    return min(max((coordinate + half) * ratio - half, np.float32(0)), last)
 
 
 @kernel(inline=True)
-def footprint(place, across, down, width, height):
-    """Column and row of the texel left above where a pixel lands in a texture of width x height, and Catmull-Rom's
-    weights of the columns and rows from the one before on. place (2,): in the finest atlas; across, down: see
-    `position`."""
-    x = position(place[0], across, np.float32(width - 1))
-    y = position(place[1], down, np.float32(height - 1))
+def bicubic_taps(point, across, down, width, height):
+    """Column and row of the texel left above a point in a texture of width x height, and Catmull-Rom's weights of the
+    columns and rows from the one before on. point (2,): in the finest atlas; across, down: see `position`."""
+    x = position(point[0], across, np.float32(width - 1))
+    y = position(point[1], down, np.float32(height - 1))
     left, top = np.int64(x), np.int64(y)
     return left, top, filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
 
 
 @kernel(inline=True)
-def tap(left, top, u, v, width, height):
-    """Where tap (u, v) of a footprint lies in its texture, those beyond the border on it."""
+def tap_index(left, top, u, v, width, height):
+    """Where tap (u, v) of a point lies in its texture, those beyond the border on it."""
     return min(max(top + v - 1, 0), height - 1) * width + min(max(left + u - 1, 0), width - 1)
 
 
 @kernel()
-def draw(many, places, size, texture, sign, image):
-    """image (C, h, w) += sign times what is drawn of a texture (C, rows, columns) by Catmull-Rom. places: in an atlas
-    of `size` (H, W), which need not be the texture's."""
+def forward(counts, coordinates, size, texture, sign, image):
+    """image (C, h, w) += sign G texture: what is drawn of a texture (C, rows, columns) by Catmull-Rom. coordinates: in
+    an atlas of `size` (H, W), which need not be the texture's."""
     channels, height, width = texture.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = texture.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
     at = 0
-    for row in range(many.shape[0]):
-        for pixel in range(many.shape[1]):
-            count = many[row, pixel]
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            count = counts[row, pixel]
             into, part = row * wide + pixel, sign * share_of(count)
             for _ in range(count):
-                left, top, a, d = footprint(places[at], across, down, width, height)
+                left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:
                     first = (top - 1) * width + left - 1
                     for k in range(channels):
-                        drawn[k * area + into] += part * take_cubic(flat, first + k * plane, width, a, d)
+                        drawn[k * area + into] += part * gather_bicubic(flat, first + k * plane, width, a, d)
                 else:
                     for k in range(channels):
                         for v in range(4):
                             for u in range(4):
-                                value = flat[k * plane + tap(left, top, u, v, width, height)]
+                                value = flat[k * plane + tap_index(left, top, u, v, width, height)]
                                 drawn[k * area + into] += part * d[v] * a[u] * value
 
 
@@ -145,44 +147,44 @@ def part_of(weight, row, pixel):
 
 
 @kernel()
-def put_back(many, places, size, image, weight, out):
-    """The transpose of `draw`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
+def adjoint(counts, coordinates, size, image, weight, out):
+    """The transpose of `forward`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
     channels, height, width = out.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = out.reshape(-1), height * width
     drawn, area, wide = image.reshape(-1), image.shape[1] * image.shape[2], image.shape[2]
     at = 0
-    for row in range(many.shape[0]):
-        for pixel in range(many.shape[1]):
-            count = many[row, pixel]
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            count = counts[row, pixel]
             source, w = row * wide + pixel, part_of(weight, row, pixel) * share_of(count)
             if w <= 0:
                 at += count
                 continue
             for _ in range(count):
-                left, top, a, d = footprint(places[at], across, down, width, height)
+                left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:
                     first = (top - 1) * width + left - 1
                     for k in range(channels):
-                        give_cubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
+                        scatter_bicubic(flat, first + k * plane, width, a, d, w * drawn[k * area + source])
                 else:
                     for k in range(channels):
                         for v in range(4):
                             for u in range(4):
-                                into = k * plane + tap(left, top, u, v, width, height)
+                                into = k * plane + tap_index(left, top, u, v, width, height)
                                 flat[into] += d[v] * a[u] * w * drawn[k * area + source]
 
 
 @kernel()
-def squares_of(many, image, weight):
+def squares_of(counts, image, weight):
     """Over the covered pixels: the sum of w image^2, and of w. weight: see `part_of`."""
     squares, total = 0.0, 0.0
-    for row in range(many.shape[0]):
+    for row in range(counts.shape[0]):
         line_squares, line_total = np.float32(0), np.float32(0)
-        for pixel in range(many.shape[1]):
+        for pixel in range(counts.shape[1]):
             w = part_of(weight, row, pixel)
-            if many[row, pixel] == 0 or w <= 0:
+            if counts[row, pixel] == 0 or w <= 0:
                 continue
             for k in range(image.shape[0]):
                 line_squares += w * image[k, row, pixel] * image[k, row, pixel]
@@ -193,22 +195,23 @@ def squares_of(many, image, weight):
 
 
 @kernel()
-def distrust(image, weight, half, out):
-    """out (h, w) uint8 = weight times 1 / (1 + e^2 / half), the weight of Cauchy's likelihood for an error of e, the
-    channels of image (C, h, w) together. weight: see `part_of`. half: the squared error of pixels that count half."""
+def robust_weights(image, weight, variance, out):
+    """out (h, w) uint8 = weight times 1 / (1 + e^2 / variance), Cauchy's weight of iteratively reweighted least squares
+    for an error of e, the channels of image (C, h, w) together. weight: see `part_of`. variance: sigma^2, the squared
+    error of pixels that count half."""
     for row in range(out.shape[0]):
         for pixel in range(out.shape[1]):
             square = np.float32(0)
             for k in range(image.shape[0]):
                 square += image[k, row, pixel] * image[k, row, pixel]
-            trusted = part_of(weight, row, pixel) / (np.float32(1) + square / half)
-            out[row, pixel] = np.uint8(np.float32(255) * trusted + np.float32(0.5))
+            robust = part_of(weight, row, pixel) / (np.float32(1) + square / variance)
+            out[row, pixel] = np.uint8(np.float32(255) * robust + np.float32(0.5))
 
 
 @kernel()
-def enlarge(coarse, row_at, row_weight, column_at, column_weight, spans, lines, start, fine):
+def upsample(coarse, row_at, row_weight, column_at, column_weight, spans, lines, start, fine):
     """fine (C, H, W) = start (C, H, W), or (0, 0, 0) for zeros, + coarse (C, h, w) by the taps of
-    `eigenfield.rendering.resample.Taps`, within `spans`.
+    `eigenfield.rendering.software.resample.Taps`, within `spans`.
 
     spans (H, 2): first and last + 1 column that is needed of each fine row, equal where none is; what lies outside
     stays as it is. lines (h, W): room.
@@ -246,7 +249,7 @@ def preconditioner(share, extra, energy):
 
 
 @kernel()
-def bend(direction, strength, image):
+def add_laplacian(direction, strength, image):
     """image += strength times the Laplacian of direction: 4 x itself less its neighbours, those beyond the border
     counting as itself. Returns their scalar product."""
     channels, height, width = direction.shape
@@ -270,7 +273,7 @@ def bend(direction, strength, image):
 
 
 @kernel()
-def advance(state, rest, direction, image, length, share, extra, energy):
+def take_step(state, rest, direction, image, length, share, extra, energy):
     """state += length direction, rest -= length image; returns rest . preconditioned rest."""
     channels, height, width = state.shape
     total = 0.0
@@ -285,7 +288,7 @@ def advance(state, rest, direction, image, length, share, extra, energy):
 
 
 @kernel()
-def turn(direction, rest, ratio, share, extra, energy):
+def next_direction(direction, rest, ratio, share, extra, energy):
     """direction = preconditioned rest + ratio direction; returns rest . preconditioned rest."""
     channels, height, width = direction.shape
     total = 0.0

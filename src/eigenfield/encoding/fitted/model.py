@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import enlarge
+from eigenfield.encoding.fitted.kernels import upsample
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.rendering.software.kernels import TILE
 from eigenfield.rendering.software.resample import Taps, make_taps
@@ -23,7 +23,13 @@ Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texel
 
 @dataclass(eq=False)
 class Block:
-    """Components with one region. textures: (n, C, rows, columns) float32; weights: (Ne, n) float32."""
+    """Components with one region.
+
+    Attributes:
+        rectangle: the region.
+        textures: (n, C, rows, columns) float32.
+        weights: (No, n) float32, a row for each observation.
+    """
 
     rectangle: Rectangle
     textures: NDArray[np.float32]
@@ -41,10 +47,14 @@ class Block:
 
 
 @dataclass(eq=False)
-class Model:
+class PlaneModel:
     """A plane in the making.
 
-    matrix: (C, 3) float32, its channels from R, G, B. mean: (C, rows, columns) float32. grid: (h, w) of the components.
+    Attributes:
+        matrix: (C, 3) float32, its channels from R, G, B.
+        mean: (C, rows, columns) float32.
+        grid: (h, w) of the components.
+        blocks: the components, summed onto the mean.
     """
 
     matrix: NDArray[np.float32]
@@ -56,18 +66,21 @@ class Model:
     def channels(self) -> int:
         return len(self.matrix)
 
-    def sums(self, cameras: slice) -> NDArray[np.float32]:
-        """(B, C, h, w) float32: the weighted sum of all components for some cameras."""
-        weights = [block.weights[cameras] for block in self.blocks]
+    def sums(self, observations: slice) -> NDArray[np.float32]:
+        """(B, C, h, w) float32: the weighted sum of all components for some observations."""
+        weights = [block.weights[observations] for block in self.blocks]
         total = np.empty((len(weights[0]) if weights else 0, self.channels, *self.grid), np.float32)
         sum_up(self, [block.textures for block in self.blocks], weights, total)
         return total
 
 
 def sum_up(
-    model: Model, textures: list[NDArray[np.float32]], weights: list[NDArray[np.float32]], total: NDArray[np.float32]
+    model: PlaneModel,
+    textures: list[NDArray[np.float32]],
+    weights: list[NDArray[np.float32]],
+    total: NDArray[np.float32],
 ) -> None:
-    """As `Model.sums`, of textures and weights, (B, n) each, in the model's blocks, into `total` (contiguous)."""
+    """As `PlaneModel.sums`, of textures and weights, (B, n) each, in the model's blocks, into `total` (contiguous)."""
     parts = [part for part in zip(model.blocks, textures, weights, strict=True) if part[0].count]
     if parts and parts[0][1].shape[2:] == model.grid:
         _, some, mine = parts.pop(0)
@@ -79,8 +92,14 @@ def sum_up(
 
 
 @dataclass(frozen=True, eq=False)
-class Finer:
-    """From a coarse atlas to the finest one, see the kernel. spans: (H, 2) columns in use."""
+class Upsampler:
+    """From a coarse atlas to the finest one, by Catmull-Rom.
+
+    Attributes:
+        rows, columns: the taps of each fine row and column.
+        spans: (H, 2) columns in use, see the kernel.
+        coarse, fine: (rows, columns) of both atlases.
+    """
 
     rows: Taps
     columns: Taps
@@ -92,16 +111,20 @@ class Finer:
         """fine (C, H, W) = start + coarse (C, h, w) made finer, in the columns in use."""
         lines = np.zeros((self.coarse[0], self.fine[1]), np.float32)
         taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)
-        enlarge(coarse, *taps, self.spans, lines, start, fine)
+        upsample(coarse, *taps, self.spans, lines, start, fine)
 
 
 @dataclass(frozen=True, eq=False)
-class Composer:
-    """Mean and components as one texture of the finest atlas, as the renderers compose it. mean: None where it is as
-    fine itself."""
+class AtlasComposer:
+    """Mean and components as one texture of the finest atlas, as the renderers compose it.
 
-    mean: Finer | None
-    grid: Finer
+    Attributes:
+        mean: None where the mean is as fine as the atlas.
+        grid: of the components.
+    """
+
+    mean: Upsampler | None
+    grid: Upsampler
 
     def fine_mean(self, mean: NDArray[np.float32]) -> NDArray[np.float32]:
         """(C, H, W): a mean as fine as the atlas."""
@@ -112,17 +135,18 @@ class Composer:
         return fine
 
 
-def make_composer(surface: Surface, model: Model) -> Composer:
+def make_composer(surface: Surface, model: PlaneModel) -> AtlasComposer:
     """For a model drawn on `surface`."""
     shape = model.mean.shape[1:]
-    return Composer(None if shape == surface.size else make_finer(surface, shape), make_finer(surface, model.grid))
+    mean = None if shape == surface.size else make_upsampler(surface, shape)
+    return AtlasComposer(mean, make_upsampler(surface, model.grid))
 
 
-def make_finer(surface: Surface, grid: tuple[int, int]) -> Finer:
+def make_upsampler(surface: Surface, grid: tuple[int, int]) -> Upsampler:
     """Between `grid` and the atlas of `surface`, whose unused tiles are left out."""
     height, width = surface.size
     spans = np.zeros((height, 2), np.int64)
     for row in np.flatnonzero(surface.used.any(axis=1)):
         used = np.flatnonzero(surface.used[row])
         spans[row * TILE : (row + 1) * TILE] = used[0] * TILE, min((used[-1] + 1) * TILE, width)
-    return Finer(make_taps(height, grid[0]), make_taps(width, grid[1]), spans, grid, (height, width))
+    return Upsampler(make_taps(height, grid[0]), make_taps(width, grid[1]), spans, grid, (height, width))

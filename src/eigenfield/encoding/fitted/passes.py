@@ -1,11 +1,11 @@
-"""One look at all photographs: what is drawn of them, and what the difference asks of mean, textures and weights.
+"""One pass over all observations: each is drawn, and what its difference asks of mean, textures and weights.
 
 What a renderer draws is the sum of mean and components in the finest atlas. Here each is drawn from its own grid, and
 the drawn pictures are summed: nearly the same (Catmull-Rom once instead of twice for what is coarse) for a third of the
-work, as no camera needs an atlas of its own. A look with a `Composer` draws as the renderers do.
+work, as no observation needs an atlas of its own. A pass with an `AtlasComposer` draws as the renderers do.
 
-Cameras are taken in batches, whatever the number of threads, and a batch's parts are summed in order: the same input
-gives the same numbers.
+Observations are taken in batches, whatever the number of threads, and a batch's parts are summed in order: the same
+input gives the same numbers.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -17,12 +17,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import aim, distrust, draw, put_back, squares_of
-from eigenfield.encoding.fitted.model import COLUMNS, Composer, Model, sum_up
-from eigenfield.encoding.fitted.observations import Shots
+from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of, target
+from eigenfield.encoding.fitted.model import COLUMNS, AtlasComposer, PlaneModel, sum_up
+from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-BATCH = 48  # cameras whose sums are in memory at a time: each batch reads and writes all textures once
+BATCH = 48  # observations whose sums are in memory at a time: each batch reads and writes all textures once
 PIECE = 12  # of them are one thread's task
 PLUS, MINUS = np.float32(1), np.float32(-1)
 
@@ -30,12 +30,16 @@ Textures = list[NDArray[np.float32]]
 
 
 @dataclass(frozen=True, eq=False)
-class Look:
-    """What a pass brings: sums over the cameras of G^T w (photograph - drawn), or of G^T w drawn.
+class NormalEquations:
+    """What a pass brings: sums over the observations of G^T w (photograph - drawn), the right-hand side of the normal
+    equations, or of G^T w drawn, their matrix times what was drawn.
 
-    mean: as the model's. textures: for each block (n, C, rows, columns). weights: for each block (Ne, n).
-    squares: (Ne,) of each camera, sum of m (photograph - drawn)^2, m being its mask. pixels: (Ne,), sum of m; both zero
-    without photographs.
+    Attributes:
+        mean: as the model's.
+        textures: for each block (n, C, rows, columns).
+        weights: for each block (No, n), a row for each observation.
+        squares: (No,) the sum of m (photograph - drawn)^2 over an observation, m being its mask.
+        pixels: (No,) the sum of m; both are zero where photographs were not compared with.
     """
 
     mean: NDArray[np.float32]
@@ -45,40 +49,47 @@ class Look:
     pixels: NDArray[np.float64]
 
 
-def look(
-    shots: Shots,
-    model: Model,
+def render_and_backproject(
+    data: FitData,
+    model: PlaneModel,
     *,
     mean: NDArray[np.float32] | None,
     textures: Textures | None,
     weights: Textures,
     photographs: bool,
     wanted: tuple[bool, bool, bool],
-    composer: Composer | None = None,
-    half: float | None = None,
-) -> Look:
-    """Draw every camera from a mean and textures (None: nothing) with weights, which need not be the model's own.
+    composer: AtlasComposer | None = None,
+    variance: float | None = None,
+) -> NormalEquations:
+    """Draw every observation from a mean and textures, and bring back what is asked for.
 
-    photographs: whether they are compared with (the residual goes back), or what is drawn goes back itself. wanted:
-    which of mean, textures and weights to bring; the textures asked of go with the model's weights, the weights with
-    its textures. composer: draw exactly as the renderers do, mean and textures both given. half: from here on
-    pixels of `doubtable` shots count for less the farther they are off (`kernels.distrust`); None: as before.
+    Args:
+        data: the observations, and the footprints of their cameras.
+        model: whose weights the textures that are asked for go with, and whose textures the weights go with.
+        mean: is drawn; None: nothing.
+        textures: are drawn, for each block of the model; None: nothing.
+        weights: (No, n) by which the textures are drawn, for each block; they need not be the model's own.
+        photographs: whether they are compared with (the residual goes back), or what is drawn goes back itself.
+        wanted: which of mean, textures and weights to bring.
+        composer: draws exactly as the renderers do, mean and textures both given.
+        variance: sigma^2 by which the robust weights of the pixels, where the data have any, are updated from the
+            residual (`kernels.robust_weights`); None: they stay.
     """
     for_mean, for_textures, for_weights = wanted
-    blocks, size = model.blocks, shots.surface.size
+    observations, blocks, size = data.observations, model.blocks, data.size
     found = [np.zeros_like(block.textures) for block in blocks] if for_textures else []
-    asked = [np.zeros((len(shots), block.count), np.float32) for block in blocks] if for_weights else []
-    squares, pixels = np.zeros(len(shots)), np.zeros(len(shots))
+    asked = [np.zeros((len(data), block.count), np.float32) for block in blocks] if for_weights else []
+    squares, pixels = np.zeros(len(data)), np.zeros(len(data))
     coarse = any(block.count for block in blocks)
     for_coarse = coarse and (for_textures or for_weights)
     matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
-    batch = min(BATCH, len(shots))
+    batch = min(BATCH, len(data))
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
     product = np.empty((max((block.count for block in blocks), default=0), COLUMNS), np.float32)
     shares = np.zeros((len(pieces(batch, PIECE)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32)
-    for first, last in pieces(len(shots), BATCH):
+    for first, last in pieces(len(data), BATCH):
         some = slice(first, last)
         sums, back = None, room[1, : last - first]
         if coarse and textures is not None:
@@ -94,30 +105,30 @@ def look(
             added = shares[part[0] // PIECE]
             for at in range(*part):
                 index = first + at
-                places, weight = shots.places(index), shots.weight(index)
-                image = np.zeros((model.channels, *shots.shapes[index]), np.float32)
+                footprint, weight = data.footprint(index), observations.weights(index)
+                image = data.blank(index, model.channels)
                 if photographs:
-                    aim(places[0], shots.photograph(index), matrix, image)
+                    target(footprint[0], observations.codes_of(index), matrix, image)
                 if composer is not None and fine_mean is not None:
                     texture = fine_mean
                     if sums is not None:
                         texture = np.zeros_like(fine_mean)
                         composer.grid.up(sums[at], texture, fine_mean)
-                    draw(*places, size, texture, sign, image)
+                    forward(*footprint, size, texture, sign, image)
                 else:
                     if mean is not None:
-                        draw(*places, size, mean, sign, image)
+                        forward(*footprint, size, mean, sign, image)
                     if sums is not None:
-                        draw(*places, size, sums[at], sign, image)
+                        forward(*footprint, size, sums[at], sign, image)
                 if photographs:
-                    squares[index], pixels[index] = squares_of(places[0], image, shots.mask(index))
-                if half is not None and shots.doubts is not None:
-                    distrust(image, shots.mask(index), np.float32(max(half, 1e-12)), weight)
+                    squares[index], pixels[index] = squares_of(footprint[0], image, observations.mask(index))
+                if variance is not None and observations.robust is not None:
+                    robust_weights(image, observations.mask(index), np.float32(max(variance, 1e-12)), weight)
                 if for_mean:
-                    put_back(*places, size, image, weight, added)
+                    adjoint(*footprint, size, image, weight, added)
                 if for_coarse:
                     back[at] = 0
-                    put_back(*places, size, image, weight, back[at])
+                    adjoint(*footprint, size, image, weight, back[at])
 
         parallel_map(piece, pieces(last - first, PIECE))
         for number, block in enumerate(blocks if for_coarse else ()):
@@ -129,10 +140,11 @@ def look(
                     into[:, left:right] += np.matmul(block.weights[some].T, inside[:, left:right], out=part)
             if for_weights and block.count:
                 asked[number][some] = inside @ block.textures.reshape(block.count, -1).T
-    return Look(shares.sum(axis=0), found, asked, squares, pixels)
+    return NormalEquations(shares.sum(axis=0), found, asked, squares, pixels)
 
 
 def psnr_of(squares: NDArray[np.float64], pixels: NDArray[np.float64], channels: int = 1) -> float:
-    """dB, the mean over cameras that see anything, of the channels' own range 0..1; what is drawn is not rounded."""
+    """dB, the mean over observations that show anything, of the channels' own range 0..1; what is drawn is not
+    rounded."""
     seen = pixels > 0
     return float(np.mean(-10 * np.log10(np.maximum(squares[seen] / (pixels[seen] * channels), 1e-12))))

@@ -13,31 +13,36 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.aom import aom_program, encode_aom
 from eigenfield.coding.pictures.pictures_10bit import SMALLEST, SVT, encoder_step
+from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Plane
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.observations import Shots, doubtable, thinned
+from eigenfield.encoding.fitted.observations import FitData, subsampled, with_robust_weights
 from eigenfield.encoding.fitted.rate import Rate, price_of
+from eigenfield.encoding.options import DENSEST, Preset
 
 log = logging.getLogger("eigenfield.fit")
 
 TEXTURE_SHARE = 0.55  # density of luma's components, of the atlas's along an axis; chosen on Tarot
-DENSEST = 1.5  # atlas texels per photograph pixel along one axis
 SIDE_STEP = 16  # atlas sides are multiples of this
 
 
 @dataclass(frozen=True, eq=False)
-class Kind:
+class PlanePreset:
     """How a plane is fitted and coded beside the others; chosen on Tarot.
 
-    matrix: (C, 3) its channels from R, G, B. mean_share, texture_share: densities, of the atlas's along an axis; ahead:
-    as if the atlas had so many texels a pixel more, up to DENSEST.
-    textures: of the number asked for. mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's
-    density: a texel answers for as many pixels as its plane is less dense, so that equal steps in the pictures are
-    steps in proportion to density. thinned: fitted to fewer pixels where there are many cameras. searched:
-    see `Rate`; not chroma, whose mean says nothing of what luma's bytes are worth.
+    Attributes:
+        name: of the plane.
+        matrix: (C, 3) its channels from R, G, B.
+        mean_share, texture_share: densities, of the atlas's along an axis.
+        textures: of the number asked for.
+        mean_step, texture_step: of the quantiser, beside `step_of`, at the atlas's density: a texel answers for as many
+            pixels as its plane is less dense, so that equal steps in the pictures are steps in proportion to density.
+        subsampled: fitted to fewer pixels where there are many observations.
+        ahead: densities are as if the atlas had so many texels a pixel more, up to DENSEST.
+        searched: see `Rate`; not chroma, whose mean says nothing of what luma's bytes are worth.
     """
 
     name: str
@@ -47,7 +52,7 @@ class Kind:
     textures: float
     mean_step: float
     texture_step: float
-    thinned: bool
+    subsampled: bool
     ahead: float
     searched: bool
 
@@ -61,64 +66,57 @@ class Kind:
         return PlaneSettings(self.matrix, mean, grid, count, count)
 
     def rate(self, step: float, patient: bool = False, few: bool = False) -> Rate:
-        """step: see `step_of`. patient: coded by libaom, which the machine must have. few: cameras, whose textures
-        are about as many and draw each photograph on its own; 5x4 views lose 0.14 dB by a search at high rates."""
+        """How finely the plane is coded.
+
+        Args:
+            step: see `step_of`.
+            patient: coded by libaom, which the machine must have.
+            few: observations, whose textures are about as many and draw each photograph on its own; 5x4 views lose
+                0.14 dB by a search at high rates.
+        """
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
         coder, trial = (encode_aom, SVT) if patient else (SVT, None)
         return Rate(mean_step, texture_step, coder, trial, search=self.searched and not few)
 
 
 _LUMA, _CHROMA = split_matrix()
-KINDS = {
+PLANE_PRESETS = {
     "luma-chroma": (
-        Kind("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),
-        Kind("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
+        PlanePreset("luma", _LUMA, 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),
+        PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
     ),
-    "rgb": (Kind("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
+    "rgb": (PlanePreset("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_SHARE, 1.0, 0.85, 0.7, False, 0.0, True),),
 }
 HALF_LEVEL = 0.002  # grey level, in the photographs' range
-TEXTURES_SHARE = 1 / 2  # of the cameras, see `fitted_textures`
+TEXTURES_SHARE = 1 / 2  # of the observations, see `fitted_textures`
 TEXTURES_LEAST, TEXTURES_MOST = 20, 96
 UNMEASURED = 99.999  # dB
-THINNED_FROM = 50  # cameras, from which every second pixel each way is enough for weights, and for chroma
+SUBSAMPLED_FROM = 50  # observations, from which every second pixel each way is enough for weights, and for chroma
 FEW_ROUNDS = 4  # at most, or the preset's, for fewer: they take longer to settle, and what is far off does not even out
 
 
-@dataclass(frozen=True)
-class Preset:
-    """What a fit aims at. quality: 0 to 100. rounds: at most (see FEW_ROUNDS). patient: coded by libaom where there is
-    one."""
-
-    quality: int
-    rounds: int
-    patient: bool = False
-
-
-PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4, patient=True)}
-
-
-def fitted_textures(cameras: int) -> int:
+def fitted_textures(observations: int) -> int:
     """Luma's number of eigen textures unless it is asked for, before coding keeps those that are worth their bytes."""
-    return min(max(round(TEXTURES_SHARE * cameras), min(TEXTURES_LEAST, cameras - 1)), TEXTURES_MOST)
+    return min(max(round(TEXTURES_SHARE * observations), min(TEXTURES_LEAST, observations - 1)), TEXTURES_MOST)
 
 
 @dataclass(frozen=True, eq=False)
 class Fits:
-    """Planes fitted, not coded yet. patient: see `Kind.rate`."""
+    """Planes fitted, not coded yet. patient: see `PlanePreset.rate`."""
 
-    planes: tuple[tuple[Kind, OpenFit], ...]
+    planes: tuple[tuple[PlanePreset, OpenFit], ...]
     patient: bool
 
     def coded(
         self, quality: int, grid: NDArray[np.int64] | None = None, progress: Progress | None = None
-    ) -> dict[str, Plane]:
+    ) -> dict[str, Coded[Plane]]:
         """All as they are coded at a quality, in the order of `to_rgb`'s columns. grid: as `code_plane`."""
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
-        few = len(self.planes[0][1].pixels.every) < THINNED_FROM
+        few = len(self.planes[0][1].pixels.every) < SUBSAMPLED_FROM
         return {
-            kind.name: code_plane(fit, kind.rate(step, self.patient, few), grid, precision, progress)
-            for kind, fit in self.planes
+            plane.name: code_plane(fit, plane.rate(step, self.patient, few), grid, precision, progress)
+            for plane, fit in self.planes
         }
 
     def reached(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
@@ -134,33 +132,42 @@ class Fits:
 
 @contextlib.contextmanager
 def open_fits(
-    shots: Shots,
+    data: FitData,
     density: float,
     textures: int,
     preset: Preset,
-    kinds: Sequence[Kind] = KINDS["luma-chroma"],
+    planes: Sequence[PlanePreset] = PLANE_PRESETS["luma-chroma"],
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Fits]:
-    """Planes fitted to `shots`, which stay open. density: of their atlas. textures: luma's number."""
-    size = shots.surface.size
-    few = len(shots) < THINNED_FROM
+    """Planes fitted.
+
+    Args:
+        data: what they are fitted to, which stays open.
+        density: texels of its atlas for a pixel, along an axis.
+        textures: luma's number.
+        preset: what the fit aims at.
+        planes: which, and how each is fitted and coded.
+        work: folder for scratch files.
+        progress: reports the steps.
+    """
+    few = len(data) < SUBSAMPLED_FROM
     rounds = max(preset.rounds, FEW_ROUNDS) if few else preset.rounds
     with contextlib.ExitStack() as kept:
-        some = kept.enter_context(thinned(shots, 1 if few else 2, work))
+        some = kept.enter_context(subsampled(data, 1 if few else 2, work))
 
-        def fit(kind: Kind) -> OpenFit:
+        def fit(plane: PlanePreset) -> OpenFit:
             if few:
-                doubted = kept.enter_context(doubtable(shots, work))
-                pixels = Pixels(shots, doubted, doubted)
+                robust = kept.enter_context(with_robust_weights(data, work))
+                pixels = Pixels(data, robust, robust)
             else:
-                pixels = Pixels(shots, some if kind.thinned else shots, some)
-            return fit_plane(pixels, kind.settings(size, density, textures), kind.name, rounds, work, progress)
+                pixels = Pixels(data, some if plane.subsampled else data, some)
+            return fit_plane(pixels, plane.settings(data.size, density, textures), plane.name, rounds, work, progress)
 
         patient = preset.patient and aom_program() is not None
         if preset.patient:
             log.info("coded by %s", "libaom" if patient else "SVT-AV1: an ffmpeg program with libaom saves 8 to 10 %")
-        yield Fits(tuple((kind, fit(kind)) for kind in kinds), patient)
+        yield Fits(tuple((plane, fit(plane)) for plane in planes), patient)
 
 
 def step_of(quality: int) -> float:
@@ -169,17 +176,10 @@ def step_of(quality: int) -> float:
     return encoder_step(0.63 * (100 - quality)) * HALF_LEVEL / TEXTURE_SHARE
 
 
-def density_of(quality: int) -> float:
-    """Atlas texels per photograph pixel along one axis that a quality pays for: the coarser the codes, the less is left
-    of what a denser atlas could hold. Least bytes for the same luma on Tarot at 0.9 (quality 62), 1.05 (68) and 1.35
-    (86), on Shop at 1.25 (80), on Antinous at 1.0 (75)."""
-    return float(np.clip(0.9 + 0.6 * (quality - 60) / 31, 0.9, DENSEST))
-
-
 def byte_price(quality: int) -> float:
     """Squared error of luma that a byte takes off the pictures at a quality, for each pixel that a texel of the mean is
     seen in."""
-    return price_of(KINDS["luma-chroma"][0].mean_step * step_of(quality))
+    return price_of(PLANE_PRESETS["luma-chroma"][0].mean_step * step_of(quality))
 
 
 def scaled(size: tuple[int, int], share: float) -> tuple[int, int]:

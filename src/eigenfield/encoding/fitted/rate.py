@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import Coder, svt
-from eigenfield.core.payloads import files_of
 from eigenfield.core.scene import Basis
-from eigenfield.encoding.fitted.code_planes import code_basis, code_mean, first_pictures
-from eigenfield.encoding.fitted.model import Block, Model
+from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis, code_mean, first_pictures
+from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.parallel import parallel_map
 
@@ -51,7 +50,7 @@ class Price:
     measured: float
 
 
-def price_of_mean(model: Model, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None) -> Price:
+def price_of_mean(model: PlaneModel, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None) -> Price:
     """precision: as `code_mean`. Measured where `rate` searches and there is what to search for."""
     seen = scales.mean[scales.mean > 0]
     reckoned = price_of(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
@@ -60,15 +59,15 @@ def price_of_mean(model: Model, scales: Scales, rate: Rate, precision: NDArray[n
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
 
     def coded(factor: float) -> tuple[float, int]:
-        kept, file = code_mean(mean, rate.mean_step * factor, rate.trial or rate.coder, precision)
-        return float(np.einsum("hwc,hw->", np.square(kept - mean), scales.mean, dtype=np.float64)), len(file.data)
+        kept, picture = code_mean(mean, rate.mean_step * factor, rate.trial or rate.coder, precision)
+        return float(np.einsum("hwc,hw->", np.square(kept - mean), scales.mean, dtype=np.float64)), len(picture.data)
 
     (fine, more), (coarse, fewer) = parallel_map(coded, (1 / NEAR, NEAR))
     slope = (coarse - fine) / (more - fewer) if more > fewer else reckoned
     return Price(reckoned, min(max(slope, reckoned / BELIEVED), reckoned * BELIEVED))
 
 
-def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, price: Price) -> Basis:
+def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, price: Price) -> CodedBasis:
     """Those of a block's components that are worth their bytes, coded. grid: (rows, columns) that it is part of."""
     basis = _basis_of(block, grid)
     step = rate.texture_step
@@ -77,7 +76,7 @@ def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: R
     coded = code_basis(basis, step, rate.trial or rate.coder)
     _, count = _worthwhile(*_effects(coded, block, scales), price.reckoned)
     log.debug("%d of %d components coded, at %.2f of the usual step", count, block.count, step / rate.texture_step)
-    ends = list(accumulate((file.count for file in files_of(coded) or ()), initial=0))
+    ends = list(accumulate((picture.count for picture in coded.pictures), initial=0))
     if count == 0 or (count in ends and rate.trial is None):
         return first_pictures(coded, ends.index(count))
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
@@ -102,18 +101,18 @@ def _best_factor(basis: Basis, block: Block, scales: Scales, step: float, price:
     return 1.0
 
 
-def _effects(coded: Basis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _effects(coded: CodedBasis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Of each component: squared error over all cameras that it brings, less than 0 where it takes some off, and bytes,
     its weights' too."""
     share = scales.coarse[block.window]
     errors: list[float] = []
     sizes: list[float] = []
-    for file in files_of(coded) or ():
-        part = slice(len(errors), len(errors) + file.count)
-        before, after = block.textures[part], coded.values(part.start, part.stop).transpose(0, 3, 1, 2)
+    for picture in coded.pictures:
+        part = slice(len(errors), len(errors) + picture.count)
+        before, after = block.textures[part], coded.basis.values(part.start, part.stop).transpose(0, 3, 1, 2)
         more = np.einsum("nchw,nchw,hw->n", after, after - 2 * before, share, dtype=np.float64)  # (b - a)^2 - b^2
         errors += more.tolist()
-        sizes += [len(file.data) / file.count + WEIGHT_BYTES * len(block.weights)] * file.count
+        sizes += [len(picture.data) / picture.count + WEIGHT_BYTES * len(block.weights)] * picture.count
     return np.array(errors), np.array(sizes)
 
 

@@ -1,9 +1,10 @@
 """Least squares over the photographs: conjugate gradients for mean and textures together, and for the weights.
 
-Minimised is the sum over cameras c of |photograph - G_c M - G_c sum_j w_cj E_j|^2, where G_c draws a texture of any
-size as the renderer does (see `passes`), plus small Laplacians of mean and textures, which settle what no photograph
-sees. Only pixels that a camera covers count, each against what is drawn there: nothing is filled in
-first, so that this is principal component analysis with missing data, in the pictures instead of the texture maps.
+Minimised is the sum over observations i of |photograph_i - G M - G sum_j w_ij E_j|^2, where G, of the camera that took
+i, draws a texture of any size as the renderer does (see `passes`), plus small Laplacians of mean and textures, which
+settle what no photograph sees. Only pixels that a camera covers count, each against what is drawn there: nothing is
+filled in first, so that this is principal component analysis with missing data, in the pictures instead of the texture
+maps.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -17,10 +18,10 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import advance, bend, put_back, turn
-from eigenfield.encoding.fitted.model import COLUMNS, Composer, Model
-from eigenfield.encoding.fitted.observations import Shots
-from eigenfield.encoding.fitted.passes import PIECE, Look, Textures, look
+from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, next_direction, take_step
+from eigenfield.encoding.fitted.model import COLUMNS, AtlasComposer, PlaneModel
+from eigenfield.encoding.fitted.observations import FitData
+from eigenfield.encoding.fitted.passes import PIECE, NormalEquations, Textures, render_and_backproject
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 MEAN_SMOOTHNESS = 0.004  # of a seen texel's own part in the pictures, the median
@@ -30,10 +31,12 @@ RIDGE = 1e-5  # of the mean diagonal, for weights
 
 @dataclass(frozen=True, eq=False)
 class Scales:
-    """How much of the pictures a texel answers for, summed over the cameras.
+    """How much of the pictures a texel answers for, summed over the observations.
 
-    mean: (rows, columns) float32 of the mean. coarse: (h, w) float32 of a component whose weights have mean square 1.
-    smooth: strength of the Laplacians of mean and components.
+    Attributes:
+        mean: (rows, columns) float32 of the mean.
+        coarse: (h, w) float32 of a component whose weights have mean square 1.
+        smooth: strength of the Laplacians of mean and components.
     """
 
     mean: NDArray[np.float32]
@@ -41,21 +44,21 @@ class Scales:
     smooth: tuple[float, float]
 
 
-def measure_scales(shots: Shots, model: Model) -> Scales:
+def measure_scales(data: FitData, model: PlaneModel) -> Scales:
     """Row sums of the normal matrix, G^T G 1 = G^T 1: what Catmull-Rom's negative taps leave of its diagonal plus all
     around it, on either grid."""
     fine, coarse = np.zeros((1, *model.mean.shape[1:]), np.float32), np.zeros((1, *model.grid), np.float32)
-    size = shots.surface.size
 
     def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
         for index in range(*part):
-            ones = np.ones((1, *shots.shapes[index]), np.float32)
-            put_back(*shots.places(index), size, ones, shots.weight(index), mean)
-            put_back(*shots.places(index), size, ones, shots.weight(index), grid)
+            footprint, weight = data.footprint(index), data.observations.weights(index)
+            ones = np.ones((1, *footprint[0].shape), np.float32)
+            adjoint(*footprint, data.size, ones, weight, mean)
+            adjoint(*footprint, data.size, ones, weight, grid)
         return mean, grid
 
-    for mean, grid in parallel_map(piece, pieces(len(shots), PIECE)):
+    for mean, grid in parallel_map(piece, pieces(len(data), PIECE)):
         fine += mean
         coarse += grid
     np.maximum(fine, 0, out=fine)
@@ -69,31 +72,39 @@ def _median(values: NDArray[np.float32]) -> float:
 
 
 def residual(
-    shots: Shots,
-    model: Model,
+    data: FitData,
+    model: PlaneModel,
     mean_only: bool = False,
-    composer: Composer | None = None,
-    half: float | None = None,
-) -> Look:
-    """What the model leaves of the photographs, and what that asks of mean and textures. composer: what it leaves as
-    the renderers draw it. half: see `look`."""
-    return look(
-        shots, model, mean=model.mean, textures=[block.textures for block in model.blocks],
+    composer: AtlasComposer | None = None,
+    variance: float | None = None,
+) -> NormalEquations:
+    """What the model leaves of the photographs, and what that asks of mean and textures. composer, variance: see
+    `render_and_backproject`."""
+    return render_and_backproject(
+        data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
         weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
-        composer=composer, half=half,
+        composer=composer, variance=variance,
     )  # fmt: skip
 
 
 def fit_textures(
-    shots: Shots,
-    model: Model,
+    data: FitData,
+    model: PlaneModel,
     scales: Scales,
-    left: Look,
+    left: NormalEquations,
     iterations: int,
     mean_only: bool = False,
 ) -> None:
-    """Mean and textures of the model for its weights, or the mean alone for its textures as well. left: `residual` of
-    the model as it is; its sums are used up."""
+    """Mean and textures of the model for its weights, or the mean alone for its textures as well.
+
+    Args:
+        data: to be drawn.
+        model: is changed in place.
+        scales: of these data.
+        left: `residual` of the model as it is; its sums are used up.
+        iterations: of conjugate gradients.
+        mean_only: the textures stay.
+    """
     blocks = [] if mean_only else model.blocks
     weights = [block.weights for block in model.blocks]
     kinds = [_Kind(scales.mean, scales.smooth[0], 1.0)]
@@ -109,14 +120,14 @@ def fit_textures(
     for _ in range(iterations):
         if product <= 0:
             break
-        back = look(
-            shots, model, mean=mean, textures=None if mean_only else textures, weights=weights, photographs=False,
+        back = render_and_backproject(
+            data, model, mean=mean, textures=None if mean_only else textures, weights=weights, photographs=False,
             wanted=(True, not mean_only, False),
         )  # fmt: skip
         image = _parts(back.mean, back.textures)
-        length = product / descent.bent(image)
-        product, before = descent.advance(image, length), product
-        descent.turn(product / before)
+        length = product / descent.curvature(image)
+        product, before = descent.take_step(image, length), product
+        descent.next_direction(product / before)
 
 
 def _parts(mean: NDArray[np.float32], textures: Textures) -> Textures:
@@ -135,22 +146,22 @@ class _Descent:
 
     def begin(self) -> float:
         """The first direction, of what is left without the Laplacian; how much is left, by the preconditioner."""
-        self._sum(lambda i: bend(self.state[i], -self.kinds[i].strength, self.rest[i]))
-        return self.turn(0.0)
+        self._sum(lambda i: add_laplacian(self.state[i], -self.kinds[i].strength, self.rest[i]))
+        return self.next_direction(0.0)
 
-    def bent(self, image: Textures) -> float:
-        """direction . A direction; image: A direction, but for the Laplacian."""
-        return self._sum(lambda i: bend(self.direction[i], self.kinds[i].strength, image[i]))
+    def curvature(self, image: Textures) -> float:
+        """direction . A direction; image: A direction, but for the Laplacian, which is added."""
+        return self._sum(lambda i: add_laplacian(self.direction[i], self.kinds[i].strength, image[i]))
 
-    def advance(self, image: Textures, length: float) -> float:
+    def take_step(self, image: Textures, length: float) -> float:
         """A step along the direction; how much is left, by the preconditioner."""
         step, state, rest, along = np.float32(length), self.state, self.rest, self.direction
-        return self._sum(lambda i: advance(state[i], rest[i], along[i], image[i], step, *self.kinds[i].diagonal))
+        return self._sum(lambda i: take_step(state[i], rest[i], along[i], image[i], step, *self.kinds[i].diagonal))
 
-    def turn(self, ratio: float) -> float:
+    def next_direction(self, ratio: float) -> float:
         """The next direction, with `ratio` of the present one."""
         part = np.float32(ratio)
-        return self._sum(lambda i: turn(self.direction[i], self.rest[i], part, *self.kinds[i].diagonal))
+        return self._sum(lambda i: next_direction(self.direction[i], self.rest[i], part, *self.kinds[i].diagonal))
 
     def _sum(self, function: Callable[[int], float]) -> float:
         return float(np.sum(parallel_map(function, range(len(self.kinds)))))
@@ -174,9 +185,15 @@ class _Kind:
         return self.share, np.float32(4 * self.smooth), np.float32(self.energy)
 
 
-def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
-    """The weights of all cameras for the model's mean and textures, each camera its own least squares, solved side by
-    side."""
+def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
+    """The weights of all observations for the model's mean and textures, each row its own least squares, solved side
+    by side.
+
+    Args:
+        data: whose observations the rows of weights are.
+        model: is changed in place.
+        iterations: of conjugate gradients.
+    """
     blocks = model.blocks
     textures = [block.textures for block in blocks]
     sizes = [block.count for block in blocks]
@@ -186,33 +203,34 @@ def fit_weights(shots: Shots, model: Model, iterations: int) -> None:
         return [np.ascontiguousarray(rows[:, a:b]) for a, b in pairwise(cuts)]
 
     def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
-        found = look(
-            shots, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
+        found = render_and_backproject(
+            data, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
             photographs=photographs, wanted=(False, False, True),
         )  # fmt: skip
         return np.concatenate(found.weights, axis=1)
 
     state = np.concatenate([block.weights for block in blocks], axis=1)
     rest = asked(state, True)
-    # Whitened components draw pictures of about one size, so that the diagonal is about one number a camera
+    # Whitened components draw pictures of about one size, so that the diagonal is about one number a row
     energy = np.concatenate([np.einsum("nchw,nchw->n", texture, texture) for texture in textures])
     ridge = np.float32(RIDGE * max(float(energy.mean()), 1e-12))
     direction = rest.copy()
     product = np.square(rest, dtype=np.float64).sum(axis=1)
     for _ in range(iterations):
         image = asked(direction, False) + ridge * direction
-        bent = (direction.astype(np.float64) * image).sum(axis=1)
-        length = np.divide(product, bent, out=np.zeros_like(product), where=bent > 0).astype(np.float32)[:, None]
+        curvature = (direction.astype(np.float64) * image).sum(axis=1)
+        length = np.divide(product, curvature, out=np.zeros_like(product), where=curvature > 0)
+        length = length.astype(np.float32)[:, None]
         state += length * direction
         rest -= length * image
         before, product = product, np.square(rest, dtype=np.float64).sum(axis=1)
-        turn = np.divide(product, before, out=np.zeros_like(product), where=before > 0).astype(np.float32)[:, None]
-        direction = rest + turn * direction
+        ratio = np.divide(product, before, out=np.zeros_like(product), where=before > 0).astype(np.float32)[:, None]
+        direction = rest + ratio * direction
     for block, rows in zip(blocks, split(state), strict=True):
         block.weights = rows
 
 
-def whiten(model: Model, scales: Scales) -> None:
+def whiten(model: PlaneModel, scales: Scales) -> None:
     """Turn each block's components so that their weights are uncorrelated, of mean square 1, and the textures
     orthogonal in the pictures (texels counted by what they answer for), the strongest first; signs as eigen textures
     have them. What is drawn stays the same."""
@@ -228,11 +246,11 @@ def whiten(model: Model, scales: Scales) -> None:
         for first, last in pieces(flat.shape[1], COLUMNS):
             part = flat[:, first:last] * share[first:last]
             gram += part @ part.T
-        _, turn = np.linalg.eigh(r @ gram @ r.T)
-        turn = turn[:, ::-1]
-        textures = (turn.T @ r / np.sqrt(rows)).astype(np.float32) @ flat
+        _, rotation = np.linalg.eigh(r @ gram @ r.T)
+        rotation = rotation[:, ::-1]
+        textures = (rotation.T @ r / np.sqrt(rows)).astype(np.float32) @ flat
         low, high = textures.min(axis=1), textures.max(axis=1)
         signs = np.where(-low > high, -1.0, 1.0)  # of the largest
         textures *= signs[:, None].astype(np.float32)
         block.textures = textures.reshape(-1, *block.textures.shape[1:])
-        block.weights = np.ascontiguousarray((q @ turn * signs * np.sqrt(rows)).astype(np.float32))
+        block.weights = np.ascontiguousarray((q @ rotation * signs * np.sqrt(rows)).astype(np.float32))

@@ -9,91 +9,99 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import aim, draw, put_back
-from eigenfield.encoding.fitted.model import Block, Model, Rectangle
-from eigenfield.encoding.fitted.observations import Shots
+from eigenfield.encoding.fitted.kernels import adjoint, forward, target
+from eigenfield.encoding.fitted.model import Block, PlaneModel, Rectangle
+from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import MINUS, PIECE
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-FLOOR = 0.2  # of a texel's median part in one picture, below which a camera is taken to see less of it
+FLOOR = 0.2  # of a texel's median part in one picture, below which an observation is taken to show less of it
 COLUMNS = 1 << 16  # numbers of a map that are summed at a time
 
 
 def principal_block(
-    shots: Shots,
-    model: Model,
+    data: FitData,
+    model: PlaneModel,
     scales: Scales,
     count: int,
     rectangle: Rectangle,
     work: Path | None = None,
 ) -> Block:
-    """`count` eigen textures of a rectangle of the grid, of what the model leaves of the photographs.
+    """Eigen textures of what the model leaves of the photographs.
 
-    Each camera's residual is put into the texture by the transpose of drawing, divided by what the camera has there
-    (not seen: zero, which is the mean, as equation 2 fills it). Needs a scratch file of 4 bytes a camera and number.
+    Each observation's residual is put into the texture by the transpose of drawing, divided by what the observation
+    has there (not seen: zero, which is the mean, as equation 2 fills it).
+
+    Args:
+        data: No observations.
+        model: what is drawn so far.
+        scales: of these data.
+        count: of eigen textures.
+        rectangle: of the grid, which they fill.
+        work: folder for a scratch file of 4 bytes an observation and number.
     """
     top, bottom, left, right = rectangle
     shape = (model.channels, bottom - top, right - left)
     size = int(np.prod(shape))
     seen = scales.coarse[scales.coarse > 0]
-    floor = np.float32(FLOOR * (float(np.median(seen)) if len(seen) else 1.0) / len(shots))
-    with scratch_array((len(shots), size), np.float32, work) as maps:
+    floor = np.float32(FLOOR * (float(np.median(seen)) if len(seen) else 1.0) / len(data))
+    with scratch_array((len(data), size), np.float32, work) as maps:
 
         def put(index: int) -> None:
-            found = _residual_map(shots, model, index, floor)
+            found = _residual_map(data, model, index, floor)
             maps[index] = found[:, top:bottom, left:right].reshape(-1)
 
-        parallel_map(put, range(len(shots)))
+        parallel_map(put, range(len(data)))
         share = np.sqrt(scales.coarse[top:bottom, left:right]).reshape(-1)
         weight = np.tile(share, model.channels)
-        gram = np.zeros((len(shots), len(shots)))
+        gram = np.zeros((len(data), len(data)))
         for first, last in pieces(size, COLUMNS):
             part = maps[:, first:last] * weight[first:last]
             gram += part.astype(np.float64) @ part.T.astype(np.float64)
         _, vectors = np.linalg.eigh(gram)
-        weights = vectors[:, ::-1][:, :count] * np.sqrt(len(shots))
+        weights = vectors[:, ::-1][:, :count] * np.sqrt(len(data))
         textures = np.zeros((weights.shape[1], size), np.float32)
         for first, last in pieces(size, COLUMNS):
-            textures[:, first:last] = (weights.T / len(shots)).astype(np.float32) @ maps[:, first:last]
+            textures[:, first:last] = (weights.T / len(data)).astype(np.float32) @ maps[:, first:last]
     return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
 
 
-def residual_energy(shots: Shots, model: Model) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """(h, w) of the grid: the squared error that a texel answers for, and the pixels, over all cameras."""
+def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """(h, w) of the grid: the squared error that a texel answers for, and the pixels, over all observations."""
 
     def piece(part: tuple[int, int]) -> NDArray[np.float32]:
         added = np.zeros((2, *model.grid), np.float32)
         for index in range(*part):
-            image = _residual_image(shots, model, index)
+            image = _residual_image(data, model, index)
             both = np.stack([np.square(image).sum(axis=0), np.ones(image.shape[1:], np.float32)])
-            put_back(*shots.places(index), shots.surface.size, both, shots.weight(index), added)
+            adjoint(*data.footprint(index), data.size, both, data.observations.weights(index), added)
         return added
 
     total = np.zeros((2, *model.grid), np.float32)
-    for added in parallel_map(piece, pieces(len(shots), PIECE)):
+    for added in parallel_map(piece, pieces(len(data), PIECE)):
         total += added
     energy, seen = np.maximum(total, 0)
     return energy, seen
 
 
-def _residual_image(shots: Shots, model: Model, index: int) -> NDArray[np.float32]:
+def _residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph."""
-    places, size = shots.places(index), shots.surface.size
-    image = np.zeros((model.channels, *shots.shapes[index]), np.float32)
-    aim(places[0], shots.photograph(index), (model.matrix / np.float32(255)).astype(np.float32), image)
-    draw(*places, size, model.mean, MINUS, image)
+    footprint, image = data.footprint(index), data.blank(index, model.channels)
+    matrix = (model.matrix / np.float32(255)).astype(np.float32)
+    target(footprint[0], data.observations.codes_of(index), matrix, image)
+    forward(*footprint, data.size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
-        draw(*places, size, model.sums(slice(index, index + 1))[0], MINUS, image)
+        forward(*footprint, data.size, model.sums(slice(index, index + 1))[0], MINUS, image)
     return image
 
 
-def _residual_map(shots: Shots, model: Model, index: int, floor: np.float32) -> NDArray[np.float32]:
+def _residual_map(data: FitData, model: PlaneModel, index: int, floor: np.float32) -> NDArray[np.float32]:
     """(C, h, w): what is left of a photograph, on the grid."""
-    places, weight, size = shots.places(index), shots.weight(index), shots.surface.size
-    image = _residual_image(shots, model, index)
+    footprint, weight = data.footprint(index), data.observations.weights(index)
+    image = _residual_image(data, model, index)
     back, part = np.zeros((model.channels, *model.grid), np.float32), np.zeros((1, *model.grid), np.float32)
-    put_back(*places, size, image, weight, back)
-    put_back(*places, size, np.ones((1, *shots.shapes[index]), np.float32), weight, part)
+    adjoint(*footprint, data.size, image, weight, back)
+    adjoint(*footprint, data.size, np.ones((1, *image.shape[1:]), np.float32), weight, part)
     return np.asarray(back / np.maximum(part, floor), np.float32)

@@ -4,7 +4,7 @@ A mesh that was estimated or scanned is off by fractions of a pixel nearly every
 eigen textures spent on parallax. Each vertex may move along a line, a relief's along the ray of the camera that it
 was made on, others along their normal. Where a point moves, a camera draws another texel of the mean there: by the
 mean's slopes, the picture changes by g for a unit of the step. Gauss-Newton on all vertices: what the mean leaves of
-the photographs, r, is to be g x for the steps x, less what is the same in all cameras, for the mean takes that. Then
+the photographs, r, is to be g x for the steps x, less what is the same in all of them, for the mean takes that. Then
 the mean is fitted again on the moved mesh, in turns.
 
 Errors count by those around, so that glass and gloss, which no depth draws, move nothing; and no vertex moves far from
@@ -32,13 +32,13 @@ from scipy.sparse.linalg import cg
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.observations import Observations, cameras_of, of_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
-from eigenfield.encoding.fitted.kernels import aim, draw, put_back
-from eigenfield.encoding.fitted.model import Model
-from eigenfield.encoding.fitted.observations import Shots, on_mesh, open_shots, thinned
+from eigenfield.encoding.fitted.kernels import adjoint, forward, target
+from eigenfield.encoding.fitted.model import PlaneModel
+from eigenfield.encoding.fitted.observations import FitData, on_mesh, open_fit_data, subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
@@ -49,10 +49,10 @@ log = logging.getLogger("eigenfield.fit")
 
 ROUNDS = 4
 CAMERAS = 49  # of the array, spread over it, are looked at
-THINNED_FROM = 25  # of them, from which every second pixel each way is enough,
-PIXELS = 1 << 25  # and of all together
+SUBSAMPLED_FROM = 25  # observations of them, from which every second pixel each way is enough,
+PIXELS = 1 << 25  # and pixels of all together
 STOP = 0.003  # of the squared error that a round must promise to take off
-STIFF = 0.5  # what it costs that vertices a texel apart are a pixel further apart than given, beside `Asked.weight`
+STIFF = 0.5  # what it costs that vertices a texel apart are a pixel further apart than given, beside `weight`
 RIDGE = 0.015  # likewise, that a texel is a pixel off its given place
 LONGEST = 4.0  # pixels that a vertex may move a round
 AROUND = 4.0  # texels, the deviation over which errors are averaged
@@ -63,13 +63,20 @@ SOME = 2000  # vertices by which pixels are measured
 
 
 @dataclass(frozen=True, eq=False)
-class Sheet:
-    """A mesh as it was given, whose p points may move along `lines` (p, 3), of which a unit is about a pixel in the
-    camera that moves most. lattice: of a relief. shape: rows and columns of the atlas.
+class MovableMesh:
+    """A mesh as it was given, whose p points may move along lines.
 
-    same: (n,) the point at which each vertex is, those that are doubled for their texture at one. free: (p,) which may
-    move. owners: the face of each texel, spread: (t, p) from points to covered texels, prior: (p, p) what displacements
-    cost."""
+    Attributes:
+        given: the mesh, of n vertices.
+        lattice: of a relief; None for other meshes.
+        lines: (p, 3) along which points move; a unit is about a pixel in the camera that moves most.
+        shape: rows and columns of the atlas.
+        same: (n,) the point at which each vertex is; vertices that are doubled for their texture are at one.
+        free: (p,) which points may move.
+        owners: (rows, columns) the face of each texel, -1 where there is none.
+        spread: (t, p) from points to the t covered texels.
+        prior: (p, p) what displacements cost.
+    """
 
     given: Mesh
     lattice: Lattice | None
@@ -88,10 +95,15 @@ class Sheet:
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
-    """What t texels ask of the steps of the points in them: to be `pull` / `weight`, counted by `weight`, which is the
-    square of what a unit changes beside that of the errors around, less for fewer cameras. scale: (t,) by which both
-    are more than in the pictures. squares: of all errors there."""
+class StepEquations:
+    """What t texels ask of the steps of the points in them, as least squares: sum of weight (step - pull / weight)^2.
+
+    Attributes:
+        pull: (t,) the right-hand side.
+        weight: (t,) the square of what a unit changes beside that of the errors around, less for fewer cameras.
+        scale: (t,) by which both are more than in the pictures.
+        squares: of all errors in the pictures.
+    """
 
     pull: NDArray[np.float64]
     weight: NDArray[np.float64]
@@ -111,22 +123,32 @@ def fit_surface(
     """The mesh with its vertices moved to where a mean texture draws the photographs best; as it was where that does
     not help.
 
-    lattice: of a relief, whose vertices stay on their rays; None: they move along their normals. decode: the photograph
-    of a camera, and its mask. side: texels of the atlas, about a pixel each. Raises CaptureError, OutputError.
+    Args:
+        mesh: with UVs, the same at all times of the observations.
+        lattice: of a relief, whose vertices stay on their rays; None: they move along their normals.
+        cameras: of the observations.
+        observations: those of CAMERAS cameras, spread over the array, are decoded.
+        side: texels of the atlas, about a pixel each.
+        work: folder for scratch files.
+        progress: reports the rounds.
+
+    Raises CaptureError, OutputError.
     """
-    some = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    used, shape = [cameras[index] for index in some], (min(side, SIDE_MOST),) * 2
-    step = 2 if len(used) >= THINNED_FROM or sum(one.width * one.height for one in used) > PIXELS else 1
-    sheet = _sheet(mesh, lattice, used, shape)
-    best, reached, off = mesh, -np.inf, np.zeros(len(sheet.lines))
-    with open_shots(used, of_cameras(observations, some), mesh, shape, work) as every:
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    some, used = of_cameras(observations, chosen), [cameras[index] for index in chosen]
+    shape = (min(side, SIDE_MOST),) * 2
+    pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
+    step = 2 if len(some) >= SUBSAMPLED_FROM or pixels > PIXELS else 1
+    movable = _movable_mesh(mesh, lattice, used, shape)
+    best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
+    with open_fit_data(used, some, mesh, shape, work) as every:
         for number in range(ROUNDS + 1):
             if progress is not None:
                 progress("fit surface", number, ROUNDS + 1)
-            drawn = on_mesh(every, used, mesh, work) if number else nullcontext(every)
-            with drawn as placed, thinned(placed, step, work) as shots:
-                model = Model(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
-                left = fit_mean(shots, model, measure_scales(shots, model))
+            moved = on_mesh(every, used, mesh, work) if number else nullcontext(every)
+            with moved as whole, subsampled(whole, step, work) as data:
+                model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
+                left = fit_mean(data, model, measure_scales(data, model))
                 if not left.pixels.any():
                     break
                 now = psnr_of(left.squares, left.pixels)
@@ -136,17 +158,19 @@ def fit_surface(
                 best, reached = mesh, now
                 if number == ROUNDS:
                     break
-                further, promised = _step(sheet, mesh, off, shots, used, model)
+                further, promised = _step(movable, mesh, off, data, used, model)
             if promised < STOP:
                 break
             off += further
-            mesh = sheet.moved(off)
+            mesh = movable.moved(off)
     if progress is not None:
         progress("fit surface", ROUNDS + 1, ROUNDS + 1)
     return best
 
 
-def _sheet(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape: tuple[int, int]) -> Sheet:
+def _movable_mesh(
+    mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape: tuple[int, int]
+) -> MovableMesh:
     assert mesh.uv is not None
     found, same = np.unique(mesh.vertices, axis=0, return_inverse=True)
     points, same = found.astype(np.float64), same.reshape(-1)
@@ -161,20 +185,25 @@ def _sheet(mesh: Mesh, lattice: Lattice | None, cameras: Sequence[Camera], shape
     free = np.ones(len(points), bool)
     if lattice is None:
         free[_open_points(same[mesh.faces])] = False
-    return Sheet(mesh, lattice, lines, shape, same, free, owners, spread, prior.tocsr())
+    return MovableMesh(mesh, lattice, lines, shape, same, free, owners, spread, prior.tocsr())
 
 
 def _step(
-    sheet: Sheet, mesh: Mesh, off: NDArray[np.float64], shots: Shots, cameras: Sequence[Camera], model: Model
+    movable: MovableMesh,
+    mesh: Mesh,
+    off: NDArray[np.float64],
+    data: FitData,
+    cameras: Sequence[Camera],
+    model: PlaneModel,
 ) -> tuple[NDArray[np.float64], float]:
     """(p,) by how much points that are `off` (p,), as in `mesh`, move in a round, and the part of the squared error
-    that this is reckoned to take off."""
-    step, spread, free = np.zeros(len(off)), sheet.spread, np.flatnonzero(sheet.free)
+    that this is expected to take off."""
+    step, spread, free = np.zeros(len(off)), movable.spread, np.flatnonzero(movable.free)
     if not len(free):
         return step, 0.0
-    asked = _asked(sheet, mesh, shots, cameras, model)
-    normal = (spread.T @ diags_array(asked.weight) @ spread + sheet.prior).tocsr()[free][:, free]
-    pull = np.asarray(spread.T @ asked.pull - sheet.prior @ off)[free]
+    asked = _step_equations(movable, mesh, data, cameras, model)
+    normal = (spread.T @ diags_array(asked.weight) @ spread + movable.prior).tocsr()[free][:, free]
+    pull = np.asarray(spread.T @ asked.pull - movable.prior @ off)[free]
     found, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
     step[free] = found.clip(-LONGEST, LONGEST)
     moved = spread @ step
@@ -182,29 +211,31 @@ def _step(
     return step, float(less) / max(asked.squares, 1e-12)
 
 
-def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], model: Model) -> Asked:
-    """What all cameras together ask of the covered texels."""
-    covered, mean, size = sheet.owners >= 0, model.mean[0], shots.surface.size
-    places = np.zeros(sheet.lines.shape)
-    places[sheet.same] = mesh.vertices
-    points, steps = sheet.spread @ places, sheet.spread @ sheet.lines
+def _step_equations(
+    movable: MovableMesh, mesh: Mesh, data: FitData, cameras: Sequence[Camera], model: PlaneModel
+) -> StepEquations:
+    """What all observations together ask of the covered texels."""
+    covered, mean, observations = movable.owners >= 0, model.mean[0], data.observations
+    places = np.zeros(movable.lines.shape)
+    places[movable.same] = mesh.vertices
+    points, steps = movable.spread @ places, movable.spread @ movable.lines
     slopes = np.stack([np.gradient(mean, axis=1)[covered], np.gradient(mean, axis=0)[covered]], axis=1)
-    tangents, faces = _tangents(mesh, sheet.lattice, sheet.shape), sheet.owners[covered]
+    tangents, faces = _tangents(mesh, movable.lattice, movable.shape), movable.owners[covered]
     matrix = (model.matrix / np.float32(255)).astype(np.float32)
 
-    def look(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
-        places, weight = shots.places(index), shots.weight(index)
-        image = np.zeros((1, *shots.shapes[index]), np.float32)
-        aim(places[0], shots.photograph(index), matrix, image)
-        draw(*places, size, model.mean, MINUS, image)
+    def backproject(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
+        footprint, weight, image = data.footprint(index), observations.weights(index), data.blank(index, 1)
+        target(footprint[0], observations.codes_of(index), matrix, image)
+        forward(*footprint, data.size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
-        put_back(*places, size, image, weight, asked)
-        put_back(*places, size, np.ones_like(image), weight, seen)
-        put_back(*places, size, np.square(image), weight, errors)
+        adjoint(*footprint, data.size, image, weight, asked)
+        adjoint(*footprint, data.size, np.ones_like(image), weight, seen)
+        adjoint(*footprint, data.size, np.square(image), weight, errors)
         return asked[0][covered], seen[0][covered], errors[0]
 
     sums, squares = np.zeros((5, len(points))), np.zeros_like(mean)
-    for camera, (asked, seen, errors) in zip(cameras, parallel_stream(look, list(range(len(shots)))), strict=True):
+    for index, (asked, seen, errors) in enumerate(parallel_stream(backproject, range(len(data)))):
+        camera = cameras[observations.camera_of(index)]
         gather_steps(camera.matrix, points, steps, tangents, faces, slopes, asked, seen, sums)
         squares += errors
     pull, weight, first, shown, rest = sums
@@ -216,15 +247,17 @@ def _asked(sheet: Sheet, mesh: Mesh, shots: Shots, cameras: Sequence[Camera], mo
     often = np.zeros_like(mean)
     often[covered] = shown
     error = gaussian_filter(squares, AROUND) / np.maximum(gaussian_filter(often, AROUND), 1e-6)
-    sure = len(shots) / CAMERAS  # fewer cameras tell light from depth less well
+    sure = len(cameras) / CAMERAS  # fewer cameras tell light from depth less well
     scale = sure / (usual * np.maximum(error[covered].astype(np.float64), LEAST_ERROR**2))
-    return Asked(np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum()))
+    return StepEquations(
+        np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum())
+    )
 
 
 def _lines(
     points: NDArray[np.float64], faces: NDArray[np.int64], lattice: Lattice | None, cameras: Sequence[Camera]
 ) -> NDArray[np.float64]:
-    """(p, 3) of a `Sheet`; longer with the square of the distance, so that a unit is as much parallax everywhere.
+    """(p, 3) of a `MovableMesh`; longer with the square of the distance, so that a unit is as much parallax everywhere.
     faces: (m, 3) of points."""
     if lattice is not None:
         exact = lattice.coordinates(points)
@@ -276,7 +309,7 @@ def _open_points(faces: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _laplacian(same: NDArray[np.int64], faces: NDArray[np.int32], uv: NDArray[np.float64]) -> coo_array:
     """(p, p) of the mesh's edges, the weight of one in inverse proportion to its length in texels, which are what uv
-    (n, 2) counts. same: see `Sheet`."""
+    (n, 2) counts. same: see `MovableMesh`."""
     edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     ends, some = np.unique(np.sort(same[edges], axis=1), axis=0, return_index=True)
     strength = 1 / np.maximum(np.linalg.norm(uv[edges[some, 0]] - uv[edges[some, 1]], axis=1), 1)

@@ -13,11 +13,11 @@ FLAT = 1e-6  # of the tangents' product: seen edge-on, where what is drawn canno
 
 @kernel()
 def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, out):
-    """Add what one camera tells to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g is
-    what the picture there changes by for a unit of the step, s how many pixels the texel answers for and r what those
-    ask of it.
+    """Add what one observation asks to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g
+    is what the picture there changes by for a unit of the step, s how many pixels the texel answers for and r what
+    those ask of it.
 
-    matrix: (3, 4) of the camera. points, steps: (t, 3) places of the texels in the world and how a unit moves them.
+    matrix: (3, 4) of its camera. points, steps: (t, 3) places of the texels in the world and how a unit moves them.
     tangents: (m, 2, 3) how a texel to the right and one down move in the world, owners (t,) the face of each texel.
     slopes: (t, 2) the mean's, for a texel right and down. asked, seen: (t,) r and s.
     """

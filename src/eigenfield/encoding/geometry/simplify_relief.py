@@ -20,12 +20,12 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
-from eigenfield.coding.mesh.coder import encode_mesh
+from eigenfield.coding.codecs import encoder
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations
-from eigenfield.encoding.geometry.coded import UV_BITS
+from eigenfield.encoding.geometry.coded import MESH_CODEC, UV_BITS
 from eigenfield.encoding.geometry.collapse_kernels import BORDER, INSIDE, KEPT, Sheet, collapse, fallen
 from eigenfield.encoding.geometry.distortion import Effect, depth_effect, opened, texel_weights
 from eigenfield.encoding.geometry.raster_kernels import draw_owners, sheet_cost
@@ -164,7 +164,7 @@ def _form(mesh: Mesh, lattice: Lattice, fine: int, effect: Effect, digits: int, 
     None where it cannot be."""
     coarse = Lattice(lattice.matrix @ np.diag([2.0**digits, 2.0**digits, step, 1.0]), True)
     try:
-        stream, found = encode_mesh(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
+        stream, found = encoder(MESH_CODEC)(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
     except ValueError:
         return None
     if not len(found.faces):

@@ -6,11 +6,9 @@ from eigenfield.encoding.projected.agreement import disagreement_of, warn_of_dis
 from eigenfield.encoding.projected.align import METHODS, align_map, align_maps
 from eigenfield.encoding.projected.atlas import (
     SIDE_CAP,
-    SIDE_LIMIT,
     SIDE_STEP,
     Atlas,
     atlas_side,
-    check_density,
     make_atlas,
     texels_per_pixel,
 )
@@ -22,8 +20,7 @@ from eigenfield.encoding.projected.eigen import (
     spectrum,
     weights_of,
 )
-from eigenfield.encoding.projected.harmonise import MODELS as COLOUR_MODELS
-from eigenfield.encoding.projected.harmonise import check_model, fit_colours, harmonise_maps, harmonised
+from eigenfield.encoding.projected.harmonise import fit_colours, harmonise_maps, harmonised
 from eigenfield.encoding.projected.mean import Mean, filled, mean_map
 from eigenfield.encoding.projected.project import FILTERS, TextureMaps, texture_map, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader, push_pull
@@ -31,11 +28,9 @@ from eigenfield.encoding.projected.uv_measure import measure_map, smallest_count
 from eigenfield.encoding.projected.write_maps import write_maps
 
 __all__ = [
-    "COLOUR_MODELS",
     "FILTERS",
     "METHODS",
     "SIDE_CAP",
-    "SIDE_LIMIT",
     "SIDE_STEP",
     "Atlas",
     "Mean",
@@ -45,8 +40,6 @@ __all__ = [
     "align_map",
     "align_maps",
     "atlas_side",
-    "check_density",
-    "check_model",
     "component_count",
     "disagreement_of",
     "eigen_textures",

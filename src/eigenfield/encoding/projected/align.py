@@ -12,7 +12,6 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.encoding.projected.project import TextureMaps
@@ -84,12 +83,10 @@ def align_map(
 
 
 def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress: Progress | None = None) -> None:
-    """Align all maps in place to the one at index `reference`. Raises OptionError for an unknown method.
+    """Align all maps in place to the one at index `reference`.
 
     The mean must be taken again afterwards (equation 1): it changes the fill of every map (equation 2).
     """
-    if method not in METHODS:
-        raise OptionError("align", f"no alignment is called {method}", remedy=f"use one of {', '.join(METHODS)}")
     fixed, fixed_seen = np.array(maps.values[reference]), np.array(maps.seen[reference])
 
     def align(index: int) -> None:

@@ -9,14 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
 
 SIDE_STEP = 64  # atlas sides are multiples of this
 TEXELS_A_PIXEL = 2.0  # of all photographs, that a density leads to at most
 SIDE_CAP = 4096  # largest side that a density leads to; `atlas=` may ask for more
-SIDE_LIMIT = 16384
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,19 +109,12 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     return float(ratio[order][np.searchsorted(mass, mass[-1] / 2)])
 
 
-def check_density(density: float) -> None:
-    """Raise OptionError `density` for one that no atlas can have."""
-    if not 0.01 <= density <= 100:
-        raise OptionError("density", f"a density of {density:g} was asked for", remedy="ask for one between 0.1 and 4")
-
-
 def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = None) -> int:
     """Side of a square atlas whose density in `camera` is at least `density`, at most SIDE_CAP.
 
     pixels: of all photographs together. The atlas has at most TEXELS_A_PIXEL times as many texels: where most of the
     surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
     """
-    check_density(density)
     side = density / texels_per_pixel(mesh, camera)
     cap = SIDE_CAP if pixels is None else min(SIDE_CAP, math.sqrt(TEXELS_A_PIXEL * pixels))
     return int(np.clip(np.ceil(min(side, cap) / SIDE_STEP) * SIDE_STEP, SIDE_STEP, SIDE_CAP))

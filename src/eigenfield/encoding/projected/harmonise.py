@@ -24,14 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
 log = logging.getLogger("eigenfield.texturing")
 
-MODELS = ("gain", "affine")
 DARK = 16 / 255  # up to here stray light, clipping and noise are as large as what a gain would change
 BRIGHT = 253 / 255  # from here on a photograph says no more than "bright"
 CELLS = 4096  # of the atlas, at most, that the fit looks at
@@ -55,9 +53,8 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     model: "gain", or "affine" for gain and offset. Returns (No, 2, C) float32, gains then offsets: the maps become
     gain * T + offset. In each channel the gains have the geometric mean 1 and the offsets the mean 0 over the cameras
     that have something in common with others; the rest keep (1, 0), with a warning. Texels at either end of the range
-    do not count. Raises OptionError for an unknown model.
+    do not count.
     """
-    check_model(model)
     values, weights, blocks = _cells(maps, progress)
     channels = range(maps.channels)
     with threadpool_limits(1, "blas"):
@@ -75,12 +72,6 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     for _ in track(parallel_stream(change, range(maps.count)), "harmonise", maps.count, progress):
         pass
     return colours
-
-
-def check_model(model: str) -> None:
-    """Raises OptionError `harmonise`."""
-    if model not in MODELS:
-        raise OptionError("harmonise", f"no harmonisation is called {model}", remedy=f"use one of {', '.join(MODELS)}")
 
 
 def harmonised(

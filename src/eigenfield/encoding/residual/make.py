@@ -11,7 +11,7 @@ from eigenfield.coding.video.av1 import Planes, encode_film
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.core.scene import Residual, Scene
+from eigenfield.core.scene import EncodedScene, Residual
 from eigenfield.encoding.residual.colour import to_planes
 from eigenfield.encoding.residual.orders import film_order
 from eigenfield.encoding.residual.views import surface_colours
@@ -27,17 +27,22 @@ PRESET = 2  # SVT-AV1's: 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
 
 
 def with_residual(
-    scene: Scene,
+    scene: EncodedScene,
     capture: LightField,
     quality: int = DEFAULT_QUALITY,
     progress: Progress | None = None,
-) -> Scene:
+) -> EncodedScene:
     """The scene with a residual.
 
-    scene: as its file gives it back (`format.read_scene`), since what coding has lost is in the residual too. capture:
-    what it was encoded from. quality: 0 to 100, the film's: `crf_of`.
+    Args:
+        scene: As its file gives it back (`gltf.read_scene`), since the residual holds what coding has lost too.
+        capture: What it was encoded from.
+        quality: Of the film, 0 to 100 (`crf_of`).
+        progress: Reports each photograph.
 
-    Raises OptionError `not-photographs`, as `check_residual`, and what reading photographs raises.
+    Raises:
+        OptionError: `not-photographs` for a scene that is not R, G, B; as `check_residual`.
+        CaptureError: A photograph cannot be read.
     """
     if scene.channels != 3:
         raise OptionError(
@@ -67,8 +72,11 @@ def with_residual(
 
 
 def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
-    """Rows and columns of the pictures in a film of these cameras. Raises OptionError `residual-quality` outside 0 to
-    100, `residual` where the encoder does not take frames so large."""
+    """Rows and columns of the pictures in a film of these cameras.
+
+    Raises:
+        OptionError: `residual-quality` outside 0 to 100, `residual` where the encoder does not take frames so large.
+    """
     if not 0 <= quality <= 100:
         raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
     rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))

@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.video.av1 import residual_frames
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.encoding.residual.colour import to_difference
+from eigenfield.gltf.layout_residual import residual_frames
 from eigenfield.rendering import Picture, Shots, camera_colour, camera_weights, renderer_of
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import difflib
-import threading
-import weakref
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -189,17 +187,9 @@ def draw_texture(
     return Picture(image, coverage)
 
 
-_renderers: weakref.WeakKeyDictionary[Scene, Renderer] = weakref.WeakKeyDictionary()
-_lock = threading.Lock()
-
-
 def renderer_of(scene: Scene) -> Renderer:
     """The scene's renderer, made on the first call and kept as long as the scene."""
-    with _lock:
-        found = _renderers.get(scene)
-        if found is None:
-            found = _renderers[scene] = Renderer(scene)
-        return found
+    return scene.derived("software renderer", lambda: Renderer(scene))
 
 
 def render(

@@ -64,7 +64,7 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
 
 
 def _square_of_taps(context, builder, signature, arguments):
-    """What both cubic intrinsics need: four pointers to a row's four texels each, their weights across as a vector,
+    """What both bicubic intrinsics need: four pointers to a row's four texels each, their weights across as a vector,
     weights down as vectors of one number each."""
     vector, index = ir.VectorType(ir.FloatType(), LANES), ir.IntType(32)
     data = context.make_array(signature.args[0])(context, builder, arguments[0]).data
@@ -82,7 +82,7 @@ def _square_of_taps(context, builder, signature, arguments):
 
 
 @intrinsic
-def take_cubic(typing_context, texture, first, line, across, down):
+def gather_bicubic(typing_context, texture, first, line, across, down):
     """sum_v down[v] sum_u across[u] texture[first + v line + u], float32, u and v from 0 to 3.
 
     texture: flat float32 array. across, down: tuples of four float32. Nothing is checked. Sums in this order on every
@@ -101,8 +101,8 @@ def take_cubic(typing_context, texture, first, line, across, down):
 
 
 @intrinsic
-def give_cubic(typing_context, texture, first, line, across, down, value):
-    """The transpose of `take_cubic`: texture[first + v line + u] += down[v] across[u] value."""
+def scatter_bicubic(typing_context, texture, first, line, across, down, value):
+    """The transpose of `gather_bicubic`: texture[first + v line + u] += down[v] across[u] value."""
 
     def generate(context, builder, signature, arguments):
         pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from eigenfield.core.scene import Scene
-from eigenfield.gltf import encode_scene, file_bytes, without_residual
+from eigenfield.gltf import encode_scene
 from eigenfield.runtime.files import refuse_existing, write_bytes
 from eigenfield.viewer.page import single_file
 
@@ -18,12 +19,13 @@ def write_page(
     metres_per_unit: float | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Write a page that opens by double click and needs no network: viewer and file in one.
+    """Write a page that opens by double click and needs no network: viewer and file in one, the file without the
+    residual, which the viewer does not show. What has been coded is in it as it is.
 
     title: of the page, the output's name if None. metres_per_unit: metres in one unit of the capture, for headsets.
     Raises OutputError.
     """
     refuse_existing(output, overwrite)
-    glb = without_residual(file_bytes(scene) or encode_scene(scene))
+    glb = encode_scene(replace(scene, residual=None))
     data = single_file(glb, title=output.stem if title is None else title, metres_per_unit=metres_per_unit)
     write_bytes(output, data, overwrite=overwrite)

@@ -1223,12 +1223,16 @@ var rr = class e {
 	[ar]: 2,
 	[or]: 4,
 	[U]: 4
-}, cr = {
+}, cr = /* @__PURE__ */ new Set([
+	"cameras",
+	"triangles",
+	"weights"
+]), lr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function lr(e) {
+function ur(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1244,10 +1248,10 @@ function lr(e) {
 		return i;
 	});
 }
-function ur(e) {
+function dr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function dr(e, t) {
+function fr(e, t) {
 	let n = e.key("accessors").items(se);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
@@ -1258,7 +1262,7 @@ function dr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = cr[r] ?? 1, u = o.key("count").integer(1, ve);
+		let l = lr[r] ?? 1, u = o.key("count").integer(1, ve);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1276,40 +1280,40 @@ function dr(e, t) {
 		};
 	};
 }
-function fr(e, t, n) {
-	let r = typeof t.raw == "number", i = tr(e, r ? new rr(void 0, t.where) : t.key("codec"), er[e]);
+function pr(e, t, n) {
+	let r = typeof t.raw == "number" && cr.has(e), i = tr(e, r ? new rr(void 0, t.where) : t.key("codec"), er[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function pr(e, t, n) {
+async function mr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw re(e.where);
 	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + sr[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : mr(new Float32Array(l), e.where);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : hr(new Float32Array(l), e.where);
 }
-function mr(e, t) {
+function hr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var W = 8, hr = 16;
-function gr(e, t) {
+var W = 8, gr = 16;
+function _r(e, t) {
 	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function _r(e, t = ce) {
+function vr(e, t = ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > ue) throw e.wrong(`more than ${ue} texels`);
 	return [n, r];
 }
-function vr(e, t, n, r, i) {
+function yr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Er(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Or(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Dr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => kr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1327,7 +1331,7 @@ function vr(e, t, n, r, i) {
 	if (s > fe) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function yr(e, t) {
+function br(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1359,11 +1363,11 @@ function yr(e, t) {
 			1
 		]
 	];
-	throw gr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw _r(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function br(e, t, n, r, i, a = !1) {
-	let o = xr(e), s = t === 3 && o.bits === W ? 1 : t;
-	r && kr(e, s * n, r);
+function xr(e, t, n, r, i, a = !1) {
+	let o = Sr(e), s = t === 3 && o.bits === W ? 1 : t;
+	r && Ar(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1373,41 +1377,41 @@ function br(e, t, n, r, i, a = !1) {
 	};
 	return a && o.bits === W && !c.exists && !l.exists ? {
 		...u,
-		...Sr(t)
+		...Cr(t)
 	} : {
 		...u,
-		scale: Tr(c, t, n),
-		zero: Tr(l, t, n)
+		scale: Er(c, t, n),
+		zero: Er(l, t, n)
 	};
 }
-function xr(e) {
+function Sr(e) {
 	let t = e.key("mimeType").text(N);
 	if (!nr(t, W)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, hr) : W, i = nr(t, r);
+	let n = e.key("bits"), r = n.exists ? n.integer(1, gr) : W, i = nr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
 	let a = e.key("codec"), o = tr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Sr(e) {
+function Cr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Cr(e) {
+function wr(e) {
 	return e.some(({ codec: e }) => e.bits > W);
 }
-function wr({ codec: e }) {
+function Tr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Tr(e, t, n) {
+function Er(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Er(e, t, n, r) {
+function Dr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
@@ -1418,23 +1422,23 @@ function Er(e, t, n, r) {
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Sr(t)
+				...Cr(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = _r(i.key("size")), o = br(i, t, 1, a, r, !0);
+	let a = vr(i.key("size")), o = xr(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Dr(i.key("precision"), o, r)
+		precision: Or(i.key("precision"), o, r)
 	};
 }
-function Dr(e, t, n) {
+function Or(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === W) throw e.wrong(`of a mean of ${W} bits`);
-	let r = _r(e.key("size"), le), i = tr("picture", e.key("codec"), "png");
+	let r = vr(e.key("size"), le), i = tr("picture", e.key("codec"), "png");
 	if (i !== H.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1445,8 +1449,8 @@ function Dr(e, t, n) {
 		where: e.where
 	};
 }
-function Or(e, t, n, r, i) {
-	let a = _r(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? _r(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, ce) : [];
+function kr(e, t, n, r, i) {
+	let a = vr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? vr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(de).map((e) => {
@@ -1454,10 +1458,10 @@ function Or(e, t, n, r, i) {
 			...p,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, de) : 1;
-		return d += o, br(n, t, o, a, i);
+		return d += o, xr(n, t, o, a, i);
 	});
 	if (d > 4096) throw e.wrong(`more than ${de} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? fr("weights", h, i) : r(e.key("weights"), "SCALAR", [U], n * d) : null;
+	let h = e.key("codedWeights"), g = d ? h.exists ? pr("weights", h, i) : r(e.key("weights"), "SCALAR", [U], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1468,21 +1472,21 @@ function Or(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function kr(e, t, [n, r]) {
+function Ar(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > ue) throw e.wrong(`more than ${ue} texels`);
 }
 // eigenfield-three/src/document.ts
-var Ar = [
+var jr = [
 	"namePattern",
 	"precision",
 	"regions",
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-], jr = Object.values(H).flatMap(({ needs: e }) => e ?? []), Mr = /* @__PURE__ */ new Set([...Ar, ...jr]), Nr = 64, Pr = 9, Fr = 10 ** Pr;
-function Ir(e) {
+], Mr = Object.values(H).flatMap(({ needs: e }) => e ?? []), Nr = /* @__PURE__ */ new Set([...jr, ...Mr]), Pr = 64, Fr = 9, Ir = 10 ** Fr;
+function Lr(e) {
 	let t = new rr(e, "");
 	try {
 		return t.key("extensions").key(ae).exists;
@@ -1490,10 +1494,10 @@ function Ir(e) {
 		return !1;
 	}
 }
-function Lr(e) {
-	let t = new rr(e, ""), n = t.key("extensions").key(ae), r = Rr(n), i = lr(t), a = dr(t, i), o = ur(i);
-	zr(t);
-	let s = Hr(t, o), c = n.key("cameras"), { count: l, names: u } = Ur(c, o), d = Kr(c, l), f = d.filter((e) => !e).length, p = vr(n, f, s, a, o), m = yr(n, p), h = c.key("colour");
+function Rr(e) {
+	let t = new rr(e, ""), n = t.key("extensions").key(ae), r = zr(n), i = ur(t), a = fr(t, i), o = dr(i);
+	Br(t);
+	let s = Ur(t, o), c = n.key("cameras"), { count: l, names: u } = Wr(c, o), d = qr(c, l), f = d.filter((e) => !e).length, p = yr(n, f, s, a, o), m = br(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
@@ -1506,18 +1510,18 @@ function Lr(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: qr(c, l, a, o),
-		sizes: Jr(c, l, a),
+		calibration: Jr(c, l, a, o),
+		sizes: Yr(c, l, a),
 		colour: h.exists ? a(h, "SCALAR", [U], 6 * l) : null,
-		...Yr(g),
-		triangles: v.exists ? fr("triangles", v, o) : _.exists ? Vr(a(_, "SCALAR", [ar, or], null), 2 * M) : null,
-		settings: Xr(n.key("settings")),
-		scores: Xr(n.key("scores")),
+		...Xr(g),
+		triangles: v.exists ? pr("triangles", v, o) : _.exists ? Hr(a(_, "SCALAR", [ar, or], null), 2 * M) : null,
+		settings: Zr(n.key("settings")),
+		scores: Zr(n.key("scores")),
 		views: i,
-		mesh: w.exists ? fr("mesh", w, o) : null,
-		position: Br(a(x.key("POSITION"), "VEC3", [U], null), ge),
-		uv: Br(a(x.key("TEXCOORD_0"), "VEC2", [U], null), ge),
-		indices: Vr(a(S, "SCALAR", [
+		mesh: w.exists ? pr("mesh", w, o) : null,
+		position: Vr(a(x.key("POSITION"), "VEC3", [U], null), ge),
+		uv: Vr(a(x.key("TEXCOORD_0"), "VEC2", [U], null), ge),
+		indices: Hr(a(S, "SCALAR", [
 			ir,
 			ar,
 			or
@@ -1525,17 +1529,17 @@ function Lr(e) {
 		preview: s
 	};
 }
-function Rr(e) {
+function zr(e) {
 	let t = e.key("version").text(N);
 	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(se) : []) {
 		let t = e.text(N);
-		if (!Mr.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!Nr.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function zr(e) {
+function Br(e) {
 	let t = e.key("nodes").items(se), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1550,42 +1554,42 @@ function zr(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Br(e, t) {
+function Vr(e, t) {
 	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function Vr(e, t) {
-	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Br(e, 3 * t);
-}
 function Hr(e, t) {
+	if (e.count % 3) throw j(e.where, "torn triangles");
+	return Vr(e, 3 * t);
+}
+function Ur(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Ur(e, t) {
+function Wr(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, M),
-		names: fr("names", n, t)
+		names: pr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Gr(r) : i.items(M).map((e) => e.text(N));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Kr(r) : i.items(M).map((e) => e.text(N));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Wr(a);
+	let o = Gr(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Wr(e) {
+function Gr(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Gr(e) {
+function Kr(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, M));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Nr).map((e) => {
+	let r = e.key("parts").items(Pr).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(N))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -1593,7 +1597,7 @@ function Gr(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Fr), e.key("step").integer(0, Fr)], c = e.key("digits").integer(1, Pr);
+		let [o, s] = [e.key("first").integer(0, Ir), e.key("step").integer(0, Ir)], c = e.key("digits").integer(1, Fr);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -1602,7 +1606,7 @@ function Gr(e) {
 		return o;
 	});
 }
-function Kr(e, t) {
+function qr(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1613,21 +1617,21 @@ function Kr(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function qr(e, t, n, r) {
+function Jr(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? fr("cameras", i, r) : {
+	return i.exists ? pr("cameras", i, r) : {
 		intrinsics: n(e.key("intrinsics"), "SCALAR", [U], 5 * t),
 		poses: n(e.key("poses"), "SCALAR", [U], 12 * t)
 	};
 }
-function Jr(e, t, n) {
+function Yr(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [or], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, pe);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function Yr(e) {
+function Xr(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1642,22 +1646,22 @@ function Yr(e) {
 		extent: [i, a]
 	};
 }
-function Xr(e) {
+function Zr(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var Zr = 1e-6;
-async function Qr(e, t) {
+var Qr = 1e-6;
+async function $r(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		$r(e, t),
-		ti(e, t),
+		ei(e, t),
 		ni(e, t),
-		e.colour ? pr(e.colour, e.views, t) : null
+		ri(e, t),
+		e.colour ? mr(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > Zr && c > Zr)) throw j(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ri([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > Qr && c > Qr)) throw j(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = ii([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > me) throw j(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -1675,13 +1679,13 @@ async function Qr(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? ii([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? ai([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: mi(f, p),
+			centre: hi(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1689,31 +1693,31 @@ async function Qr(e, t) {
 		};
 	});
 }
-async function $r({ names: e, heldOut: t }, n) {
+async function ei({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Wr(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Gr(r);
 	if (i) throw j(e.where, i);
 	return r;
 }
-async function ei(e, t, n) {
+async function ti(e, t, n) {
 	return {
-		numbers: await pr(e, t.views, n),
+		numbers: await mr(e, t.views, n),
 		where: e.where
 	};
 }
-async function ti(e, t) {
+async function ni(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ei(r, e, t),
-			poses: await ei(i, e, t)
+			lenses: await ti(r, e, t),
+			poses: await ti(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw j(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: mr(e, o),
+		numbers: hr(e, o),
 		where: o
 	});
 	return {
@@ -1721,15 +1725,15 @@ async function ti(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function ni(e, t) {
-	if (!Array.isArray(e.sizes)) return ei(e.sizes, e, t);
+async function ri(e, t) {
+	if (!Array.isArray(e.sizes)) return ti(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ri(e, t, n) {
+function ii(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1753,13 +1757,13 @@ function ri(e, t, n) {
 		t: a
 	};
 }
-function ii(e, t, n) {
+function ai(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function ai(e, t) {
-	let n = G(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => oi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function oi(e, t) {
+	let n = G(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => si(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1767,26 +1771,26 @@ async function ai(e, t) {
 	}
 	return o;
 }
-async function oi({ weights: e, count: t }, n, r, i) {
+async function si({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return pr(e, r.views, i);
+	if ("type" in e) return mr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return mr(u, s);
+	if (c === n && l === t) return hr(u, s);
 	throw j(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
 function G(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function si(e) {
+function ci(e) {
 	return Math.max(0, ...G(e).map(({ count: e }) => e));
 }
-function ci(e, t) {
+function li(e, t) {
 	let n = [...t, ...G(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function li(e, t) {
+async function ui(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await ui(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await di(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -1794,10 +1798,10 @@ async function li(e, t) {
 	}
 	return r;
 }
-async function ui(e, t, n) {
-	return "type" in e ? Uint32Array.from(await pr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function di(e, t, n) {
+	return "type" in e ? Uint32Array.from(await mr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function di(e, t, n, r, i, a) {
+function fi(e, t, n, r, i, a) {
 	let { right: o, up: s } = e, c = q(o, s), l = [
 		0,
 		0,
@@ -1826,8 +1830,8 @@ function di(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: fi(e, i),
-		size: ci(e, n),
+		bytes: pi(e, i),
+		size: li(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -1841,8 +1845,8 @@ function di(e, t, n, r, i, a) {
 		facesPlane: Math.abs(K(l, c)) > .7
 	};
 }
-function fi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(si(e)).fill(0);
+function pi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(ci(e)).fill(0);
 	for (let { pictures: t } of G(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
@@ -1868,7 +1872,7 @@ function fi(e, t) {
 		textures: s
 	};
 }
-function pi(e, t) {
+function mi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
@@ -1876,7 +1880,7 @@ function pi(e, t) {
 	];
 	return [r[0] > 0 ? K(i, e.right) / r[0] : 0, r[1] > 0 ? K(i, e.up) / r[1] : 0];
 }
-function mi(e, t) {
+function hi(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -1895,7 +1899,7 @@ function q(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function hi(e, t, n) {
+function gi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -1934,7 +1938,7 @@ function hi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = gi(n, o, s);
+		let r = _i(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -1945,7 +1949,7 @@ function hi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = vi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [_i(t) * m[0], _i(n) * m[1]], _ = [
+	let u = yi(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [vi(t) * m[0], vi(n) * m[1]], _ = [
 		0,
 		1,
 		2
@@ -1962,7 +1966,7 @@ function hi(e, t, n) {
 		offset: null
 	};
 }
-function gi({ K: e, width: t, height: n }, r, i) {
+function _i({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -1982,10 +1986,10 @@ function gi({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function _i(e) {
+function vi(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function vi(e) {
+function yi(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
@@ -1999,24 +2003,24 @@ function vi(e) {
 	}
 	return t;
 }
-function yi(e, t, n, r, i = 1) {
+function bi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return bi(e, t, n), xi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return xi(e, t, n), Si(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function bi(e, t, n) {
+function xi(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function xi(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Si(e, n);
+function Si(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ci(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Si(e, t) {
+function Ci(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2026,19 +2030,19 @@ function Si(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Ci = 256;
-function wi(e, t, n) {
+var wi = 256;
+function Ti(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ci)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / wi)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ti(t, i.getX(e), i.getY(e), i.getZ(e))), l = Ei(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ei(t, i.getX(e), i.getY(e), i.getZ(e))), l = Di(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Ei(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Di(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2048,7 +2052,7 @@ function wi(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ti({ K: e, R: t, t: n }, r, i, a) {
+function Ei({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2056,36 +2060,36 @@ function Ti({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Ei(e) {
+function Di(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Di = 4 / 3, Oi = 4, ki = 8, Ai = 2, ji = 2 ** 20;
-function Mi() {
+var Oi = 4 / 3, ki = 4, Ai = 8, ji = 2, Mi = 2 ** 20;
+function Ni() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ni(e) ? Math.min(t ?? 4, 6) * 128 * ji : Math.min(t ?? 8, 8) * 256 * ji;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Pi(e) ? Math.min(t ?? 4, 6) * 128 * Mi : Math.min(t ?? 8, 8) * 256 * Mi;
 }
-function Ni(e) {
+function Pi(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function J([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Pi(e, t) {
+function Fi(e, t) {
 	let [n, r] = J(e, t);
 	return n * r;
 }
-function Fi(e) {
+function Ii(e) {
 	return Math.ceil(e / 4);
 }
-function Ii(e, t) {
-	return t * Li(e);
-}
-function Li(e) {
-	return Math.max(1, Math.ceil(e / 4));
+function Li(e, t) {
+	return t * Ri(e);
 }
 function Ri(e) {
+	return Math.max(1, Math.ceil(e / 4));
+}
+function zi(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2093,14 +2097,14 @@ function Ri(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function zi(e, t) {
+function Bi(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Bi(e, n) <= t.memory / 2) ?? 16, o = Bi(e, a) + e.geometry, s = (t, n) => o + Hi(e, t, n), c = (n, r) => s(n, r) + Gi(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && Vi(e, n) <= t.memory / 2) ?? 16, o = Vi(e, a) + e.geometry, s = (t, n) => o + Ui(e, t, n), c = (n, r) => s(n, r) + Ki(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2114,68 +2118,68 @@ function zi(e, t) {
 	};
 	return {
 		...p,
-		limitation: Ki(p, n, e, t)
+		limitation: qi(p, n, e, t)
 	};
 }
-function Bi(e, t) {
-	let n = e.means.map((e) => Vi(e) * Fi(e.channels) * Pi(e.size, t)), r = Ri(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Di : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return ki * Pi(n, t) * (r + +!!i);
+function Vi(e, t) {
+	let n = e.means.map((e) => Hi(e) * Ii(e.channels) * Fi(e.size, t)), r = zi(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Oi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Ai * Fi(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Vi({ tenBits: e }) {
-	return e ? ki : Oi;
+function Hi({ tenBits: e }) {
+	return e ? Ai : ki;
 }
-function Hi({ bases: e, rays: t }, n, r) {
+function Ui({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Li(a) * 129 * 129 * ki : 0;
-		return e + Vi(i) * Ii(a, i.channels) * Pi(i.size, n) + o;
+		let o = t ? Ri(a) * 129 * 129 * Ai : 0;
+		return e + Hi(i) * Li(a, i.channels) * Fi(i.size, n) + o;
 	}, 0);
 }
-function Ui({ means: e, bases: t }, n, r) {
-	return Wi([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => J(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => J(e, r))]);
+function Wi({ means: e, bases: t }, n, r) {
+	return Gi([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => J(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => J(e, r))]);
 }
-function Wi(e) {
+function Gi(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Gi(e, t) {
-	let [n, r] = Ui({
+function Ki(e, t) {
+	let [n, r] = Wi({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Oi + (e.bases.some(({ tenBits: e }) => e) ? Ai : 0)) * n * r;
+	return (ki + (e.bases.some(({ tenBits: e }) => e) ? ji : 0)) * n * r;
 }
-function Ki(e, t, n, r) {
+function qi(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Bi(n, 1) + Hi(n, 1, t) + Gi(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${qi(a)} MB of graphics memory and ${qi(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Ji(i.join(", "))}: ${o}.`;
-}
-function qi(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let a = Vi(n, 1) + Ui(n, 1, t) + Ki(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${Ji(a)} MB of graphics memory and ${Ji(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Yi(i.join(", "))}: ${o}.`;
 }
 function Ji(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function Yi(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Yi = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", Xi = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Zi = 2, Qi = `
+var Xi = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", Zi = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", Qi = 2, $i = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Xi}${Yi}`, $i = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ea = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ta = `${Qi}
+${Zi}${Xi}`, ea = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ta = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", na = `${$i}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, na = "sumTextures", ra = "finerValue";
-function ia(n, r, i) {
+`, ra = "sumTextures", ia = "finerValue";
+function aa(n, r, i) {
 	let o = new w({
 		glslVersion: f,
-		vertexShader: $i,
-		fragmentShader: `${Qi}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: ea,
+		fragmentShader: `${$i}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
 			rectangle: { value: new ee(...r) },
 			...i
@@ -2211,7 +2215,7 @@ function ia(n, r, i) {
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function aa([e, t], n) {
+function oa([e, t], n) {
 	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
@@ -2220,29 +2224,29 @@ function aa([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function oa(e, t) {
+function sa(e, t) {
 	let n = q(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...pi(e, t), K(r, n) / (Math.max(...e.extent) || 1)];
+	return [...mi(e, t), K(r, n) / (Math.max(...e.extent) || 1)];
 }
-function sa(t, n, r) {
+function ca(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(oa(n, [
+	for (let e = 0; e < i.count; e++) o.set(sa(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - Zi), u = l.flatMap((e) => l.map((t) => new D(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - Qi), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
 	let p = new w({
 		glslVersion: f,
-		vertexShader: ea.replace("SHIFTS", String(u.length)),
-		fragmentShader: ta,
+		vertexShader: ta.replace("SHIFTS", String(u.length)),
+		fragmentShader: na,
 		uniforms: {
 			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
@@ -2262,7 +2266,7 @@ function sa(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var ca = class {
+var la = class {
 	mesh;
 	plane;
 	grids;
@@ -2270,14 +2274,14 @@ var ca = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Ri({
+		let [a, ...o] = zi({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(la), a = new T();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(ua), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: aa(J(e, n), r),
+				target: oa(J(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -2285,7 +2289,7 @@ var ca = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = ia(ra, [
+			let t = aa(ia, [
 				0,
 				0,
 				1,
@@ -2299,10 +2303,10 @@ var ca = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && fa(this.composed, n) || (this.composed = n, ha(e, t, () => {
+		this.composed && pa(this.composed, n) || (this.composed = n, ga(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) ua(e, t, n);
+				for (let e of t.steps) da(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -2314,22 +2318,22 @@ var ca = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = aa([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = sa(this.mesh, this.plane, t.places);
+		t.places = oa([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = ca(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function la(e) {
+function ua(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = ia(na, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = aa(ra, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2353,42 +2357,42 @@ function la(e) {
 	}
 	return i;
 }
-function ua({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function da({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => da(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => fa(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function da(e, t, n, r) {
+function fa(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function fa(e, t) {
+function pa(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var pa = new i(0), ma = new i();
-function ha(e, t, n) {
+var ma = new i(0), ha = new i();
+function ga(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(ma), e.setClearColor(pa, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(ma, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(ha), e.setClearColor(ma, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(ha, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function ga(e, t, n, i, a) {
+function _a(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Li(t) : 0;
+		u += e, d += t ? Ri(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2407,19 +2411,19 @@ function ga(e, t, n, i, a) {
 	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var _a = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", va = {
+var va = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", ya = {
 	bilinear: 0,
 	bicubic: 1
-}, ya = {
+}, ba = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, ba = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", xa = `
+}, xa = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Sa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${Xi}${_a}
+${Zi}${va}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -2449,56 +2453,56 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function Sa(e) {
+function Ca(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new O(1, 1, 1) },
 		exposureBias: { value: new O() },
-		shown: { value: ya.picture },
+		shown: { value: ba.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
 	}, n = new w({
 		glslVersion: f,
-		vertexShader: ba,
-		fragmentShader: xa,
+		vertexShader: xa,
+		fragmentShader: Sa,
 		uniforms: t,
-		defines: { BICUBIC: va.bicubic },
+		defines: { BICUBIC: ya.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
 // eigenfield-three/src/gpu.ts
-function Ca(e, t) {
+function wa(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function wa(e, [t, n], r, i, a) {
-	return Da(e, e.TEXTURE_2D_ARRAY, () => {
+function Ta(e, [t, n], r, i, a) {
+	return Oa(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Ta(e, t, n) {
+function Ea(e, t, n) {
 	let { width: r, height: i } = n;
-	Oa(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	ka(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Ea(e, [t, n], r = !1) {
-	return Da(e, e.TEXTURE_2D, () => {
+function Da(e, [t, n], r = !1) {
+	return Oa(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function Da(e, t, n) {
+function Oa(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Oa(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return ka(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Oa(e, t, n, r) {
+function ka(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2512,9 +2516,9 @@ function Oa(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var ka = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Aa = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function ja(e, t) {
-	let n = Fa(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var Aa = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", ja = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function Ma(e, t) {
+	let n = Ia(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2522,7 +2526,7 @@ function ja(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Ma(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Na(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2531,13 +2535,13 @@ function ja(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Ma(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = Na(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Ia(e, 0, d, () => {
-				Ma(s) ? Pa(e, s, c, l) : Na(e, s, c, l), La(e, () => u(n, r, i, a, o));
+			let f = () => La(e, 0, d, () => {
+				Na(s) ? Fa(e, s, c, l) : Pa(e, s, c, l), Ra(e, () => u(n, r, i, a, o));
 			});
-			o ? Ia(e, 1, t.precision, () => {
-				Na(e, o.precision, 0, o.precision.height), f();
+			o ? La(e, 1, t.precision, () => {
+				Pa(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2545,30 +2549,30 @@ function ja(e, t) {
 		}
 	};
 }
-function Ma(e) {
+function Na(e) {
 	return "data" in e;
 }
-function Na(e, t, n, r) {
+function Pa(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Pa(e, { data: t, width: n, stride: r }, i, a) {
+function Fa(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Fa(e) {
+function Ia(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, ka], [e.FRAGMENT_SHADER, Aa]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Aa], [e.FRAGMENT_SHADER, ja]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Ia(e, t, n, r) {
+function La(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Oa(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), ka(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function La(e, t) {
+function Ra(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2583,7 +2587,7 @@ function La(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function Ra(e, t, n) {
+function za(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2593,7 +2597,7 @@ function Ra(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = za(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ba(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2621,7 +2625,7 @@ function Ra(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...Va(l, u, h),
+					...Ha(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2629,12 +2633,12 @@ function Ra(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Li(h) : 0;
+			o += p, s += h ? Ri(h) : 0;
 		}
 	}), r;
 }
-function za({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : Ba([e]), o = {
+function Ba({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : Va([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2644,11 +2648,11 @@ function za({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Ba(e) {
-	return Cr(e) ? 1 : 255;
+function Va(e) {
+	return wr(e) ? 1 : 255;
 }
-function Va(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Ba(e), o = 4 * t * Li(n), s = {
+function Ha(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Va(e), o = 4 * t * Ri(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2659,15 +2663,15 @@ function Va(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/pieces.ts
-function Ha(e) {
+function Ua(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Y = 128, Ua = .98;
-async function Wa(e, t, n, r) {
+var Y = 128, Wa = .98;
+async function Ga(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = wr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Y, Y).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Tr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Y, Y).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
@@ -2682,30 +2686,30 @@ async function Wa(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Ha(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Ua * f.length)] ?? 0;
+	}), Ua(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Wa * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function Ga(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await Ka(await t(e.precision.view), e.precision);
+async function Ka(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await qa(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function Ka(e, t) {
+async function qa(e, t) {
 	let { type: n } = An(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw j(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw j(t.where, "no picture");
 	return i.picture;
 }
-function qa({ pieces: e, precision: t }) {
-	Ha(e), t?.close();
+function Ja({ pieces: e, precision: t }) {
+	Ua(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var Ja = 3, Ya = class {
+var Ya = 3, Xa = class {
 	parts;
 	options;
 	means;
@@ -2732,15 +2736,15 @@ var Ja = 3, Ya = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Cr(t.pictures)
+			tenBits: wr(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Cr([t])
+			tenBits: wr([t])
 		}));
 		this.needs = {
-			atlas: ci(r, i),
+			atlas: li(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -2777,7 +2781,7 @@ var Ja = 3, Ya = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(qa), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Ja), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2800,20 +2804,20 @@ var Ja = 3, Ya = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < Ja && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < Ya && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Ha(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Ua(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(Ha).catch(() => void 0);
+			for (let e of a) e.then(Ua).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * wr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * Tr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2833,13 +2837,13 @@ var Ja = 3, Ya = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Mi();; i /= 2) {
-			let a = zi(this.needs, Ca(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => wa(e, J(t, o), Fi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? Ni();; i /= 2) {
+			let a = Bi(this.needs, wa(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Ta(e, J(t, o), Ii(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return wa(e, a ? J(t, s) : [1, 1], a ? Ii(a, n) : 1, l, i);
-			})], d = Ui(this.needs, o, s), f = Ea(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Ea(e, d, !0) : null, h = Ea(e, Wi(r));
+				return Ta(e, a ? J(t, s) : [1, 1], a ? Li(a, n) : 1, l, i);
+			})], d = Wi(this.needs, o, s), f = Da(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Da(e, d, !0) : null, h = Da(e, Gi(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: ja(e, {
+				packer: Ma(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -2857,18 +2861,18 @@ var Ja = 3, Ya = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
-		this.decoded = null, (!a || n > 1) && (a?.forEach(qa), a = await Promise.all(r.planes.map((e) => Ga(e, i, n)))), a.forEach((n, i) => {
+		this.decoded = null, (!a || n > 1) && (a?.forEach(Ja), a = await Promise.all(r.planes.map((e) => Ka(e, i, n)))), a.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), qa(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), Ja(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = Cr([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = wr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			Ta(e, r, s.picture);
+			Ea(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * wr(n) : 1;
+		let c = o ? 255 * Tr(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -2886,7 +2890,7 @@ var Ja = 3, Ya = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Xa = 1.5, Za = .001, Qa = class extends l {
+}, Za = 1.5, Qa = .001, $a = class extends l {
 	parts;
 	mesh;
 	info;
@@ -2917,15 +2921,15 @@ var Ja = 3, Ya = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = si(n), this.counts = G(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = ci(n), this.counts = G(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Ya(e, no(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Xa(e, ro(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = Sa(s), this.complete = new Promise((e, t) => {
+		this.material = Ca(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? wi(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Ti(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -2955,7 +2959,7 @@ var Ja = 3, Ya = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...pi(this.info.viewPlane, n.centre));
+		return this.componentWeights(...mi(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -2969,7 +2973,7 @@ var Ja = 3, Ya = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Xa * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Za * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -2986,30 +2990,30 @@ var Ja = 3, Ya = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = to(t, n), [i, a] = pi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = no(t, n), [i, a] = mi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = va[this.filter];
+		let l = ya[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new ca(i, Ra(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new la(i, za(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === ya.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === ba.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === ya.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === ba.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && oa(this.info.viewPlane, t),
+			eye: t && sa(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3021,7 +3025,7 @@ var Ja = 3, Ya = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = ya[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = ba[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3029,7 +3033,7 @@ var Ja = 3, Ya = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !ro(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !io(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3040,7 +3044,7 @@ var Ja = 3, Ya = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Wa(s, e, o, r).then((t) => {
+				Ga(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3050,13 +3054,13 @@ var Ja = 3, Ya = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Za * Math.max(...r);
+		return Math.abs(i) <= Qa * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = ga(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = _a(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3064,33 +3068,33 @@ var Ja = 3, Ya = class {
 		}, n;
 	}
 	fail(e) {
-		if (io(e)) return;
+		if (ao(e)) return;
 		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, $a = new _(), eo = new O();
-function to(e, t) {
-	return eo.setFromMatrixPosition(e.matrixWorld).applyMatrix4($a.copy(t.matrixWorld).invert()), [
-		eo.x,
-		eo.y,
-		eo.z
+}, eo = new _(), to = new O();
+function no(e, t) {
+	return to.setFromMatrixPosition(e.matrixWorld).applyMatrix4(eo.copy(t.matrixWorld).invert()), [
+		to.x,
+		to.y,
+		to.z
 	];
 }
-function no(e) {
+function ro(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function ro(e) {
+function io(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function io(e) {
+function ao(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var ao = class {
+var oo = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3133,53 +3137,53 @@ var ao = class {
 		}
 		return n.buffer;
 	}
-}, oo = 1179937895, so = 1313821514, co = 5130562;
-async function lo(e) {
+}, so = 1179937895, co = 1313821514, lo = 5130562;
+async function uo(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? ho(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? go(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== oo) throw ho(!1);
+	if (new DataView(t).getUint32(0, !0) !== so) throw go(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== so) throw j("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== co) throw j("16", "it does not begin with JSON");
 	if (o > oe) throw j("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = fo(await e.read(20, 20 + o));
+	let s = po(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: po(s),
-		binary: () => uo(e, 20 + o, i)
+		json: mo(s),
+		binary: () => fo(e, 20 + o, i)
 	};
 }
-async function uo(e, t, n) {
+async function fo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === co) return r + 8;
+		if (t.getUint32(4, !0) === lo) return r + 8;
 		r += 8 + i;
 	}
 	throw j(String(t), "no binary chunk");
 }
-function fo(e) {
+function po(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function po(e) {
-	if (mo(e) > 64) throw j("20", "its JSON is nested too deep");
+function mo(e) {
+	if (ho(e) > 64) throw j("20", "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw j("20", "its JSON cannot be read");
 	}
 }
-function mo(e) {
+function ho(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3190,12 +3194,12 @@ function mo(e) {
 	}
 	return n;
 }
-function ho(e) {
+function go(e) {
 	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/proxy.ts
-var go = 65535;
-function _o(e, t) {
+var _o = 65535;
+function vo(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3205,46 +3209,46 @@ function _o(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function vo({ view: n, codec: r, where: i }, a) {
+async function yo({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw j(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= go;
+	let u = o.length / 3 <= _o;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function yo(e) {
+function bo(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function bo(e) {
+function xo(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = xo(e, n, r) ?? (n === r ? null : xo(e, r, n));
+		let r = t / n, i = So(e, n, r) ?? (n === r ? null : So(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function xo(e, t, n) {
-	let [r, i] = [Co(e, 0), Co(e, 1)];
-	if (t === 1 && wo(i) > 0 || n === 1 && wo(r) > 0) return null;
+function So(e, t, n) {
+	let [r, i] = [wo(e, 0), wo(e, 1)];
+	if (t === 1 && To(i) > 0 || n === 1 && To(r) > 0) return null;
 	let a = Array.from(r, (e, t) => t).sort((e, t) => X(i, e) - X(i, t));
 	for (let e = 0; e < t; e++) {
 		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => X(r, e) - X(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return So(n, t, (e, t) => X(r, o(t, e))) && So(t, n, (e, t) => X(i, o(e, t))) ? {
+	return Co(n, t, (e, t) => X(r, o(t, e))) && Co(t, n, (e, t) => X(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function So(e, t, n) {
+function Co(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3254,33 +3258,33 @@ function So(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Co(e, t) {
+function wo(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function wo(e) {
+function To(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var X = (e, t) => e[t] ?? 0, To = 1e-6, Eo = 32, Do = class {
+var X = (e, t) => e[t] ?? 0, Eo = 1e-6, Do = 32, Oo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = bo(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = xo(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Oo(e), this.isLine ? 0 : Oo(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(ko(e), this.isLine ? 0 : ko(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Ro(e, t, this.places) : e === "bilinear" && this.grid ? Bo(this.places, this.grid) : jo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => zo(e, t, this.places) : e === "bilinear" && this.grid ? Vo(this.places, this.grid) : Mo(this.places, this.triangles);
 	}
 };
-function Oo(e) {
+function ko(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function ko(e) {
+function Ao(e) {
 	let t = {
 		camera: [
 			0,
@@ -3300,7 +3304,7 @@ function ko(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Ao(e, t, n, r, i, a) {
+function jo(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3308,49 +3312,49 @@ function Ao(e, t, n, r, i, a) {
 		m
 	];
 }
-function jo(e, t) {
+function Mo(e, t) {
 	if (!t.length) {
-		let t = Lo(e, Io(e));
-		return (n, r) => Fo(n, r, e, t);
+		let t = Ro(e, Lo(e));
+		return (n, r) => Io(n, r, e, t);
 	}
-	let n = No(e, t, 3), r = Po(t);
+	let n = Po(e, t, 3), r = Fo(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Eo + $(i)] ?? []) {
+		for (let r of n[$(a) * Do + $(i)] ?? []) {
 			let [n, l, u] = [
-				Mo(t, r, 0),
-				Mo(t, r, 1),
-				Mo(t, r, 2)
-			], d = Ao(i, a, e, n, l, u), f = Math.min(...d);
+				No(t, r, 0),
+				No(t, r, 1),
+				No(t, r, 2)
+			], d = jo(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Fo(i, a, e, r) : ko(c.map((e, n) => [Mo(t, o, n), e]));
+		return s < -1e-9 ? Io(i, a, e, r) : Ao(c.map((e, n) => [No(t, o, n), e]));
 	};
 }
-var Mo = (e, t, n) => e[3 * t + n] ?? 0;
+var No = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Eo)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Do)));
 }
-function No(e, t, n) {
+function Po(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Eo + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Do + t]?.push(i);
 	}
 	return r;
 }
-function Po(e) {
+function Fo(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Mo(e, n, r), Mo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [No(e, n, r), No(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3359,7 +3363,7 @@ function Po(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Fo(e, t, n, r) {
+function Io(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3374,12 +3378,12 @@ function Fo(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return ko([[o, 1 - c], [s, c]]);
+	return Ao([[o, 1 - c], [s, c]]);
 }
-function Io(e) {
+function Lo(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Lo(e, t) {
+function Ro(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3400,7 +3404,7 @@ function Lo(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Ro(e, t, n) {
+function zo(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3414,12 +3418,12 @@ function Ro(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || zo(n, r, i, a) <= To) return Fo(e, t, n, Lo(n, [
+	if (a < 0 || Bo(n, r, i, a) <= Eo) return Io(e, t, n, Ro(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Ao(e, t, n, r, i, a);
+	let [l, u, d] = jo(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3435,15 +3439,15 @@ function Ro(e, t, n) {
 		]
 	};
 }
-function zo(e, t, n, r) {
+function Bo(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Bo(e, t) {
+function Vo(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Lo(e, Io(e));
-		return (n, r) => Fo(n, r, e, t);
+		let t = Ro(e, Lo(e));
+		return (n, r) => Io(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3452,7 +3456,7 @@ function Bo(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = No(e, o.flat(), 4), c = [];
+	let s = Po(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3460,12 +3464,12 @@ function Bo(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Eo + $(t)] ?? []) {
-			let s = o[a], c = s ? Vo(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Do + $(t)] ?? []) {
+			let s = o[a], c = s ? Ho(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Fo(t, n, e, l);
-		let [a, c] = Ho(t, n, e, r);
+		if (!r || i < -1e-9) return Io(t, n, e, l);
+		let [a, c] = Uo(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3477,7 +3481,7 @@ function Bo(e, t) {
 		};
 	};
 }
-function Vo(e, t, n, r) {
+function Ho(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3485,7 +3489,7 @@ function Vo(e, t, n, r) {
 	}
 	return i;
 }
-function Ho(e, t, n, r) {
+function Uo(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3503,24 +3507,24 @@ function Ho(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Uo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Uo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Wo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Wo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Uo(e) {
+function Wo(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Wo = class {
+var Go = class {
 	parser;
 	options;
 	name = ae;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Ir(e.json);
+		this.parser = e, this.options = t, this.ours = Lr(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Lr(this.parser.json));
+		this.ours && (this.scene = Rr(this.parser.json));
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -3535,24 +3539,24 @@ var Wo = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Go(e, this.parser), [r] = n;
+		let n = Ko(e, this.parser), [r] = n;
 		if (!r) throw j("/meshes/0", "no node shows it");
-		_o(r.geometry, t);
+		vo(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await vo(t.mesh, i);
+		}, a = t.mesh && await yo(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map((e) => Ga(e, i))),
-			Qr(t, i),
-			ai(t, i),
-			li(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Do(Float64Array.from(u.flatMap((e) => pi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = di(t, s, f, d.grid, this.fileBytes(), yo(r.geometry)), m = {
+			Promise.all(t.planes.map((e) => Ka(e, i))),
+			$r(t, i),
+			oi(t, i),
+			ui(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Oo(Float64Array.from(u.flatMap((e) => mi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = fi(t, s, f, d.grid, this.fileBytes(), bo(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3563,7 +3567,7 @@ var Wo = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new Qa(m, this.options);
+		e.userData.eigenfield = new $a(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3571,43 +3575,43 @@ var Wo = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Go(e, t) {
+function Ko(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Ko(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		qo(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Ko(e) {
+function qo(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function qo(e, t = {}) {
+async function Jo(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new ao(), i = new AbortController(), a = () => {
+	let r = new oo(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Xo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Zo(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await lo(r);
-		if (!Ir(e.json)) return {
-			gltf: await Yo(r, e, o),
+		let e = await uo(r);
+		if (!Lr(e.json)) return {
+			gltf: await Xo(r, e, o),
 			field: null
 		};
-		let i = await Jo(r, e, t);
+		let i = await Yo(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Qa ? a : null
+			field: a instanceof $a ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function Jo(e, t, n) {
+async function Yo(e, t, n) {
 	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3617,12 +3621,12 @@ async function Jo(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Wo(e, {
+	return r.register((e) => new Go(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Yo(e, t, n) {
+async function Xo(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3632,25 +3636,25 @@ async function Yo(e, t, n) {
 		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Xo(e, t, n, r) {
+async function Zo(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Zo(e) : await Qo(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Qo(e) : await $o(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : $o(t.received, e);
+			throw n.aborted ? e : es(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Zo(e) {
+function Qo(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Qo(e, t) {
+async function $o(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3661,7 +3665,7 @@ async function Qo(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function $o(e, t) {
+function es(e, t) {
 	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Qa as EigenField, Wo as EigenfieldPlugin, A as SceneError, Mi as defaultMemory, qo as loadEigenfield, hi as novelCamera, yi as placeCamera };
+export { $a as EigenField, Go as EigenfieldPlugin, A as SceneError, Ni as defaultMemory, Jo as loadEigenfield, gi as novelCamera, bi as placeCamera };

@@ -1,0 +1,67 @@
+"""Command-line options made from the fields of a dataclass, and the dataclass from what was given for them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+from typing import Any, TypeVar, get_args, get_type_hints
+
+import click
+
+from eigenfield.encoding.fields import Option, options_of
+
+F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T")
+
+
+def field_options(cls: type, **parsers: Callable[..., Any]) -> Callable[[F], F]:
+    """Add an option for each field of a dataclass that carries one (`encoding.fields`), named as the field.
+
+    parsers: click callbacks by name, for values that are more than a word or a number.
+    """
+    made = list(_field_options(cls, "", parsers))
+
+    def decorate(function: F) -> F:
+        for option in reversed(made):
+            function = option(function)
+        return function
+
+    return decorate
+
+
+def from_fields(cls: type[T], values: dict[str, Any], prefix: str = "") -> T:
+    """The dataclass with what was given for `field_options`, which is taken out of `values`."""
+    given: dict[str, Any] = {}
+    for name, one in options_of(cls):
+        if one.parts is None:
+            given[name] = values.pop(prefix + name)
+        else:
+            parts: Any = from_fields(one.parts, values, f"{prefix}{name}_")
+            given[name] = None if parts == one.parts() else parts
+    return cls(**given)
+
+
+def _field_options(cls: type, prefix: str, parsers: Mapping[str, Callable[..., Any]]) -> Iterator[Callable[[F], F]]:
+    kinds = get_type_hints(cls)
+    for field, one in options_of(cls):
+        name = prefix + field
+        if one.parts is not None:
+            yield from _field_options(one.parts, f"{name}_", parsers)
+            continue
+        how: dict[str, Any] = {"help": one.help, "metavar": one.metavar, "callback": parsers.get(name)}
+        if name not in parsers:
+            how["type"] = _click_type(one, get_args(kinds[field]))
+        if one.bare is not None:
+            how |= {"is_flag": False, "flag_value": one.bare}
+        letters = [] if one.letter is None else [one.letter]
+        yield click.option(f"--{name.replace('_', '-')}", *letters, **how)
+
+
+def _click_type(option: Option, kinds: tuple[Any, ...]) -> Any:
+    """How click reads an option whose field has one of these types."""
+    if option.choices:
+        return click.Choice(option.choices)
+    if option.limits is not None:
+        return click.IntRange(*option.limits)
+    return click.Path(path_type=Path) if os.PathLike[str] in kinds else kinds[0]

@@ -1,0 +1,52 @@
+"""Dataclass fields that are options: what the command line needs to offer one stands beside the field, once."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Option:
+    """How the command line offers a field.
+
+    Attributes:
+        help: What the option does and, in brackets at the end, what happens without it.
+        letter: Its short form, for example "-n".
+        metavar: What stands for its value in `--help`.
+        choices: The values that it may have; empty for any.
+        limits: Its least and its greatest value.
+        bare: Its value where it is written without one; None where it needs one.
+        parts: A dataclass of whose fields each is an option: `target` has `--target-size` and others.
+    """
+
+    help: str
+    letter: str | None = None
+    metavar: str | None = None
+    choices: tuple[str, ...] = ()
+    limits: tuple[int, int] | None = None
+    bare: str | None = None
+    parts: type | None = None
+
+
+def option(help: str, **how: Any) -> Any:
+    """A dataclass field of default None that carries an `Option`. help, how: its attributes."""
+    return field(default=None, metadata={"option": Option(help, **how)})
+
+
+def options_of(cls: type) -> Iterator[tuple[str, Option]]:
+    """The fields of a dataclass made by `option`, in their order, by name."""
+    for one in fields(cls):
+        if "option" in one.metadata:
+            yield one.name, one.metadata["option"]
+
+
+def documented(cls: type[T]) -> type[T]:
+    """Decorator: put the help of a dataclass's options into its docstring, as `Attributes:`."""
+    lines = [f"    {name}: {' '.join(one.help.split())}" for name, one in options_of(cls)]
+    cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__ or ""), "", "Attributes:", *lines])
+    return cls

@@ -1,0 +1,107 @@
+"""A plan's photographs fitted once, and coded at any quality."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from eigenfield.capture import LightField
+from eigenfield.core.mesh import Mesh
+from eigenfield.core.payloads import Payloads
+from eigenfield.core.progress import Progress
+from eigenfield.core.scene import EncodedScene
+from eigenfield.encoding.fitted.colour import to_rgb
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, fitted_textures, open_fits
+from eigenfield.encoding.options import PRESETS, EncodeOptions, known
+from eigenfield.encoding.plan import EncodePlan, plan_encoding
+from eigenfield.encoding.projected import component_count, warn_of_disagreement
+
+
+@dataclass(frozen=True, eq=False)
+class FittedEncoder:
+    """Planes fitted to photographs, which stay open, to be coded at one quality or many.
+
+    Attributes:
+        plan: What they were fitted for.
+        data: The observations of the encoded cameras, and where their pixels land on the mesh.
+        fits: The planes.
+        progress: Reports each coding.
+    """
+
+    plan: EncodePlan
+    data: FitData
+    fits: Fits
+    progress: Progress | None = None
+
+    def coded(self, quality: int) -> EncodedScene:
+        """The scene coded at a quality, 0 to 100, with its figures."""
+        return self.with_figures(self.scene(quality))
+
+    def scene(self, quality: int) -> EncodedScene:
+        """The scene coded at a quality, without its figures: its settings have only the room for them."""
+        options = self.plan.options
+        coder = {"coder": "libaom"} if self.fits.patient else {}
+        own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.reached()}}
+        planes = self.fits.coded(quality, self.plan.views.grid, self.progress)
+        return self.plan.scene(
+            tuple(plane.value for plane in planes.values()),
+            own,
+            payloads=Payloads.joined(plane.payloads for plane in planes.values()),
+            to_rgb=None if options.planes == "rgb" else to_rgb(),
+        )
+
+    def with_figures(self, scene: EncodedScene) -> EncodedScene:
+        """A scene that `scene` made, with the PSNR of each of its planes in its settings."""
+        fitted = {**scene.settings["fitted"], "psnr": self.fits.reached(scene.planes)}
+        return replace(scene, settings={**scene.settings, "fitted": fitted})
+
+
+@contextlib.contextmanager
+def open_encoder(
+    plan: EncodePlan, work: Path | None = None, progress: Progress | None = None, warn: bool = True
+) -> Iterator[FittedEncoder]:
+    """Fit planes to a plan's photographs.
+
+    Args:
+        plan: One whose options ask for a fit.
+        work: Folder for scratch files of up to 17 bytes a pixel.
+        progress: Reports each stage.
+        warn: Whether photographs that do not show what the others do are named in a warning.
+    """
+    views, options = plan.views, plan.options
+    cameras, observations = views.encoded_cameras, views.observations
+    asked = fitted_textures(len(observations)) if options.textures is None else options.textures
+    textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[known(options.planes)]
+    size = plan.atlas[1], plan.atlas[0]
+    with (
+        open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.encoded_reference) as data,
+        open_fits(data, plan.density, textures, PRESETS[known(options.preset)], planes, work, progress) as fits,
+    ):
+        if warn:
+            mean = fits.planes[0][1].mean_alone
+            names, places = views.observation_names, views.coordinates[views.taken_by]
+            warn_of_disagreement(mean.squares, mean.pixels, mean.channels, mean.total, names, places)
+        yield FittedEncoder(plan, data, fits, progress)
+
+
+@contextlib.contextmanager
+def open_fitted(
+    capture: LightField,
+    proxy: str | os.PathLike[str] | Mesh,
+    options: EncodeOptions,
+    work: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> Iterator[FittedEncoder]:
+    """Fit once, to code at many qualities.
+
+    Arguments and errors are those of `encode`, which makes the same of `fit="photographs"` at each quality. Mesh and
+    atlas are those of the options' quality.
+    """
+    folder = None if work is None else Path(work)
+    plan = plan_encoding(capture, proxy, replace(options, fit="photographs"), folder, progress)
+    with open_encoder(plan, folder, progress) as encoder:
+        yield encoder

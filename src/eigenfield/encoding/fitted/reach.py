@@ -1,0 +1,118 @@
+"""The file that reaches a size, a PSNR or an SSIM, with a second fit where another mesh or atlas belongs to it."""
+
+# mypy: disable-error-code="no-untyped-call"
+
+from __future__ import annotations
+
+import logging
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from eigenfield.core.progress import Progress
+from eigenfield.core.scene import EncodedScene
+from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
+from eigenfield.encoding.fitted.observations import FitData
+from eigenfield.encoding.options import known
+from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.target import FIRST, Target, Tried, search
+from eigenfield.gltf import encode_scene
+from eigenfield.imaging.metrics import psnr, ssim, to_codes
+from eigenfield.rendering import Renderer
+from eigenfield.runtime.parallel import parallel_stream
+
+log = logging.getLogger("eigenfield.encode")
+
+MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
+NEAR_QUALITIES = 3  # beside the plan's: those have as good as its mesh and atlas
+DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer for a second fit
+MEASURED_OBSERVATIONS = 48  # at most, evenly spread, by which a PSNR or SSIM is judged
+
+
+def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> EncodedScene:
+    """The scene whose file reaches the target, or with a warning the nearest.
+
+    Mesh and atlas belong to a quality. Where the target is met at one that has clearly others than the plan's, there is
+    a second fit, on those, and the better file of both is kept.
+    """
+    with open_encoder(plan, work, progress) as encoder:
+        found = _search(target, encoder)
+        scene = encoder.with_figures(found.result)
+        other = _other_plan(plan, found, work, progress)
+        if other is not None:
+            found = _compared(target, found, encoder.data)
+    if other is not None:
+        words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
+        log.info(words, found.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
+        with open_encoder(other, work, progress, warn=False) as encoder:
+            second = _compared(target, _search(target, encoder, found.quality), encoder.data)
+            sizes = second.size, second.measured, found.size, found.measured
+            if target.merit(second) > target.merit(found):
+                log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
+                found, scene = second, encoder.with_figures(second.result)
+            else:
+                log.info("not kept: %d bytes, %.4f, and the first has %d, %.4f", *sizes)
+    if not target.met(found):
+        _warn_of_miss(target, found)
+    return scene
+
+
+def _other_plan(
+    plan: EncodePlan, found: Tried[EncodedScene], work: Path | None, progress: Progress | None
+) -> EncodePlan | None:
+    """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
+    if abs(found.quality - known(plan.options.quality)) <= NEAR_QUALITIES:
+        return None
+    other = plan.at_quality(found.quality, work, progress)
+    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= MESH_SHARE * found.size
+    atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= DENSITY_SHARE
+    return other if mesh or atlas else None
+
+
+def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried[EncodedScene]:
+    """As `search`, of what the encoder makes."""
+
+    def code(quality: int) -> Tried[EncodedScene]:
+        scene = encoder.scene(quality)
+        measured = 0.0 if target.size else _measured(target, scene, encoder.data)
+        return Tried(quality, len(encode_scene(scene)), measured, scene)
+
+    return search(target, code, first)
+
+
+def _compared(target: Target, found: Tried[EncodedScene], data: FitData) -> Tried[EncodedScene]:
+    """What was found, measured too where the target is a size: for `Target.merit`."""
+    return found if target.size is None else replace(found, measured=_measured(target, found.result, data))
+
+
+def _measured(target: Target, scene: EncodedScene, data: FitData) -> float:
+    """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
+    renderer, observations, count = Renderer(scene), data.observations, len(data)
+    cameras = [scene.cameras[index] for index in scene.encoded]
+
+    def of_observation(index: int) -> float | None:
+        picture = renderer.draw(cameras[observations.camera_of(index)], np.eye(count)[index])
+        covered, mask = picture.covered, observations.mask(index)
+        if mask.size:
+            covered &= mask > 0
+        measure = psnr if target.ssim is None else ssim
+        return measure(to_codes(picture.image), observations.codes_of(index), covered)
+
+    some = np.unique(np.linspace(0, count - 1, min(count, MEASURED_OBSERVATIONS)).round().astype(int))
+    values = [value for value in parallel_stream(of_observation, some.tolist()) if value is not None]
+    return float(np.mean(values)) if values else 0.0
+
+
+def _warn_of_miss(target: Target, nearest: Tried[EncodedScene]) -> None:
+    """Say that no file reaches the target, and why."""
+    if target.size is not None:
+        log.warning(
+            "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
+            target.size, nearest.size,
+        )  # fmt: skip
+    else:
+        log.warning(
+            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.wanted,
+            nearest.measured,
+        )  # fmt: skip

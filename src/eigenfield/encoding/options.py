@@ -1,0 +1,274 @@
+"""The options of `encode`: each stands here once, and the command line and its help are made from these fields.
+
+Importing this loads nothing but the standard library, so that `eigenfield encode --help` comes at once.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import TypedDict, TypeVar
+
+from eigenfield.core.errors import OptionError
+from eigenfield.encoding.fields import documented, option, options_of
+from eigenfield.encoding.target import Target
+
+T = TypeVar("T")
+
+DEFAULT_TEXTURES = 15  # without a fit, as in the paper
+DEFAULT_DENSITY = 1.5  # without a fit
+DEFAULT_RESAMPLING = "bicubic"
+DEFAULT_PRESET = "balanced"
+DEFAULT_PLANES = "luma-chroma"
+SIDE_LIMIT = 16384  # texels along a side of an atlas
+DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
+DENSEST = 1.5  # likewise, with a fit
+ABOUT_MAPS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
+ABOUT_FITS = ("target", "preset", "planes")  # options that the paper's way has no use for
+UNKNOWN = {
+    "fit": "no fit is called",
+    "preset": "no preset is called",
+    "planes": "no planes are called",
+    "resampling": "no filter is called",
+    "align": "no alignment is called",
+    "harmonise": "no harmonisation is called",
+}
+
+
+@dataclass(frozen=True)
+class Preset:
+    """What a fit aims at.
+
+    Attributes:
+        quality: 0 to 100.
+        rounds: How often textures and weights are fitted in turns, at most; captures of few cameras get more.
+        patient: Whether textures are coded by libaom where the machine has it.
+    """
+
+    quality: int
+    rounds: int
+    patient: bool = False
+
+
+PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4, patient=True)}
+
+
+def density_of(quality: int) -> float:
+    """Atlas texels per photograph pixel along one axis that a fit's quality pays for.
+
+    The coarser the codes are, the less is left of what a denser atlas could hold. On Tarot 0.9 takes the fewest bytes
+    for the same luma at quality 62, 1.05 at 68 and 1.35 at 86; on Shop 1.25 does at 80, on Antinous 1.0 at 75.
+    """
+    return min(max(0.9 + 0.6 * (quality - 60) / 31, 0.9), DENSEST)
+
+
+class Coding(TypedDict):
+    """Arguments of `save` and `encode_scene`.
+
+    Attributes:
+        codec: "avif", "webp" or "png"; None: what is coded already is kept, and the rest becomes AVIF.
+        quality: 0 to 100, for AVIF; None: its default.
+    """
+
+    codec: str | None
+    quality: int | None
+
+
+@documented
+@dataclass(frozen=True, kw_only=True)
+class EncodeOptions:
+    """What `encode` is asked for. Every option may be left out; `resolved` says what that means.
+
+    An option that cannot be, or two that exclude each other, raise OptionError when the value is made. The command
+    line has the same options: `--uv-ssim` is `uv_ssim`. Without a fit `codec` and `quality` are about the file: give
+    `for_save` to `save`.
+    """
+
+    textures: int | None = option(
+        "Eigen textures, at most one less than there are cameras. A fit keeps those that are worth their bytes, and "
+        "regions of much error may get as many again.  [default: half as many as cameras, 20 to 96; without a fit 15]",
+        letter="-n",
+        metavar="N",
+    )
+    uv_ssim: float | None = option(
+        "As few eigen textures as reach this SSIM in UV space, for example 0.98; without a fit.", metavar="S"
+    )
+    density: float | None = option(
+        "Atlas texels per photograph pixel along one axis, in the central camera (side at most 4096, texels at "
+        "most twice the photographs' pixels).  [default: 0.9 to 1.5, what the quality pays for; without a fit 1.5]",
+        metavar="D",
+    )
+    atlas: int | tuple[int, int] | None = option("Side of the atlas outright, or WIDTHxHEIGHT.", metavar="N")
+    triangles: int | None = option(
+        "Triangles of the proxy, at most.  [default: a fit keeps what the pictures are worth; with --fit none 30000, "
+        "a mesh that has an atlas as it is]",
+        metavar="N",
+    )
+    align: str | None = option(
+        "Align the maps to the reference camera by optical flow; tvl1 is finer and much slower.",
+        choices=("dis", "tvl1"),
+        metavar="[dis|tvl1]",
+        bare="dis",
+    )
+    harmonise: str | None = option(
+        "Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
+        "Captured views are drawn with their own exposure again.",
+        choices=("gain", "affine"),
+        metavar="[gain|affine]",
+        bare="gain",
+    )
+    metres_per_unit: float | None = option(
+        "Metres in one unit of the cameras' world: headsets then show the real size.  [default: as the capture says]",
+        metavar="F",
+    )
+    reference: str | None = option("Reference camera.  [default: nearest the centre of the array]", metavar="NAME")
+    hold_out: str | None = option(
+        "Cameras to leave out and measure later: odd (those in odd rows or odd columns of a grid, counted from 0: "
+        "three quarters), every:K (every K-th), or names with commas between.",
+        metavar="RULE",
+    )
+    resampling: str | None = option(
+        "Filter from photograph to atlas.  [default: bicubic]", choices=("bilinear", "bicubic", "lanczos")
+    )
+    codec: str | None = option(
+        "Pictures of a file that is not fitted: avif is lossy, webp and png keep 8 bits exactly.  [default: avif]",
+        choices=("avif", "webp", "png"),
+    )
+    quality: int | None = option(
+        "Quality of the pictures, 0 to 100.  [default: the preset's; 70 without a fit]", limits=(0, 100), metavar="Q"
+    )
+    fit: str | None = option(
+        "photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
+        "into the textures, as the paper does; faster, larger, less sharp. --align, --uv-ssim, --harmonise, "
+        "--resampling, --codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
+        "photographs, unless one of these is given]",
+        choices=("none", "photographs"),
+    )
+    preset: str | None = option(
+        "How finely a fit is coded (quality 79, 89, 95) and how long it may take; --quality or a target "
+        "instead of the first. best codes with libaom, in about 10 % fewer bytes and far more time, where there is an "
+        "ffmpeg program that has it.  [default: balanced]",
+        choices=tuple(PRESETS),
+    )
+    planes: str | None = option(
+        "What a fit is made of: luma and chroma apart, each with its own mean, textures and densities, or R, G and B "
+        "together.  [default: luma-chroma]",
+        choices=("luma-chroma", "rgb"),
+    )
+    target: Target | None = option("What the file is to reach, by the fit's quality (`Target`).", parts=Target)
+    residual: int | None = option(
+        "For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
+        "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
+        "--textures 24 --quality 86, and as many bytes for the film as are left.",
+        limits=(0, 100),
+        metavar="[Q]",
+        bare="40",
+    )
+    keep_maps: str | os.PathLike[str] | None = option(
+        "Also write every filled texture map and its visibility as PNG.", metavar="DIR"
+    )
+
+    def __post_init__(self) -> None:
+        self._check_file()
+        self._check_way()
+        self._check_numbers()
+
+    def resolved(self) -> EncodeOptions:
+        """The options as they are meant: what was left out is filled in, as far as it follows from the rest alone.
+
+        None stays what depends on the capture, what the chosen way has no use for, and what is decided later: with a
+        target the quality and a density that follows it; without a fit the codec and the quality of the file.
+        """
+        if self._chosen_fit == "none":
+            return replace(
+                self,
+                fit="none",
+                textures=DEFAULT_TEXTURES if self.textures is None and self.uv_ssim is None else self.textures,
+                density=DEFAULT_DENSITY if self.density is None else self.density,
+                resampling=self.resampling or DEFAULT_RESAMPLING,
+            )
+        preset, quality, density = self.preset or DEFAULT_PRESET, self.quality, self.density
+        if quality is None and self.target is None:
+            quality = PRESETS[preset].quality
+        if density is None and quality is not None:
+            density = density_of(quality)
+        planes = self.planes or DEFAULT_PLANES
+        return replace(self, fit="photographs", preset=preset, quality=quality, density=density, planes=planes)
+
+    @property
+    def coding(self) -> Coding:
+        """How pictures that are not fitted are coded: `codec` and `quality` of `save` and `encode_scene`."""
+        if self._chosen_fit == "none":
+            return {"codec": self.codec, "quality": self.quality}
+        return {"codec": None, "quality": None}  # they are coded already
+
+    @property
+    def for_save(self) -> Coding:
+        """`coding` for who saves the scene that `encode` returns, whose pictures are coded where it has a residual."""
+        return {"codec": None, "quality": None} if self.residual is not None else self.coding
+
+    @property
+    def about_maps(self) -> list[str]:
+        """The given options that are about texture maps, as the command line writes them."""
+        return [f"--{name.replace('_', '-')}" for name in ABOUT_MAPS if getattr(self, name) is not None]
+
+    @property
+    def _about_fits(self) -> list[str]:
+        return [name for name in ABOUT_FITS if getattr(self, name) is not None]
+
+    @property
+    def _chosen_fit(self) -> str:
+        return self.fit or ("none" if self.about_maps and not self._about_fits else "photographs")
+
+    def _check_file(self) -> None:
+        from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec
+
+        check_codec(self.codec or DEFAULT_CODEC, self.quality)
+        if self.residual is not None and self.target is not None:
+            raise OptionError(
+                "residual",
+                "a target is about the textures, and a residual comes on top of them",
+                remedy="say --quality and --residual Q instead",
+            )
+
+    def _check_way(self) -> None:
+        """Raise OptionError for what is not among the choices, and for options that do not go together."""
+        for name, one in options_of(type(self)):
+            value = getattr(self, name)
+            if name in UNKNOWN and value is not None and value not in one.choices:
+                raise OptionError(name, f"{UNKNOWN[name]} {value}", remedy=f"use one of {', '.join(one.choices)}")
+        if self.target is not None:
+            self.target.check()
+            if self.quality is not None:
+                raise OptionError("target", "a target is reached by the quality", remedy="leave one of them out")
+        maps, fits = self.about_maps, self._about_fits
+        if self._chosen_fit == "none" and fits:
+            raise OptionError(fits[0], f"--fit none has no {fits[0]}", remedy="leave one of them out")
+        if self._chosen_fit != "none" and maps:
+            other = f"leave it or the {fits[0]} out" if fits else "leave it out, or --fit none"
+            raise OptionError("fit", f"{maps[0]} is about texture maps, and a fit makes none", remedy=other)
+
+    def _check_numbers(self) -> None:
+        from eigenfield.core.scene import check_scale
+
+        if self.textures is not None and self.textures < 0:
+            raise OptionError("textures", f"{self.textures} eigen textures were asked for", remedy="ask for 0 or more")
+        check_scale(self.metres_per_unit)
+        if self.uv_ssim is not None and not 0 < self.uv_ssim <= 1:
+            raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
+        low, high = DENSITY_LIMITS
+        if self.density is not None and not low <= self.density <= high:
+            raise OptionError(
+                "density", f"a density of {self.density:g} was asked for", remedy="ask for one between 0.1 and 4"
+            )
+        sides = (self.atlas,) if self.atlas is None or isinstance(self.atlas, int) else self.atlas
+        if not all(side is None or 1 <= side <= SIDE_LIMIT for side in sides):
+            raise OptionError(
+                "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
+            )
+
+
+def known(value: T | None) -> T:
+    """An option of which `EncodeOptions.resolved` has said what it is."""
+    assert value is not None
+    return value

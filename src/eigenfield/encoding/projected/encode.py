@@ -1,0 +1,107 @@
+"""The paper's way: photographs projected into texture maps, their mean and eigen textures. From a plan to a scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.core.errors import CaptureError
+from eigenfield.core.progress import Progress
+from eigenfield.core.scene import Basis, EncodedScene, Plane
+from eigenfield.encoding.options import known
+from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.projected.agreement import disagreement_of
+from eigenfield.encoding.projected.align import align_maps
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.eigen import component_count, eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.harmonise import harmonise_maps
+from eigenfield.encoding.projected.mean import Mean, mean_map
+from eigenfield.encoding.projected.project import TextureMaps, texture_maps
+from eigenfield.encoding.projected.spread import Spreader, make_spreader
+from eigenfield.encoding.projected.uv_measure import smallest_count
+from eigenfield.encoding.projected.write_maps import write_maps
+
+
+def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
+    """A scene by the paper's sections 3.2 and 3.3; its textures are numbers, which `save` codes.
+
+    Args:
+        plan: Cameras, mesh and atlas, and the options.
+        work: Folder for a scratch file of 4 bytes x channels x cameras x texels.
+        progress: Reports each stage.
+
+    Raises:
+        CaptureError: A photograph cannot be read, or no camera sees the proxy (`nothing-seen`).
+        OutputError: The scratch folder is full (`disk-full`), or maps cannot be written.
+    """
+    options, views = plan.options, plan.views
+    resampling = known(options.resampling)
+    own = {"uvSsim": options.uv_ssim, "align": options.align, "resampling": resampling}
+    colours = None
+    with texture_maps(
+        make_atlas(plan.mesh, *plan.atlas),
+        views.encoded_cameras,
+        views.observations,
+        resampling=resampling,
+        work=work,
+        progress=progress,
+    ) as maps:
+        if options.harmonise is not None:
+            own["harmonise"] = options.harmonise
+            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views.held_out)
+        if options.align is not None:
+            reference = views.taken_by.tolist().index(views.reference)
+            align_maps(maps, reference, options.align, progress)
+        mean = _mean_of(maps, progress)  # equation 1
+        spreader = make_spreader(maps.atlas, mean.seen)
+        basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
+        if options.keep_maps is not None:
+            write_maps(maps, mean.values, spreader, views.observation_names, Path(options.keep_maps), progress=progress)
+    return plan.scene((Plane(spreader(mean.values), (basis,)),), own, colours=colours)
+
+
+def _mean_of(maps: TextureMaps, progress: Progress | None) -> Mean:
+    mean = mean_map(maps, progress)
+    if not mean.seen.any():
+        raise CaptureError(
+            "nothing-seen",
+            "no camera sees any texel of the proxy",
+            remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
+        )
+    return mean
+
+
+def _basis_of(
+    maps: TextureMaps, mean: Mean, spreader: Spreader, plan: EncodePlan, work: Path | None, progress: Progress | None
+) -> Basis:
+    """N eigen textures, filled, and the cameras' weights, of the maps' deviations from the mean.
+
+    Unseen texels deviate by nothing, which is equation 2 without filling any map.
+    """
+    options, views = plan.options, plan.views
+    gram = gram_matrix(maps, mean, progress)  # equation 3
+    names, places = views.observation_names, views.coordinates[views.taken_by]
+    disagreement_of(maps, mean, gram, names, places, aligned=options.align is not None)
+    decomposition = spectrum(gram)  # equation 4
+    if options.uv_ssim is None:
+        count = component_count(known(options.textures), maps.count)
+    else:
+        average = spreader(mean.values)
+        count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)
+    weights = weights_of(decomposition, count)
+    compact = eigen_textures(maps, mean, weights, progress)  # equations 5 and 6
+    pictures = np.zeros((count, maps.atlas.height, maps.atlas.width, maps.channels), np.float32)
+    for index in range(count):
+        pictures[index] = spreader(compact[index])
+    ones, zeros = np.ones((count, maps.channels), np.float32), np.zeros((count, maps.channels), np.float32)
+    return Basis(pictures, ones, zeros, weights)
+
+
+def _for_all_cameras(fitted: NDArray[np.float32], held_out: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """(Nc, 2, 3) gains and offsets of all cameras: of a held-out one nothing may be known, so it has 1 and 0."""
+    colours = np.zeros((len(held_out), 2, 3), np.float32)
+    colours[:, 0] = 1
+    colours[~held_out] = fitted
+    return colours

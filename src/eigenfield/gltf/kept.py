@@ -1,0 +1,81 @@
+"""Which parts of a scene keep the streams that it came with, and what coding the others anew costs."""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from eigenfield.core.payloads import (
+    Key,
+    Payload,
+    PicturePayload,
+    cameras_key,
+    mean_key,
+    mesh_key,
+    preview_key,
+    size_of,
+    textures_key,
+    weights_key,
+)
+from eigenfield.core.scene import EncodedScene, Scene
+from eigenfield.runtime.parallel import parallel_map
+
+
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """Parts are named as one writes them in Python: `mesh`, `cameras`, `planes[0].mean`, `planes[0].bases[1].weights`;
+    and there is `preview`, the picture for other viewers, which is made of the means.
+
+    Attributes:
+        payloads: What each part that has not changed was coded to.
+        lost: The bytes that each part that has changed was coded to.
+    """
+
+    payloads: Mapping[str, tuple[Payload, ...]]
+    lost: Mapping[str, int]
+
+    def one(self, part: str) -> Payload | None:
+        """The payload of a part that has a single one."""
+        return next(iter(self.payloads.get(part, ())), None)
+
+    def pictures(self, part: str) -> tuple[PicturePayload, ...]:
+        """The payloads of a part that is pictures."""
+        return tuple(one for one in self.payloads.get(part, ()) if isinstance(one, PicturePayload))
+
+
+def kept_payloads(scene: Scene) -> Kept:
+    """What a scene's parts were coded to, found by their content. A part that has changed is taken to have been coded
+    to what is left over, in the order of the scene."""
+    if not isinstance(scene, EncodedScene) or not scene.payloads:
+        return Kept({}, {})
+    parts = _parts(scene)
+    keys = dict(zip(parts, parallel_map(lambda key: key(), parts.values()), strict=True))
+    used = set(keys.values())
+    left: defaultdict[str, deque[Key]] = defaultdict(deque)
+    for key in scene.payloads:
+        if key not in used:
+            left[key[0]].append(key)
+    found, lost = {}, {}
+    for part, key in keys.items():
+        if key in scene.payloads:
+            found[part] = scene.payloads[key]
+        elif left[key[0]]:
+            lost[part] = size_of(scene.payloads[left[key[0]].popleft()])
+    means = [keys[f"planes[{p}].mean"] for p in range(len(scene.planes))]
+    preview = scene.payloads.get(preview_key(means, scene.to_rgb, scene.colours is not None))
+    return Kept(found if preview is None else {**found, "preview": preview}, lost)
+
+
+def _parts(scene: Scene) -> dict[str, Callable[[], Key]]:
+    """The key of each part that may be coded, to be computed."""
+    found: dict[str, Callable[[], Key]] = {
+        "mesh": partial(mesh_key, scene.mesh), "cameras": partial(cameras_key, scene.cameras)
+    }  # fmt: skip
+    for p, plane in enumerate(scene.planes):
+        found[f"planes[{p}].mean"] = partial(mean_key, plane.mean)
+        for b, basis in enumerate(plane.bases):
+            found[f"planes[{p}].bases[{b}].textures"] = partial(textures_key, basis.textures, basis.scale, basis.zero)
+            found[f"planes[{p}].bases[{b}].weights"] = partial(weights_key, basis.weights)
+    return found
