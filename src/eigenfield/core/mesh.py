@@ -44,6 +44,14 @@ def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
 
 
+def barycentric(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(n, 3) barycentric coordinates of points (n, 2) in triangles of the plane with area, corners (n, 3, 2)."""
+    p = corners - points[:, None]
+    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
+    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
+    return np.asarray(area / area.sum(axis=1, keepdims=True))
+
+
 def _crossed(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(m, 3) normals as long as twice the area."""
     return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))

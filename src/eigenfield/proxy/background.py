@@ -234,8 +234,7 @@ def _relief(directions: Directions, samples: NDArray[np.float64], cameras: Seque
 def _plate(faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
     count = len(target)
     laplacian = _laplacian(faces, count)
-    _, number = face_edges(faces)
-    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    ends, number = face_edges(faces)
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian

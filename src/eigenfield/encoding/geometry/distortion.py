@@ -20,7 +20,7 @@ from scipy.ndimage import distance_transform_edt, uniform_filter
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh, signed_areas
+from eigenfield.core.mesh import Mesh, barycentric, signed_areas
 from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
@@ -126,10 +126,7 @@ def texel_weights(
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
     corners = faces[owners[row, column]]
-    p = places[corners] - (np.stack([column, row], axis=1)[:, None] * STEPS + HALF)
-    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
-    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
-    return corners, area / area.sum(axis=1, keepdims=True)
+    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * STEPS + HALF)
 
 
 def _looked(

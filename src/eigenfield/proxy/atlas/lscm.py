@@ -13,6 +13,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
 from eigenfield.core.mesh import signed_areas, triangle_areas
+from eigenfield.imaging.graph import face_edges
 
 SHIFT = 1e-9  # of the mean diagonal: keeps the factorisation regular
 ITERATIONS = 12  # of inverse iteration; the wanted pair of eigenvalues is far below the rest
@@ -68,11 +69,9 @@ def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) ->
 
 def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
     """(n,) on an edge of one triangle only; all of them where there is none (a closed surface)."""
-    f = faces.astype(np.int64)
-    a, b = f.reshape(-1), np.roll(f, -1, axis=1).reshape(-1)
-    key, count = np.unique(np.minimum(a, b) * n + np.maximum(a, b), return_counts=True)
+    ends, edge = face_edges(faces)
     rim = np.zeros(n, np.bool_)
-    rim[key[count == 1] // n] = rim[key[count == 1] % n] = True
+    rim[ends[np.bincount(edge)[edge] == 1]] = True
     return rim if rim.any() else np.ones(n, np.bool_)
 
 

@@ -17,7 +17,7 @@ from scipy.ndimage import binary_dilation, distance_transform_edt
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, barycentric
 from eigenfield.imaging.graph import components, vertex_components
 from eigenfield.proxy.relief.contours import contour_chains, cut_sides, straightened
 from eigenfield.proxy.relief.kernels import label_pixels, refine, wedge_moments
@@ -265,7 +265,7 @@ def _fitted(
     label_pixels(points, tri, len(tri), owner)
     y, x = np.nonzero((owner >= 0) & valid & ~mixed)
     corners = tri[owner[y, x]]
-    weights = pixel_weights(points, corners, x, y)
+    weights = barycentric(points[corners], np.stack([x, y], axis=1) * LATTICE)
     off = d[y, x] - (weights * height[corners]).sum(axis=1)
     used = np.abs(off) <= OUTLIER * tolerance
     corners, weights, off = corners[used], weights[used], off[used]
@@ -274,16 +274,6 @@ def _fitted(
     normal = A.T @ A + STIFF * diags_array(np.ones(len(height)))
     change, _ = cg(normal, A.T @ off, rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
     return np.asarray(height + np.clip(change, -OUTLIER * tolerance, OUTLIER * tolerance))
-
-
-def pixel_weights(
-    points: NDArray[np.int64], corners: NDArray[np.int64], x: NDArray[np.int64], y: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """(n, 3) barycentric coordinates of pixels x, y (n,) in the triangles of corners (n, 3)."""
-    p = points[corners] - np.stack([x, y], axis=1)[:, None] * LATTICE
-    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
-    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
-    return np.asarray(area / area.sum(axis=1, keepdims=True))
 
 
 def joined(sheets: Sequence[Sheet]) -> Sheet:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, signed_areas
+from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import (
     BAND,
     BOUND_SLACK,
@@ -31,7 +32,6 @@ from eigenfield.rendering.software.kernels import DEPTH, TILE, draw_texels, mark
 from eigenfield.rendering.software.simd import RUN
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-FILTERS = ("bilinear", "bicubic")
 MARGIN = 2  # texels that the widest filter reaches
 SAMPLES_LIMIT = 4  # along a side of a pixel, when chosen automatically
 ONE_SAMPLE = 1.5  # photograph pixels a pixel up to which one sample is enough
@@ -92,10 +92,8 @@ def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
 
 def _rims(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
     """(m,) whether a triangle has an edge whose two vertices no other has."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).astype(np.int64)
-    keys = ends[..., 0] << 32 | ends[..., 1]
-    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
-    return np.asarray((counts[inverse.reshape(keys.shape)] == 1).any(axis=1))
+    _, edge = face_edges(faces)
+    return np.asarray((np.bincount(edge)[edge] == 1).reshape(-1, 3).any(axis=1))
 
 
 def sparse_zeros(shape: tuple[int, ...], dtype: type[np.float32] | type[np.int32]) -> NDArray[Any]:
@@ -214,12 +212,6 @@ def shade(
         ),
         pieces(picture.shape[0], BAND),
     )  # fmt: skip
-
-
-def check_filter(filter: str) -> None:
-    """Raise OptionError `filter` unless it is one of `FILTERS`."""
-    if filter not in FILTERS:
-        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
 
 
 def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, detail: float = 1.0) -> Sampling:
