@@ -21,7 +21,8 @@ import measure
 from eigenfield.core.camera import Camera
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import OpenGLRenderer, novel_camera, view_weights
-from eigenfield.rendering.opengl.renderer import FILTERS, make_context
+from eigenfield.rendering.checks import FILTERS
+from eigenfield.rendering.opengl.renderer import make_context
 from render import COUNTS, SIDE, array, relief, scene_of
 
 MONO, EYE = (1920, 1080), (1832, 1920)

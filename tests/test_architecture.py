@@ -90,7 +90,8 @@ def test_import_is_quick_and_loads_nothing_heavy():
 
 
 def test_nothing_prints_but_the_command_line():
-    for path in MODULES.values():
-        if path.relative_to(ROOT).parts[0] != "cli":
-            calls = [n for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call)]
-            assert not any(isinstance(c.func, ast.Name) and c.func.id == "print" for c in calls), path
+    others = [path for path in MODULES.values() if path.relative_to(ROOT).parts[0] != "cli"]
+    assert len(others) > 200
+    for path in others:
+        calls = [n for n in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(n, ast.Call)]
+        assert not any(isinstance(c.func, ast.Name) and c.func.id == "print" for c in calls), path

@@ -13,7 +13,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.imaging.metrics import LUMA
+from eigenfield.imaging.colour import LUMA_BT709
 
 Chroma = Literal["420", "444"]
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
@@ -25,7 +25,7 @@ MIDDLE = 512  # the code of no colour (ITU-T H.273, full range)
 
 def _matrix() -> NDArray[np.float64]:
     """(3, 3): R'G'B' of 0..1 to Y' of 0..1 and Cb, Cr of ±0.5."""
-    luma = np.array(LUMA)
+    luma = np.array(LUMA_BT709)
     blue = (np.array([0, 0, 1]) - luma) / (2 * (1 - luma[2]))
     red = (np.array([1, 0, 0]) - luma) / (2 * (1 - luma[0]))
     return np.stack([luma, blue, red])

@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.imaging.metrics import LUMA, to_codes
+from eigenfield.imaging.colour import LUMA_BT709
+from eigenfield.imaging.metrics import to_codes
 
 LIMIT = 2.0  # pixels that a displacement may have
 MEDIAN, SMOOTH = 5, 2.0  # side of the median window, σ of the Gaussian after it: what is one pixel's own is no shift
@@ -46,4 +47,4 @@ def moved_back(drawn: NDArray[np.uint8], flow: NDArray[np.float32], covered: NDA
 
 
 def _luma(picture: NDArray[Any]) -> NDArray[np.uint8]:
-    return np.rint(to_codes(picture) @ np.array(LUMA)).astype(np.uint8)
+    return np.rint(to_codes(picture) @ np.array(LUMA_BT709)).astype(np.uint8)

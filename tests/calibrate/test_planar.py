@@ -114,6 +114,7 @@ def test_given_cameras_start_where_they_are(jittering):
     cameras = planar.model.cameras(views, planar.parameters)
     start = start_given(cameras, 0.5, 1.5)
     again = start.model.cameras(views, start.parameters)
+    assert len(again) == SIZE**2
     for before, after in zip(cameras, again, strict=True):
         np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-9)
 

@@ -97,6 +97,7 @@ def test_points_lie_where_the_photographs_show_them(scene, solved):
     _, truth = scene
     motion = solved
     points = motion.points
+    assert len(motion.light_field.cameras) == len(truth.cameras)
     for index, camera in enumerate(motion.light_field.cameras):
         here = points.view == index
         pixels, depth = camera.project(points.positions[points.point[here]])

@@ -85,6 +85,7 @@ def test_applied_transform_is_undone(tmp_path):
         frame["transform_matrix"] = matrix.tolist()
     top |= {"applied_transform": np.hstack([Q, shift[:, None]]).tolist(), "applied_scale": scale}
     capture = open_capture(write(tmp_path, top))
+    assert len(capture.views) == len(top["frames"])
     point = np.array([[0.4, -0.2, 2.0]])
     for i, view in enumerate(capture.views):
         assert np.allclose(view.camera.project(point)[0], camera(i).project(point)[0], atol=1e-9)

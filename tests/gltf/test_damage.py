@@ -35,6 +35,7 @@ from support.glb_surgery import (
 
 
 def test_good_files_are_good(tmp_path, good):
+    assert good
     for data in good.values():
         assert outcome(tmp_path / "a.glb", data) is None
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import edge_components
 from eigenfield.proxy import atlas_statistics, unwrapped
 from eigenfield.proxy.atlas import lscm_charts
 from eigenfield.proxy.atlas.chart_merging import Chart, merged_charts, shared_edges
-from eigenfield.proxy.atlas.lscm_charts import edge_components
 from support.surfaces import ball, square
 
 SIDE = 20

@@ -7,6 +7,7 @@ import pytest
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.background import coverage, fill_background, joined
 from eigenfield.proxy.surface.fusion import DepthView, Points, fuse
@@ -20,7 +21,6 @@ from eigenfield.proxy.surface.trim import (
     trimmed,
     within_masks,
 )
-from eigenfield.proxy.topology import areas, edge_faces
 from support.surfaces import Drawn, ball, ball_before_wall, depth_views, looking, nine_cameras, square
 
 
@@ -58,10 +58,10 @@ def test_the_surface_is_true_covers_and_is_manifold(whole, points, scene, camera
         off = np.abs(drawn[both] / true[both] - 1)
         assert np.median(off) < 1e-3 and (off < 0.01).mean() > 0.95 and both.mean() > 0.8
     assert coverage(mesh, cameras)[4] > 0.99
-    _, number = edge_faces(mesh.faces)
+    _, number = face_edges(mesh.faces)
     assert np.bincount(number).max() == 2
     assert np.abs(mesh.vertices).max() < 4.4  # Poisson's closed balloon is cut
-    assert (mesh.face_normals()[areas(mesh) > 0] @ [0, 0, -1]).mean() > 0.5
+    assert (mesh.face_normals()[mesh.face_areas() > 0] @ [0, 0, -1]).mean() > 0.5
 
 
 @pytest.mark.parametrize("seen", ["nothing", "the air"])

@@ -13,12 +13,13 @@ from hypothesis import strategies as st
 from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
+from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.background import coverage, joined
 from eigenfield.proxy.primitives.clip import clipped, split_long_edges
 from eigenfield.proxy.primitives.shapes import Plane, Sphere, insert_primitive, parse_primitive
 from eigenfield.proxy.primitives.sphere_fit import Region, find_view, fit_sphere, outline, parse_region
-from eigenfield.proxy.topology import areas, boundary_loops, edge_faces
+from eigenfield.proxy.topology import boundary_loops
 from support.observations import InMemory
 from support.surfaces import ball, looking, square
 
@@ -84,11 +85,11 @@ def test_views_are_found_by_what_people_type():
 def test_a_disc_is_cut_out_of_a_square(radius, x, y):
     sphere = Sphere((x, y, 0.0), radius)
     mesh = split_long_edges(square(2, 0.0, 9), sphere.distance, radius / 8)
-    assert np.isclose(areas(mesh).sum(), 16, rtol=1e-4)  # splitting moves nothing
+    assert np.isclose(mesh.face_areas().sum(), 16, rtol=1e-4)  # splitting moves nothing
     result = clipped(mesh, sphere.distance)
-    assert np.isclose(16 - areas(result).sum(), np.pi * radius**2, rtol=0.02)
+    assert np.isclose(16 - result.face_areas().sum(), np.pi * radius**2, rtol=0.02)
     assert sphere.distance(result.vertices.astype(np.float64)).min() > -1e-5
-    _, number = edge_faces(result.faces)
+    _, number = face_edges(result.faces)
     assert np.bincount(number).max() == 2
     loops = boundary_loops(result)
     assert len(loops) == 2  # no crack: the outer border and the hole's, which lies on the sphere
@@ -99,7 +100,7 @@ def test_a_disc_is_cut_out_of_a_square(radius, x, y):
 def test_a_small_sphere_inside_one_large_triangle_is_not_missed():
     sphere = Sphere((0.1, 0.05, 0.0), 0.05)
     result = clipped(split_long_edges(square(2, 0.0, 2), sphere.distance, 0.01), sphere.distance)
-    assert np.isclose(16 - areas(result).sum(), np.pi * 0.05**2, rtol=0.05)
+    assert np.isclose(16 - result.face_areas().sum(), np.pi * 0.05**2, rtol=0.05)
 
 
 def test_what_lies_apart_is_not_split():

@@ -7,8 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import face_edges
 from eigenfield.proxy.background import joined
-from eigenfield.proxy.topology import areas, boundary_loops, compact, edge_faces, filled, manifold, without_islands
+from eigenfield.proxy.topology import boundary_loops, compact, filled, manifold, without_islands
 from eigenfield.proxy.topology_kernels import least_area
 from support.surfaces import ball, square
 
@@ -26,9 +27,11 @@ def test_small_holes_are_filled_large_ones_stay():
     assert len(boundary_loops(mesh)) == 3
     result = filled(mesh, 1.0)
     assert len(boundary_loops(result)) == 2
-    missing = 16 - areas(result).sum()
-    assert np.isclose(missing, areas(square(2, 0.0, 41))[large].sum(), rtol=1e-4)  # the small hole is closed exactly
-    assert (result.face_normals()[areas(result) > 0] @ [0, 0, -1] > 0.99).all()  # and faces as the rest does
+    missing = 16 - result.face_areas().sum()
+    assert np.isclose(
+        missing, square(2, 0.0, 41).face_areas()[large].sum(), rtol=1e-4
+    )  # the small hole is closed exactly
+    assert (result.face_normals()[result.face_areas() > 0] @ [0, 0, -1] > 0.99).all()  # and faces as the rest does
 
 
 def test_an_outer_border_is_no_hole():
@@ -46,15 +49,15 @@ def test_least_area_triangulates_any_loop(count, seed):
     assert triangles.shape == (count - 2, 3) and set(triangles.ravel()) == set(range(count))
     x, y = loop[:, 0], loop[:, 1]
     polygon = abs((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2
-    flat = areas(Mesh(loop.astype(np.float32), triangles.astype(np.int32))).sum()
+    flat = Mesh(loop.astype(np.float32), triangles.astype(np.int32)).face_areas().sum()
     assert np.isclose(flat, polygon, rtol=1e-4, atol=1e-6)
 
 
 def test_least_area_spans_a_bent_loop_over_the_short_way():
     loop = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 1.0], [0, 1, 0]], float)
-    area = areas(Mesh(loop.astype(np.float32), least_area(loop).astype(np.int32))).sum()
-    other = areas(Mesh(loop.astype(np.float32), np.array([[1, 2, 3], [1, 3, 0]], np.int32))).sum()
-    one = areas(Mesh(loop.astype(np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.int32))).sum()
+    area = Mesh(loop.astype(np.float32), least_area(loop).astype(np.int32)).face_areas().sum()
+    other = Mesh(loop.astype(np.float32), np.array([[1, 2, 3], [1, 3, 0]], np.int32)).face_areas().sum()
+    one = Mesh(loop.astype(np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.int32)).face_areas().sum()
     assert np.isclose(area, min(one, other))
 
 
@@ -81,7 +84,7 @@ def test_no_edge_keeps_three_faces_and_no_vertex_two_fans():
     )
     mesh = manifold(Mesh(vertices, faces))
     assert len(mesh.faces) == 3
-    _, number = edge_faces(mesh.faces)
+    _, number = face_edges(mesh.faces)
     assert np.bincount(number).max() == 2
     assert len(mesh.vertices) == 7  # vertex 0 is doubled; 4 and 7 are gone
     assert len(boundary_loops(mesh)) == 2

@@ -73,6 +73,7 @@ def test_finished_stages_are_taken_up(photos, made):
 
 def test_refined_cameras_are_kept_for_other_tools(photos, made):
     _, result = made
+    assert len(result.light_field.cameras) >= 3
     for name in ("transforms.json", "sparse/0"):
         read = open_capture(photos, calibration=result.calibration / name)
         for before, after in zip(result.light_field.cameras, read.cameras, strict=True):

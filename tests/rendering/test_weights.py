@@ -159,6 +159,7 @@ def test_weights_on_an_edge_are_those_of_its_ends(mode):
     scene, places = scene_at(jittered(5, 5))
     rows = [(5 * row + column, 5 * row + column + 1) for row, column in np.ndindex(5, 4)]
     edges = rows if mode == "bilinear" else scene.rig.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).tolist()
+    assert len(edges) >= 20
     for first, second in edges:
         for part in random.uniform(0.05, 0.95, 40):
             weights = view_weights(scene, tuple((1 - part) * places[first] + part * places[second]), mode)

@@ -11,7 +11,7 @@ import time
 import pytest
 
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.stages import Stages, file_digest, stage_key
+from eigenfield.runtime.stages import PACKAGE, STAGE_ROOMS, Stages, code_version, file_digest, stage_key
 
 
 def test_a_finished_stage_is_taken_up(tmp_path):
@@ -55,6 +55,31 @@ def test_keys_know_the_files_bytes_and_the_options(tmp_path):
     assert first != stage_key([file_digest(file), {"refine": False}])
     file.write_bytes(b"two")
     assert first != stage_key([file_digest(file), {"refine": True}])
+
+
+def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path):
+    rooms = (*STAGE_ROOMS, "encoding")
+    sources = [tmp_path / room / "inner" / "work.py" for room in rooms]
+    for source in sources:
+        source.parent.mkdir(parents=True)
+        source.write_text("first")
+    before = code_version(tmp_path)
+    for room, source in zip(rooms, sources, strict=True):
+        source.write_text("second")
+        code_version.cache_clear()
+        assert (code_version(tmp_path) != before) == (room in STAGE_ROOMS), room
+        source.write_text("first")
+    code_version.cache_clear()
+    assert code_version(tmp_path) == before
+    sources[0].rename(sources[0].with_name("other.py"))
+    code_version.cache_clear()
+    assert code_version(tmp_path) != before
+    assert code_version() not in (before, code_version(tmp_path))
+
+
+def test_the_rooms_that_make_stages_are_there():
+    assert all((PACKAGE / room / "__init__.py").is_file() for room in STAGE_ROOMS)
+    assert "calibrate" in STAGE_ROOMS and "encoding" not in STAGE_ROOMS
 
 
 def test_a_place_that_is_a_file_is_refused(tmp_path):

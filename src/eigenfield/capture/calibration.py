@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 import unicodedata
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +15,8 @@ from numpy.typing import NDArray
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
+
+T = TypeVar("T")
 
 LARGEST = 1e30  # of focal lengths and positions: products of two of them stay finite, and a file keeps float32
 
@@ -105,3 +109,14 @@ class Calibration:
     entries: tuple[Entry, ...]
     errors: tuple[CaptureError, ...] = ()
     problems: tuple[str, ...] = ()
+
+
+def read_each(read: Callable[[T], Entry], items: Iterable[T]) -> tuple[tuple[Entry, ...], tuple[CaptureError, ...]]:
+    """The entries that `read` makes of items, and the errors that it raises for others, which stop nothing."""
+    entries, errors = [], []
+    for item in items:
+        try:
+            entries.append(read(item))
+        except CaptureError as error:
+            errors.append(error)
+    return tuple(entries), tuple(errors)

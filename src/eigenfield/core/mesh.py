@@ -24,7 +24,34 @@ class Mesh:
 
     def face_normals(self) -> NDArray[np.float64]:
         """(m, 3) unit normals by the right-hand rule; zero for triangles without area."""
-        corners = self.vertices[self.faces].astype(np.float64)
-        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normal = _crossed(self.vertices[self.faces].astype(np.float64))
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+
+    def face_areas(self) -> NDArray[np.float64]:
+        """(m,) areas of the triangles, squared world units."""
+        return triangle_areas(self.vertices[self.faces].astype(np.float64))
+
+
+def triangle_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m,) areas of triangles in space, corners (m, 3, 3)."""
+    return np.asarray(np.linalg.norm(_crossed(corners), axis=1) / 2)
+
+
+def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m,) areas of triangles in the plane, corners (m, 3, 2): positive where they turn from x to y."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
+
+
+def barycentric(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(n, 3) barycentric coordinates of points (n, 2) in triangles of the plane with area, corners (n, 3, 2)."""
+    p = corners - points[:, None]
+    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
+    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
+    return np.asarray(area / area.sum(axis=1, keepdims=True))
+
+
+def _crossed(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3) normals as long as twice the area."""
+    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))

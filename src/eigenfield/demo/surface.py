@@ -25,6 +25,7 @@ from eigenfield.demo.geometry import (
 from eigenfield.demo.kernels import fractal_noise
 from eigenfield.demo.lettering import BLOCK_LETTERS, POSTER, letter_mask, poster_mask
 from eigenfield.demo.light import dot, irradiance
+from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.raster import rasterise_atlas
 from eigenfield.runtime.parallel import parallel_map, pieces
 
@@ -109,7 +110,7 @@ def edge(distance: Array, width: float) -> Array:
 def colour(code: str) -> Array:
     """(3,) linear RGB of a hexadecimal sRGB colour."""
     value = np.array([int(code[k : k + 2], 16) for k in (0, 2, 4)]) / 255
-    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4)
+    return linear_of_srgb(value)
 
 
 def mix(a: Array, b: Array, share: Array) -> Array:

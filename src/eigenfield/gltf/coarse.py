@@ -68,13 +68,11 @@ def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
 def _clustered(mesh: Mesh, triangles: int) -> Mesh | None:
     """One vertex for each chart in each cell of a square grid over the atlas, that nearest to the middle of those in
     it; as fine a grid as gives at most so many triangles. None where none does."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
+    from eigenfield.imaging.graph import vertex_components
 
     assert mesh.uv is not None
-    finest, number = None, len(mesh.vertices)
-    ends = mesh.faces.reshape(-1), np.roll(mesh.faces, 1, axis=1).reshape(-1)
-    _, chart = connected_components(coo_array((np.ones(len(ends[0])), ends), (number, number)), directed=False)
+    finest = None
+    chart = vertex_components(mesh.faces, len(mesh.vertices))
     for cells in range(2, 128):
         cell = np.floor(mesh.uv * cells).astype(np.int64) @ [1, 1 << 10] + (chart.astype(np.int64) << 20)
         _, own, count = np.unique(cell, return_inverse=True, return_counts=True)

@@ -12,10 +12,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.runtime.parallel import pieces
 
 PSNR_CAP = 100.0  # dB: identical pictures, whose PSNR is infinite, get this too
-LUMA = (0.2126, 0.7152, 0.0722)  # Y' of BT.709
 
 RADIUS = 5  # an 11 x 11 window, as in the paper that introduced SSIM
 SIGMA = 1.5
@@ -46,7 +46,7 @@ def psnr_luma(drawn: Picture, photograph: Picture, covered: NDArray[np.bool_] | 
     """PSNR of Y' = 0.2126 R + 0.7152 G + 0.0722 B of the rounded pictures; Y' itself is not rounded again."""
     a, b = _pair(drawn, photograph)
     difference = cv2.subtract(a, b, dtype=cv2.CV_32F)
-    luma = cv2.transform(np.asarray(difference), np.array([LUMA], np.float32))
+    luma = cv2.transform(np.asarray(difference), np.array([LUMA_BT709], np.float32))
     return _decibels(_squares(np.asarray(luma), np.zeros_like(luma), covered), _count(a, covered))
 
 

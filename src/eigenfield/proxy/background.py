@@ -25,9 +25,10 @@ from scipy.sparse.linalg import spsolve
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.surface.trim import surface_samples
-from eigenfield.proxy.topology import compact, edge_faces
+from eigenfield.proxy.topology import compact
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
@@ -233,8 +234,7 @@ def _relief(directions: Directions, samples: NDArray[np.float64], cameras: Seque
 def _plate(faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
     count = len(target)
     laplacian = _laplacian(faces, count)
-    _, number = edge_faces(faces)
-    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    ends, number = face_edges(faces)
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian

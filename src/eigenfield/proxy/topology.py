@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import components, edge_components, face_edges
 from eigenfield.proxy.topology_kernels import least_area
 
 LONGEST_LOOP = 200  # edges of a hole that is filled at most: the triangulation takes the cube of it
@@ -23,34 +22,11 @@ def compact(mesh: Mesh) -> Mesh:
     return Mesh(mesh.vertices[used], index.reshape(mesh.faces.shape).astype(np.int32), uv)
 
 
-def areas(mesh: Mesh) -> NDArray[np.float64]:
-    """(m,) areas of the faces."""
-    p = mesh.vertices[mesh.faces].astype(np.float64)
-    return np.asarray(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2)
-
-
-def edge_faces(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """(3 m, 2) the edges' vertices, lower first, edge k of face f at row 3 f + k (from corner k to the next), and
-    (3 m,) the number of the undirected edge that each one is."""
-    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2).astype(np.int64)
-    ends.sort(axis=1)
-    _, number = np.unique(ends[:, 0] * (int(faces.max(initial=0)) + 1) + ends[:, 1], return_inverse=True)
-    return ends, number.reshape(-1)
-
-
 def patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = None) -> NDArray[np.int64]:
     """(m,) which patch of faces that share edges each one belongs to; -1 outside `which`."""
     label = np.full(len(faces), -1, np.int64)
     chosen = np.arange(len(faces)) if which is None else np.flatnonzero(which)
-    if len(chosen) == 0:
-        return label
-    _, number = edge_faces(faces[chosen])
-    order = np.argsort(number, kind="stable")
-    same = np.flatnonzero(np.diff(number[order]) == 0)
-    a, b = order[same] // 3, order[same + 1] // 3
-    size = len(chosen)
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(size, size))
-    label[chosen] = connected_components(graph, directed=False)[1]
+    label[chosen] = edge_components(faces[chosen])
     return label
 
 
@@ -58,7 +34,7 @@ def without_islands(mesh: Mesh, share: float) -> Mesh:
     """Without the patches that hold less than `share` of the whole area."""
     if len(mesh.faces) == 0:
         return mesh
-    label, area = patches(mesh.faces), areas(mesh)
+    label, area = patches(mesh.faces), mesh.face_areas()
     sums = np.bincount(label, area)
     keep = sums[label] >= share * area.sum()
     return compact(Mesh(mesh.vertices, mesh.faces[keep], mesh.uv))
@@ -82,7 +58,7 @@ def _surplus(mesh: Mesh) -> NDArray[np.int64]:
     """Of every edge that is run twice in one sense, the smaller face."""
     starts, ends = mesh.faces.reshape(-1), np.roll(mesh.faces, -1, axis=1).reshape(-1)
     run = starts.astype(np.int64) * (int(mesh.faces.max(initial=0)) + 1) + ends
-    area = np.repeat(areas(mesh), 3)
+    area = np.repeat(mesh.face_areas(), 3)
     order = np.lexsort((np.arange(len(run)), -area, run))
     again = np.flatnonzero(np.diff(run[order]) == 0) + 1
     return np.unique(order[again] // 3)
@@ -93,7 +69,7 @@ def _single_fans(mesh: Mesh) -> Mesh:
     count = len(mesh.faces)
     if count == 0:
         return Mesh(mesh.vertices[:0], mesh.faces)
-    _, number = edge_faces(mesh.faces)
+    _, number = face_edges(mesh.faces)
     order = np.argsort(number, kind="stable")
     same = np.flatnonzero(np.diff(number[order]) == 0)
     a, b = order[same], order[same + 1]
@@ -103,8 +79,7 @@ def _single_fans(mesh: Mesh) -> Mesh:
     swap = corner[a_start] != corner[b_start]  # neighbours run their edge in opposite senses
     left = np.concatenate([a_start, a_end])
     right = np.concatenate([np.where(swap, b_end, b_start), np.where(swap, b_start, b_end)])
-    graph = coo_array((np.ones(len(left), np.int8), (left, right)), shape=(3 * count, 3 * count))
-    _, fan = connected_components(graph, directed=False)
+    fan = components(3 * count, left, right)
     _, first, index = np.unique(fan, return_index=True, return_inverse=True)
     order = np.argsort(corner[first], kind="stable")
     rank = np.empty_like(order)
@@ -117,7 +92,7 @@ def boundary_loops(mesh: Mesh) -> list[NDArray[np.int64]]:
     """The boundary of a `manifold` mesh: closed runs of vertices, each in the sense in which a face that fills it
     would run it (opposite to the mesh's own)."""
     starts, ends = mesh.faces.reshape(-1).astype(np.int64), np.roll(mesh.faces, -1, axis=1).reshape(-1).astype(np.int64)
-    _, number = edge_faces(mesh.faces)
+    _, number = face_edges(mesh.faces)
     alone = np.bincount(number)[number] == 1
     following = dict(zip(ends[alone].tolist(), starts[alone].tolist(), strict=True))
     loops = []
@@ -140,7 +115,7 @@ def filled(mesh: Mesh, size: float, *, edges: int = LONGEST_LOOP) -> Mesh:
 
     A patch's outer border is no hole: what closes it would be larger than half the patch.
     """
-    label, area = patches(mesh.faces), areas(mesh)
+    label, area = patches(mesh.faces), mesh.face_areas()
     patch_area = np.bincount(label, area) if len(label) else area
     patch_of = np.zeros(len(mesh.vertices), np.int64)
     patch_of[mesh.faces] = label[:, None]
@@ -149,6 +124,6 @@ def filled(mesh: Mesh, size: float, *, edges: int = LONGEST_LOOP) -> Mesh:
         corners = mesh.vertices[loop].astype(np.float64)
         if 3 <= len(loop) <= edges and np.linalg.norm(np.ptp(corners, axis=0)) <= size:
             fill = loop[least_area(corners)].astype(np.int32)
-            if 2 * areas(Mesh(mesh.vertices, fill)).sum() <= patch_area[patch_of[loop[0]]]:
+            if 2 * Mesh(mesh.vertices, fill).face_areas().sum() <= patch_area[patch_of[loop[0]]]:
                 added.append(fill)
     return Mesh(mesh.vertices, np.concatenate(added))

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from eigenfield.rendering.checks import FILTERS
 from eigenfield.rendering.exposure import camera_colour
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
 from eigenfield.rendering.paths import PATHS, path_points
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.render_jobs import Shots
-from eigenfield.rendering.software.drawing import FILTERS
 from eigenfield.rendering.software.renderer import (
     Renderer,
     at_resolution,

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.runtime.files import atomic_writer
 
 QUALITY = 16  # x264's constant rate factor: visually lossless
 ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
 SETTINGS = {"crf": str(QUALITY), "preset": "medium", "x264-params": "mbtree=0"}  # with it, bytes vary between runs
-LUMA = np.array([0.2126, 0.7152, 0.0722], np.float32)  # BT.709
 BT709, LIMITED = 1, 1  # as libavutil numbers them
 
 
@@ -55,7 +55,7 @@ def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.ui
     height, width = picture.shape[:2]
     padded = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge")
     rgb = padded.astype(np.float32) / np.float32(255)
-    luma = rgb @ LUMA
+    luma = rgb @ np.array(LUMA_BT709, np.float32)
     cb, cr = (rgb[..., 2] - luma) / np.float32(1.8556), (rgb[..., 0] - luma) / np.float32(1.5748)
     return _bytes(16 + 219 * luma), _bytes(128 + 224 * _halved(cb)), _bytes(128 + 224 * _halved(cr))
 

@@ -24,13 +24,13 @@ from eigenfield.runtime.files import flush_folder, mended
 log = logging.getLogger("eigenfield.stages")
 
 BLOCK = 1 << 20
+PACKAGE = Path(__file__).parents[1]
 STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibrate", "proxy", "reconstruction"
 
 
 @cache
-def code_version() -> str:
-    """A digest of the sources of STAGE_ROOMS: a stage built by another version of them is not taken up."""
-    root = Path(__file__).parents[1]
+def code_version(root: Path = PACKAGE) -> str:
+    """A digest of the sources of STAGE_ROOMS in a package: a stage built by another version of them is not taken up."""
     digest = hashlib.sha256()
     for source in sorted(path for room in STAGE_ROOMS for path in (root / room).rglob("*.py")):
         digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())

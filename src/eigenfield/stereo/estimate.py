@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress
+from eigenfield.imaging.sampling import farthest_points
 from eigenfield.stereo.canvas import Canvas, view_matrices
 from eigenfield.stereo.detail import detail_pictures
 from eigenfield.stereo.extend import extended
@@ -165,12 +166,8 @@ def spread_views(moves: NDArray[np.float64], most: int) -> NDArray[np.int64]:
     """At most `most` views, spread evenly: each is the one farthest from those before; the first moves least."""
     if len(moves) <= most:
         return np.arange(len(moves))
-    chosen = [int(np.hypot(*moves.T).argmin())]
-    distance = np.full(len(moves), np.inf)
-    while len(chosen) < most:
-        distance = np.minimum(distance, np.hypot(*(moves - moves[chosen[-1]]).T))
-        chosen.append(int(distance.argmax()))
-    return np.sort(np.array(chosen))
+    first = int(np.hypot(*moves.T).argmin())
+    return np.sort(farthest_points(lambda index: np.hypot(*(moves - moves[index]).T), first, most))
 
 
 def _fewest(views: int) -> int:

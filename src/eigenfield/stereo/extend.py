@@ -6,8 +6,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
+
+from eigenfield.imaging.graph import components
 
 REACH = 16.0  # pixels, one sigma, over which the slope at the border is taken
 STEEPEST = 2.0  # times the range of d over the canvas's longer side: steeper slopes are noise
@@ -58,8 +58,7 @@ def without_specks(
     index = np.arange(d.size).reshape(d.shape)
     one = np.concatenate([index[:, :-1][~steps[0]], index[:-1][~steps[1]]])
     other = np.concatenate([index[:, 1:][~steps[0]], index[1:][~steps[1]]])
-    links = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(d.size, d.size))
-    piece = connected_components(links, directed=False)[1]
+    piece = components(d.size, one, other)
     specks = (np.bincount(piece) < smallest)[piece].reshape(d.shape)
     if not specks.any() or specks.all():
         return d

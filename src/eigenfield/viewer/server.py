@@ -17,7 +17,6 @@ import threading
 import time
 from collections.abc import Mapping
 from http.server import ThreadingHTTPServer
-from types import TracebackType
 from typing import Any
 
 from eigenfield.core.errors import EigenfieldError, OptionError
@@ -79,9 +78,7 @@ class Server(ThreadingHTTPServer):
         self._acceptor.start()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:

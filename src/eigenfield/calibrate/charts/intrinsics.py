@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibrate.charts.corners import Corners
 from eigenfield.calibrate.charts.lens_models import LADDER, Freedom, matrix, project
+from eigenfield.imaging.sampling import distances_to, farthest_points
 
 log = logging.getLogger("eigenfield.calibrate")
 
@@ -109,12 +110,8 @@ def _spread(sightings: Sequence[Corners], size: tuple[int, int]) -> list[Corners
     if len(sightings) <= MOST:
         return list(sightings)
     traits = np.array([_traits(s, size) for s in sightings])
-    chosen = [int(np.argmax([len(s.ids) for s in sightings]))]
-    nearest = np.linalg.norm(traits - traits[chosen[0]], axis=1)
-    while len(chosen) < MOST:
-        chosen.append(int(np.argmax(nearest)))
-        nearest = np.minimum(nearest, np.linalg.norm(traits - traits[chosen[-1]], axis=1))
-    return [sightings[i] for i in sorted(chosen)]
+    first = int(np.argmax([len(s.ids) for s in sightings]))
+    return [sightings[i] for i in sorted(farthest_points(distances_to(traits), first, MOST))]
 
 
 def _traits(corners: Corners, size: tuple[int, int]) -> NDArray[np.float64]:

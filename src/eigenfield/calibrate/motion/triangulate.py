@@ -7,8 +7,6 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from threadpoolctl import threadpool_limits
 
 from eigenfield.calibrate.lenses import KnownLens, undistorted
@@ -18,6 +16,7 @@ from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress, track
+from eigenfield.imaging.graph import components
 from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.calibrate")
@@ -118,8 +117,7 @@ def _triangulated(
     start = np.cumsum([0, *(len(found) for found in features)])
     left = np.concatenate([start[i] + found[:, 0] for i, _, found in matches] or [np.zeros(0, np.int64)])
     right = np.concatenate([start[j] + found[:, 1] for _, j, found in matches] or [np.zeros(0, np.int64)])
-    graph = coo_array((np.ones(len(left), np.int8), (left, right)), shape=(start[-1], start[-1]))
-    track_of = connected_components(graph, directed=False)[1]
+    track_of = components(int(start[-1]), left, right)
     view = np.repeat(np.arange(len(features)), np.diff(start))
     count = np.bincount(track_of)
     twice = np.zeros(len(count), np.bool_)  # two features of one view: a mix of points

@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.errors import CaptureError
 
@@ -76,13 +76,8 @@ def read_colmap(folder: Path) -> Calibration:
         shots = list(_shots_text(images))
     if not shots:
         raise CaptureError("calibration-empty", "lists no image", path=images, remedy="name another model")
-    entries, errors = [], []
-    for shot in shots:
-        try:
-            entries.append(_entry(shot, cameras, images))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(folder, "colmap", tuple(entries), tuple(errors))
+    entries, errors = read_each(lambda shot: _entry(shot, cameras, images), shots)
+    return Calibration(folder, "colmap", entries, errors)
 
 
 def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path: Path) -> Entry:

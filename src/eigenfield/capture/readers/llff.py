@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, read_each
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.text import check_finite, contents, damaged, size_of
 from eigenfield.core.errors import CaptureError
@@ -45,16 +45,12 @@ def read_llff(path: Path, photographs: Path | None = None) -> Calibration:
     if not len(rows):
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
     names = photographs_in_order(path.parent if photographs is None else photographs, len(rows), path)
-    entries, errors = [], []
-    for number, (row, name) in enumerate(zip(rows, names, strict=True)):
-        try:
-            entries.append(_entry(row, name, f"row {number} ({name})", path))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(path, "llff", tuple(entries), tuple(errors))
+    entries, errors = read_each(lambda number: _entry(rows[number], names[number], number, path), range(len(rows)))
+    return Calibration(path, "llff", entries, errors)
 
 
-def _entry(row: NDArray[np.float64], name: str, label: str, path: Path) -> Entry:
+def _entry(row: NDArray[np.float64], name: str, number: int, path: Path) -> Entry:
+    label = f"row {number} ({name})"
     matrix, (near, far) = row[:15].reshape(3, 5), row[15:]
     check_finite([matrix], label, path)
     down, right, back, centre, (height, width, focal) = matrix.T

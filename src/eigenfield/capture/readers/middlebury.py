@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
 from eigenfield.capture.readers.skew import without_skew
 from eigenfield.capture.readers.text import check_finite, damaged, numbers, shown, text
 from eigenfield.core.errors import CaptureError
@@ -56,13 +56,8 @@ def read_middlebury(path: Path) -> Calibration:
         )
     if not count:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    entries, errors = [], []
-    for number, line in lines[1:]:
-        try:
-            entries.append(_entry(line, number, path))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(path, "middlebury", tuple(entries), tuple(errors))
+    entries, errors = read_each(lambda item: _entry(item[1], item[0], path), lines[1:])
+    return Calibration(path, "middlebury", entries, errors)
 
 
 def _entry(line: str, number: int, path: Path) -> Entry:

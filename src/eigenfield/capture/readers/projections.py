@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
 from eigenfield.capture.readers.skew import without_skew
 from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, text
 from eigenfield.core.errors import CaptureError
@@ -71,13 +71,8 @@ def read_projections(path: Path) -> Calibration:
         raise CaptureError(
             "calibration-empty", "holds no NAME_P.txt and no NAME.txt", path=folder, remedy="name another folder"
         )
-    entries, errors = [], []
-    for file in files:
-        try:
-            entries.append(_entry(file))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(folder, "projections", tuple(entries), tuple(errors))
+    entries, errors = read_each(_entry, files)
+    return Calibration(folder, "projections", entries, errors)
 
 
 def _matrix(path: Path) -> NDArray[np.float64]:

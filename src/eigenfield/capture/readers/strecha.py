@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
 from eigenfield.capture.readers.skew import without_skew
 from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, size_of, text
 from eigenfield.core.errors import CaptureError
@@ -54,13 +54,8 @@ def read_strecha(path: Path) -> Calibration:
     files = _files(folder)
     if not files:
         raise CaptureError("calibration-empty", f"holds no *{SUFFIX}", path=folder, remedy="name another folder")
-    entries, errors = [], []
-    for file in files:
-        try:
-            entries.append(_entry(file))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(folder, "strecha", tuple(entries), tuple(errors))
+    entries, errors = read_each(_entry, files)
+    return Calibration(folder, "strecha", entries, errors)
 
 
 def _entry(path: Path) -> Entry:

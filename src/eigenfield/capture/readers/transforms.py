@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.text import contents
 from eigenfield.core.errors import CaptureError
 
 NAME = "transforms.json"
@@ -55,31 +56,14 @@ def read_transforms(path: Path) -> Calibration:
     if not frames:
         raise CaptureError("calibration-empty", "lists no frame", path=path, remedy="name another calibration")
     undo = _undo(top, path)
-    entries, errors = [], []
-    for number, frame in enumerate(frames):
-        try:
-            entries.append(_entry(top, frame, number, path, undo))
-        except CaptureError as error:
-            errors.append(error)
-    return Calibration(path, "transforms", tuple(entries), tuple(errors))
+    entries, errors = read_each(lambda item: _entry(top, item[1], item[0], path, undo), enumerate(frames))
+    return Calibration(path, "transforms", entries, errors)
 
 
 def _load(path: Path) -> dict[str, Any]:
+    data = contents(path, SIZE_LIMIT)
     try:
-        size = path.stat().st_size
-        if size > SIZE_LIMIT:
-            raise CaptureError(
-                "calibration-too-large",
-                f"has {size} bytes, more than the {SIZE_LIMIT} that a calibration may have",
-                path=path,
-                remedy="name a transforms.json",
-            )
-        text = path.read_bytes().decode("utf-8-sig")
-        top = json.loads(text)
-    except OSError as error:
-        raise CaptureError(
-            "calibration-missing", error.strerror or "cannot be read", path=path, remedy="check the path"
-        ) from error
+        top = json.loads(data.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:  # broken JSON, broken UTF-8, nested without end
         raise CaptureError(
             "calibration-json", f"is no valid JSON ({_one_line(error)})", path=path, remedy="mend it or export it again"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eigenfield.coding.mesh.corner_kernels import MAPPED, MIRRORED
+from eigenfield.core.mesh import signed_areas
+from eigenfield.imaging.graph import vertex_components
 
 FEWEST = 24  # vertices of a chart with a map of its own: 24 bytes
 
@@ -20,12 +20,9 @@ def chart_kinds(
 
     places: (v, 3) lattice coordinates. A chart is MAPPED if u and v are within `tolerance` of a x + b y + c.
     """
-    f, count = faces.astype(np.int64), len(places)
-    one, other = np.r_[f[:, 0], f[:, 0]], np.r_[f[:, 1], f[:, 2]]
-    links = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(count, count))
-    charts, label = connected_components(links, directed=False)
-    side, third = uv[f[:, 1]] - uv[f[:, 0]], uv[f[:, 2]] - uv[f[:, 0]]
-    area = np.bincount(label[f[:, 0]], side[:, 0] * third[:, 1] - side[:, 1] * third[:, 0], charts)
+    label = vertex_components(faces, len(places))
+    charts = int(label.max(initial=-1)) + 1
+    area = np.bincount(label[faces[:, 0]], signed_areas(uv[faces]), charts)
     kinds = np.where(area < 0, MIRRORED, 0).astype(np.int8)
     maps = np.zeros((charts, 6), np.int64)
     order = np.argsort(label, kind="stable")
@@ -36,7 +33,7 @@ def chart_kinds(
         found = _affine(places[members, :2], uv[members], last, tolerance) if len(members) else None
         if found is not None:
             kinds[chart], maps[chart], last = MAPPED, found.view(np.uint32), found
-    return label.astype(np.int32), kinds, maps
+    return label, kinds, maps
 
 
 def _affine(

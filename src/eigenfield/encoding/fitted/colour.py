@@ -10,7 +10,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-LUMA = np.array([0.2126, 0.7152, 0.0722])
+from eigenfield.imaging.colour import LUMA_BT709
+
+LUMA = np.array(LUMA_BT709)
 
 
 def split_matrix() -> tuple[NDArray[np.float32], NDArray[np.float32]]:

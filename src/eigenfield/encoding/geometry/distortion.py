@@ -20,11 +20,12 @@ from scipy.ndimage import distance_transform_edt, uniform_filter
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, barycentric, signed_areas
 from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
-from eigenfield.imaging.metrics import LUMA
+from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.raster import rasterise_view
+from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.runtime.parallel import parallel_stream
 
 CAMERAS = 25  # of the array, spread over it, are looked at
@@ -53,7 +54,7 @@ class Effect:
 
 def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
     """(h, w) BT.709's luma of an observation, from its sRGB-coded numbers."""
-    return np.asarray(observations.photograph(index).pixels @ np.array(LUMA, np.float32), np.float32)
+    return np.asarray(observations.photograph(index).pixels @ np.array(LUMA_BT709, np.float32), np.float32)
 
 
 def depth_effect(
@@ -125,10 +126,7 @@ def texel_weights(
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
     corners = faces[owners[row, column]]
-    p = places[corners] - (np.stack([column, row], axis=1)[:, None] * STEPS + HALF)
-    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
-    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
-    return corners, area / area.sum(axis=1, keepdims=True)
+    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * STEPS + HALF)
 
 
 def _looked(
@@ -216,8 +214,7 @@ def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
     assert mesh.uv is not None
 
     def areas(points: NDArray[np.float64]) -> float:
-        one, other = (points[mesh.faces[:, k]] - points[mesh.faces[:, 0]] for k in (1, 2))
-        return float(np.abs(one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0]).sum())
+        return 2 * float(np.abs(signed_areas(points[mesh.faces])).sum())
 
     pixels = areas(exact[:, :2]) / pixel**2 / max(areas(mesh.uv.astype(np.float64)), 1e-12)
     return int(np.clip(round(np.sqrt(pixels)), 16, SIDE_MOST))
@@ -225,10 +222,5 @@ def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
 
 def spread_cameras(centres: NDArray[np.float64], count: int) -> list[int]:
     """Indices of cameras, each the farthest from those before; the first is the middle one."""
-    apart = np.linalg.norm(centres - centres.mean(axis=0), axis=1)
-    chosen = [int(np.argmin(apart))]
-    apart = np.linalg.norm(centres - centres[chosen[0]], axis=1)
-    while len(chosen) < min(count, len(centres)):
-        chosen.append(int(np.argmax(apart)))
-        apart = np.minimum(apart, np.linalg.norm(centres - centres[chosen[-1]], axis=1))
-    return chosen
+    middle = int(np.argmin(np.linalg.norm(centres - centres.mean(axis=0), axis=1)))
+    return farthest_points(distances_to(centres), middle, count).tolist()

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
 
 SIDE_STEP = 64  # atlas sides are multiples of this
@@ -95,7 +95,7 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     uv = mesh.uv[mesh.faces[faces]].astype(np.float64)
     flat, depth = camera.project(mesh.vertices[mesh.faces[faces]].reshape(-1, 3))
     usable = (depth.reshape(-1, 3) > 0).all(axis=1)
-    area = _areas(flat.reshape(-1, 3, 2))
+    area = np.abs(signed_areas(flat.reshape(-1, 3, 2)))
     usable &= area > 0
     if not usable.any():
         raise ProxyError(
@@ -103,15 +103,10 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
             "the camera nearest the centre of the array sees nothing of the mesh",
             remedy="bring the mesh into the frame of the cameras (eigenfield inspect --overlay shows both)",
         )
-    ratio = np.sqrt(_areas(uv)[usable] / area[usable])
+    ratio = np.sqrt(np.abs(signed_areas(uv))[usable] / area[usable])
     order = np.argsort(ratio, kind="stable")
     mass = np.cumsum(pixels[usable][order])
     return float(ratio[order][np.searchsorted(mass, mass[-1] / 2)])
-
-
-def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
 def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = None) -> int:

@@ -9,14 +9,15 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP
 from eigenfield.coding.video.av1 import Planes
-from eigenfield.imaging.metrics import LUMA
+from eigenfield.imaging.colour import LUMA_BT709
+from eigenfield.imaging.sampling import halved
 
 _CUBIC = np.array([-9, 111, 29, -3], np.float32) / 128  # Catmull and Rom's, a quarter of a sample from the second
 
 
 def _matrix() -> NDArray[np.float64]:
     """(3, 3): R'G'B' to Y' and, of half their range, Cb and Cr."""
-    luma = np.array(LUMA)
+    luma = np.array(LUMA_BT709)
     blue = (np.array([0, 0, 1]) - luma) / (2 * (1 - luma[2]))
     red = (np.array([1, 0, 0]) - luma) / (2 * (1 - luma[0]))
     return np.stack([luma, blue, red])
@@ -38,7 +39,7 @@ def to_planes(
         stacked = np.concatenate([_codes(converted[..., channel], scale[min(channel, 1)]) for channel in range(3)])
         flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), FLAT, np.uint16)
         return stacked, flat, flat
-    blue, red = (_halved(converted[..., channel]) for channel in (1, 2))
+    blue, red = (halved(converted[..., channel]) for channel in (1, 2))
     return _codes(converted[..., 0], scale[0]), _codes(blue, scale[1]), _codes(red, scale[1])
 
 
@@ -54,11 +55,6 @@ def to_difference(
     channels = luma * np.float32(scale[0]), blue * np.float32(scale[1]), red * np.float32(scale[1])
     converted = np.stack([channel[:height, :width] for channel in channels], axis=-1)
     return np.asarray(converted @ BACKWARD.T, np.float32)
-
-
-def _halved(plane: NDArray[np.float32]) -> NDArray[np.float32]:
-    height, width = plane.shape
-    return plane.reshape(height // 2, 2, width // 2, 2).mean(axis=(1, 3), dtype=np.float32)
 
 
 def doubled(plane: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -12,10 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eigenfield.core.mesh import Mesh
+from eigenfield.imaging.graph import components
 from eigenfield.runtime.parallel import parallel_map
 
 SMALL = 1 / 400  # of the triangles: charts of more stay by themselves, unless others join them
@@ -146,12 +145,11 @@ def _joined(
     face, seams = place[borders.face], label[borders.face]
     sewn = (face >= 0).all(axis=1) & (seams[:, 0] != seams[:, 1])
     (one, other), (begin, end) = face[sewn].T, borders.corner[sewn].T
-    links = (
+    same = components(
+        int(starts[-1]),
         np.concatenate([corners[one, begin], corners[one, (begin + 1) % 3]]),
         np.concatenate([corners[other, (end + 1) % 3], corners[other, end]]),
     )
-    size = int(starts[-1])
-    _, same = connected_components(coo_array((np.ones(len(links[0]), np.int8), links), (size, size)), directed=False)
     _, first, index = np.unique(same[corners], return_index=True, return_inverse=True)
     vertices = np.concatenate([part.vertices for part in parts])[corners.reshape(-1)[first]]
     corners = index.reshape(-1, 3).astype(np.int32)

@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
+from eigenfield.imaging.graph import vertex_components
 from eigenfield.proxy.atlas.kernels import count_layers
 
 MEASURE_SIDE = 2048  # raster on which overlap and fill are counted
@@ -58,8 +57,7 @@ def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
     covered, doubled = int((layers > 0).sum()), int((layers > 1).sum())
     q = uv[mesh.faces]
     p = mesh.vertices[mesh.faces].astype(np.float64)
-    surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
-    signed = _signed_area(q)
+    surface, signed = triangle_areas(p), signed_areas(q)
     laid = np.abs(signed) > 1e-14
     total = max(float(surface.sum()), 1e-300)
     stretch, anisotropy = _stretch(p[laid], q[laid], surface[laid], signed[laid])
@@ -71,11 +69,6 @@ def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
         stretch=stretch,
         anisotropy=anisotropy,
     )
-
-
-def _signed_area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
 def _stretch(
@@ -99,8 +92,7 @@ def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: ND
     """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in
     it."""
     p, q = vertices[faces], uv[faces]
-    surface = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
-    signed = _signed_area(q)
+    surface, signed = triangle_areas(p), signed_areas(q)
     if (signed == 0).any() or surface.sum() == 0:
         return float("inf")
     return _stretch(p, q, surface, signed)[0]
@@ -108,10 +100,8 @@ def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: ND
 
 def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     """(m,) which chart each triangle is in: triangles that share a vertex are in one."""
-    n, f = len(mesh.vertices), mesh.faces
-    links = coo_array((np.ones(2 * len(f), np.int8), (np.r_[f[:, 0], f[:, 0]], np.r_[f[:, 1], f[:, 2]])), shape=(n, n))
-    _, label = connected_components(links, directed=False)
-    _, chart = np.unique(label[f[:, 0]], return_inverse=True)
+    label = vertex_components(mesh.faces, len(mesh.vertices))
+    _, chart = np.unique(label[mesh.faces[:, 0]], return_inverse=True)
     return chart.astype(np.int32)
 
 

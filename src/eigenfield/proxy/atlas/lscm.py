@@ -12,6 +12,9 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
+from eigenfield.core.mesh import signed_areas, triangle_areas
+from eigenfield.imaging.graph import face_edges
+
 SHIFT = 1e-9  # of the mean diagonal: keeps the factorisation regular
 ITERATIONS = 12  # of inverse iteration; the wanted pair of eigenvalues is far below the rest
 SMALLEST = 1e-12  # of the mean area: triangles below this say nothing about angles
@@ -36,11 +39,11 @@ def conformal_map(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> ND
         z -= z[:, rim].mean(axis=1, keepdims=True)
         z = (z / np.sqrt((z[:, rim] ** 2).sum())).reshape(-1)
     uv = z.reshape(2, n).T
-    area = _signed_areas(uv, faces)
+    area = signed_areas(uv[faces])
     if area.sum() < 0:  # the energy of a mirrored map is as large as can be; this is for maps that collapsed
         uv = uv * (1, -1)
     total = max(abs(float(area.sum())), 1e-300)
-    return np.ascontiguousarray(uv * np.sqrt(float(surface_areas(vertices, faces).sum()) / total))
+    return np.ascontiguousarray(uv * np.sqrt(float(triangle_areas(vertices[faces]).sum()) / total))
 
 
 def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
@@ -48,7 +51,7 @@ def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) ->
     p = vertices[faces]
     along, side = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     length = np.linalg.norm(along, axis=1)
-    twice = 2 * surface_areas(vertices, faces)
+    twice = 2 * triangle_areas(vertices[faces])
     good = twice > SMALLEST * max(float(twice.mean()), 1e-300)
     length, along, side, twice, f = length[good], along[good], side[good], twice[good], faces[good].astype(np.int64)
     x2, y2 = (along * side).sum(axis=1) / length, twice / length
@@ -66,11 +69,9 @@ def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) ->
 
 def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
     """(n,) on an edge of one triangle only; all of them where there is none (a closed surface)."""
-    f = faces.astype(np.int64)
-    a, b = f.reshape(-1), np.roll(f, -1, axis=1).reshape(-1)
-    key, count = np.unique(np.minimum(a, b) * n + np.maximum(a, b), return_counts=True)
+    ends, edge = face_edges(faces)
     rim = np.zeros(n, np.bool_)
-    rim[key[count == 1] // n] = rim[key[count == 1] % n] = True
+    rim[ends[np.bincount(edge)[edge] == 1]] = True
     return rim if rim.any() else np.ones(n, np.bool_)
 
 
@@ -84,15 +85,3 @@ def _start(vertices: NDArray[np.float64], rim: NDArray[np.bool_]) -> NDArray[np.
     return np.asarray(
         np.concatenate([centred @ directions[0], centred @ directions[1] + 0.1 * centred @ directions[0]])
     )
-
-
-def surface_areas(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """(m,)"""
-    p = vertices[faces].astype(np.float64)
-    return np.asarray(np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2)
-
-
-def _signed_areas(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    q = uv[faces]
-    a, b = q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

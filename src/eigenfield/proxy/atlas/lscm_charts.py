@@ -8,15 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import breadth_first_order, connected_components
+from scipy.sparse.csgraph import breadth_first_order
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
+from eigenfield.imaging.graph import edge_components, edge_links
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.atlas.chart_merging import Chart, merged_charts
 from eigenfield.proxy.atlas.kernels import claim_texels, count_layers
 from eigenfield.proxy.atlas.layout import chart_labels, l2_stretch
-from eigenfield.proxy.atlas.lscm import conformal_map, surface_areas
+from eigenfield.proxy.atlas.lscm import conformal_map
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
@@ -75,10 +76,12 @@ def _without_overlaps(
 ) -> list[NDArray[np.int64]]:
     """The chart grown from its largest triangle over all that lie on no other, and what is left, in pieces that hang
     together; nothing if overlaps are not what is wrong."""
-    area = _signed(uv, corners)
+    area = signed_areas(uv[corners])
     if not (area > 0).all():
         return []
-    order = breadth_first_order(_edge_links(corners), int(np.argmax(area)), directed=False, return_predecessors=False)
+    one, other = edge_links(corners)
+    links = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(len(corners), len(corners)))
+    order = breadth_first_order(links, int(np.argmax(area)), directed=False, return_predecessors=False)
     grid, side = _on_raster(uv, len(corners))
     claimed = np.zeros(len(corners), np.bool_)
     claim_texels(grid, corners, order.astype(np.int64), OVERLAP_MARGIN, np.zeros((side, side), np.uint8), claimed)
@@ -113,22 +116,6 @@ def _grouped(faces: NDArray[np.int64], label: NDArray[np.int32]) -> list[NDArray
     return np.split(faces[order], np.cumsum(np.bincount(label))[:-1])
 
 
-def edge_components(faces: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(m,) which of the pieces that hang together by edges each triangle is in."""
-    return np.asarray(connected_components(_edge_links(faces), directed=False)[1], np.int32)
-
-
-def _edge_links(faces: NDArray[np.int32]) -> coo_array:
-    """(m, m) where two triangles share an edge."""
-    m, f = len(faces), faces.astype(np.int64)
-    ends = np.stack([f.reshape(-1), np.roll(f, -1, axis=1).reshape(-1)], axis=1)
-    edge = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)[1].reshape(-1)
-    order = np.argsort(edge, kind="stable")
-    same = edge[order[1:]] == edge[order[:-1]]
-    one, other = order[1:][same] // 3, order[:-1][same] // 3
-    return coo_array((np.ones(len(one), np.int8), (one, other)), shape=(m, m))
-
-
 def _layout(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], given: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], bool]:
@@ -154,16 +141,10 @@ def _together(points: NDArray[np.float64], corners: NDArray[np.int32]) -> NDArra
     return uv if _sound(uv, points, corners, JOINED_STRETCH) else None
 
 
-def _signed(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    q = uv[faces]
-    a, b = q[:, 1] - q[:, 0], q[:, 2] - q[:, 0]
-    return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
-
-
 def _scaled(uv: NDArray[np.float64], vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     """At the area of the surface, and of positive area on the whole."""
-    area = float(_signed(uv, faces).sum())
-    factor = np.sqrt(surface_areas(vertices, faces).sum() / abs(area)) if area != 0 else 1.0
+    area = float(signed_areas(uv[faces]).sum())
+    factor = np.sqrt(triangle_areas(vertices[faces]).sum() / abs(area)) if area != 0 else 1.0
     return np.asarray(uv * (factor, -factor if area < 0 else factor))
 
 
@@ -175,7 +156,7 @@ def _sound(
 
 
 def _folds(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
-    return not bool((_signed(uv, faces) > 0).all())  # not finite counts as folded
+    return not bool((signed_areas(uv[faces]) > 0).all())  # not finite counts as folded
 
 
 def _overlaps(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
@@ -194,7 +175,7 @@ def chart_scales(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
     """
     label = chart_labels(mesh)
     charts = int(label.max()) + 1
-    surface = surface_areas(mesh.vertices.astype(np.float64), mesh.faces)
+    surface = mesh.face_areas()
     chosen = cameras[:: -(-len(cameras) // MOST_VIEWS)]
     counts, densities = np.stack([_density(mesh, camera, label, surface, charts) for camera in chosen], axis=1)
     seen = np.isfinite(densities).any(axis=0)
@@ -220,7 +201,7 @@ def _density(
     corners = mesh.faces
     whole = (depth[corners] > 0).all(axis=1) & (pixels > 0)
     projected = np.zeros(len(corners))
-    projected[whole] = np.abs(_signed(flat, corners[whole]))
+    projected[whole] = np.abs(signed_areas(flat[corners[whole]]))
     usable = projected > 0
     spread = np.divide(surface, projected, out=np.zeros_like(surface), where=usable)  # surface per pixel
     count = np.bincount(label, (pixels * usable).astype(np.float64), charts)

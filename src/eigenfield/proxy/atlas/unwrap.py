@@ -16,10 +16,9 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.atlas.layout import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics, chart_labels
-from eigenfield.proxy.atlas.lscm import surface_areas
 from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.child import run_child
 from eigenfield.proxy.meshes.read import is_sliver
@@ -144,7 +143,7 @@ def _taken_up(mesh: Mesh, answer: bytes) -> Mesh:
     faces = corners.reshape(-1, 3).astype(np.int32)
     held = laid_out[faces].all(axis=1)
     if not held.all():
-        area = surface_areas(mesh.vertices[origin].astype(np.float64), faces)
+        area = triangle_areas(mesh.vertices[origin][faces].astype(np.float64))
         if not held.any() or area[~held].sum() > LOST_TOLERANCE * area.sum():
             raise ProxyError(
                 "proxy-unwrap",

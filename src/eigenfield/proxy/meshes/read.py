@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.proxy.meshes.gltf import read_gltf
 from eigenfield.proxy.meshes.obj import read_obj
 from eigenfield.proxy.meshes.polygons import Polygons, check_range, split_seams, triangulate
@@ -212,8 +212,7 @@ def is_sliver(vertices: NDArray[np.float32], faces: NDArray[Any]) -> NDArray[np.
     corners = vertices[faces].astype(np.float64)
     sides = corners - np.roll(corners, 1, axis=1)
     longest = (sides**2).sum(axis=2).max(axis=1)
-    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1) / 2
-    return np.asarray(area <= SLIVER * longest)
+    return np.asarray(triangle_areas(corners) <= SLIVER * longest)
 
 
 def _warn_of_rounding(vertices: NDArray[np.float32], path: Path | None) -> None:

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.proxy.topology import compact, edge_faces
+from eigenfield.imaging.graph import face_edges
+from eigenfield.proxy.topology import compact
 
 Function = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
@@ -30,7 +31,7 @@ def clipped(mesh: Mesh, distance: Function) -> Mesh:
     whole = mesh.faces[number_inside == 0]
     if len(mixed) == 0:
         return compact(Mesh(mesh.vertices, whole))
-    ends, number = edge_faces(mixed)
+    ends, number = face_edges(mixed)
     _, first = np.unique(number, return_index=True)
     a, b = ends[first].T
     crossing = inside[a] != inside[b]
@@ -86,7 +87,7 @@ def _split(
     vertices: NDArray[np.float64], faces: NDArray[np.int32], wanted: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Every edge that some face wants split gets a vertex in its middle; faces become 1 to 4."""
-    ends, number = edge_faces(faces)
+    ends, number = face_edges(faces)
     chosen = np.zeros(int(number.max()) + 1, np.bool_)
     chosen[number[wanted.reshape(-1)]] = True
     _, first = np.unique(number, return_index=True)

@@ -21,6 +21,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
 from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.core.progress import Progress, track
+from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.proxy.primitives.shapes import Sphere
 
 log = logging.getLogger("eigenfield.proxy")
@@ -235,11 +236,8 @@ def _spread(view: int, cameras: Sequence[Camera]) -> list[int]:
     axis = cameras[view].R[2]
     facing = np.array([camera.R[2] @ axis > 0.3 for camera in cameras])
     centres = np.array([camera.centre for camera in cameras])
-    chosen = [view]
-    distance = np.where(facing, np.linalg.norm(centres - centres[view], axis=1), -1)
-    while len(chosen) < MOST_VIEWS and distance.max() > 0:
-        chosen.append(int(distance.argmax()))
-        distance = np.minimum(distance, np.linalg.norm(centres - centres[chosen[-1]], axis=1))
+    distance = distances_to(centres)
+    chosen = farthest_points(lambda index: np.where(facing, distance(index), -1), view, MOST_VIEWS).tolist()
     if len(chosen) < 2:
         raise ProxyError(
             "fit-sphere-outline", "no other camera looks the same way as that view", remedy="fit it in another view"

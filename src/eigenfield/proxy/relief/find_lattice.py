@@ -14,13 +14,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
+from eigenfield.imaging.graph import vertex_components
 
 SOME = 4000  # vertices that the camera is fitted to
 REACH = 2**20 - 1  # of lattice coordinates, either way
@@ -49,7 +48,7 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
         depth_error: Pixels by which a rounded depth may move a point in the camera that it moves most.
     """
     assert mesh.uv is not None
-    label = _charts(mesh)
+    label = vertex_components(mesh.faces, len(mesh.vertices))
     chart = np.flatnonzero(label == np.argmax(np.bincount(label)))
     chart = chart[np.linspace(0, len(chart) - 1, min(SOME, len(chart))).astype(int)]
     place, uv = mesh.vertices[chart].astype(np.float64), mesh.uv[chart].astype(np.float64)
@@ -133,14 +132,6 @@ def _shifted(
 def _whole(pixels: NDArray[np.float64]) -> float:
     """The part of (n, 2) coordinates that are whole."""
     return float(np.mean(np.abs(pixels - np.rint(pixels)).max(axis=1) < OFF))
-
-
-def _charts(mesh: Mesh) -> NDArray[np.int32]:
-    """(n,) which connected part each vertex is in."""
-    count = len(mesh.vertices)
-    ends = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
-    graph = coo_array((np.ones(len(ends), np.int8), (ends[:, 0], ends[:, 1])), shape=(count, count))
-    return np.asarray(connected_components(graph, directed=False)[1], np.int32)
 
 
 def _spacing(values: NDArray[np.float64]) -> float:

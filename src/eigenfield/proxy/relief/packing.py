@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
+from eigenfield.core.mesh import signed_areas
 from eigenfield.proxy.relief.kernels import first_fit, label_pixels
 from eigenfield.proxy.relief.sheet import Sheet, sheet_components, used_part
 from eigenfield.proxy.relief.triangulation import LATTICE
@@ -68,8 +69,7 @@ def sheet_area(sheet: Sheet) -> float:
 
 
 def _area(corners: NDArray[np.float64]) -> float:
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return float(np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]).sum() / 2)
+    return float(np.abs(signed_areas(corners)).sum())
 
 
 def _box(corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation, distance_transform_edt
 from scipy.sparse import coo_array, diags_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import cg
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, barycentric
+from eigenfield.imaging.graph import components, vertex_components
 from eigenfield.proxy.relief.contours import contour_chains, cut_sides, straightened
 from eigenfield.proxy.relief.kernels import label_pixels, refine, wedge_moments
 from eigenfield.proxy.relief.triangulation import LATTICE, constrain, restore, triangulate
@@ -137,7 +137,7 @@ def _opened(flat: _Triangulation, valid: NDArray[np.bool_]) -> _Triangulation:
     j = np.argmax(across[u] == t[:, None], axis=1)
     one = np.r_[3 * t + (k + 1) % 3, 3 * t + (k + 2) % 3]
     other = np.r_[3 * u + (j + 2) % 3, 3 * u + (j + 1) % 3]
-    vertex = _components(3 * len(tri), one, other)
+    vertex = components(3 * len(tri), one, other).astype(np.int64)
     points = np.zeros((vertex.max(initial=-1) + 1, 2), np.int64)
     points[vertex] = flat.points[tri.reshape(-1)]
     return _Triangulation(points, vertex.reshape(-1, 3), across, np.zeros_like(across))
@@ -152,7 +152,7 @@ def _without_gaps(flat: _Triangulation, owners: NDArray[np.int32]) -> tuple[NDAr
     fixed = flat.fixed.copy()
     while True:
         t, k = np.nonzero((flat.across >= 0) & (fixed == 0))
-        ground = _components(len(flat.tri), t, flat.across[t, k])
+        ground = components(len(flat.tri), t, flat.across[t, k]).astype(np.int64)
         owned = np.zeros(ground.max() + 1, np.bool_)
         owned[ground[owners]] = True
         t, k = np.nonzero((flat.across >= 0) & (fixed != 0) & ~owned[ground][:, None])
@@ -168,11 +168,6 @@ def _without_gaps(flat: _Triangulation, owners: NDArray[np.int32]) -> tuple[NDAr
         t, k = (each[np.isin(pair, longest)] for each in (t, k))
         u = flat.across[t, k]
         fixed[t, k] = fixed[u, np.argmax(flat.across[u] == t[:, None], axis=1)] = 0
-
-
-def _components(n: int, one: NDArray[np.int64], other: NDArray[np.int64]) -> NDArray[np.int64]:
-    links = coo_array((np.ones(len(one), np.int8), (one, other)), shape=(n, n))
-    return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
 
 def _mixed(beside: NDArray[np.bool_], below: NDArray[np.bool_], valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -270,7 +265,7 @@ def _fitted(
     label_pixels(points, tri, len(tri), owner)
     y, x = np.nonzero((owner >= 0) & valid & ~mixed)
     corners = tri[owner[y, x]]
-    weights = pixel_weights(points, corners, x, y)
+    weights = barycentric(points[corners], np.stack([x, y], axis=1) * LATTICE)
     off = d[y, x] - (weights * height[corners]).sum(axis=1)
     used = np.abs(off) <= OUTLIER * tolerance
     corners, weights, off = corners[used], weights[used], off[used]
@@ -279,16 +274,6 @@ def _fitted(
     normal = A.T @ A + STIFF * diags_array(np.ones(len(height)))
     change, _ = cg(normal, A.T @ off, rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
     return np.asarray(height + np.clip(change, -OUTLIER * tolerance, OUTLIER * tolerance))
-
-
-def pixel_weights(
-    points: NDArray[np.int64], corners: NDArray[np.int64], x: NDArray[np.int64], y: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """(n, 3) barycentric coordinates of pixels x, y (n,) in the triangles of corners (n, 3)."""
-    p = points[corners] - np.stack([x, y], axis=1)[:, None] * LATTICE
-    one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
-    area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
-    return np.asarray(area / area.sum(axis=1, keepdims=True))
 
 
 def joined(sheets: Sequence[Sheet]) -> Sheet:
@@ -310,8 +295,7 @@ def sheet_mesh(canvas: Canvas, sheet: Sheet) -> Mesh:
 
 def sheet_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int64]:
     """(m,) which of the pieces that hang together by vertices each triangle is in, in order of their first triangle."""
-    f = faces.astype(np.int64)
-    label = _components(vertices, np.r_[f[:, 0], f[:, 0]], np.r_[f[:, 1], f[:, 2]])[f[:, 0]]
+    label = vertex_components(faces, vertices)[faces[:, 0]]
     _, first, index = np.unique(label, return_index=True, return_inverse=True)
     return np.asarray(np.argsort(np.argsort(first))[index], np.int64)
 

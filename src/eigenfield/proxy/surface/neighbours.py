@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
+from eigenfield.imaging.sampling import distances_to, farthest_points
 
 BEST_ANGLE = 6.0  # degrees between two views of a point
 NARROWER, WIDER = 3.0, 12.0  # widths of the bell on its two sides
@@ -77,9 +78,5 @@ def spread_views(cameras: Sequence[Camera], count: int) -> list[int]:
     centres = np.array([camera.centre for camera in cameras])
     size = float(np.linalg.norm(np.ptp(centres, axis=0))) or 1.0
     places = np.hstack([centres / size, np.array([camera.R[2] for camera in cameras])])
-    chosen = [int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmin())]
-    distance = np.linalg.norm(places - places[chosen[0]], axis=1)
-    while len(chosen) < count:
-        chosen.append(int(distance.argmax()))
-        distance = np.minimum(distance, np.linalg.norm(places - places[chosen[-1]], axis=1))
-    return sorted(chosen)
+    middle = int(np.linalg.norm(places - places.mean(axis=0), axis=1).argmin())
+    return sorted(farthest_points(distances_to(places), middle, count).tolist())

@@ -16,7 +16,7 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.atlas.unwrap import simplified
 from eigenfield.proxy.surface.fusion import DepthView, Points
-from eigenfield.proxy.topology import areas, filled, manifold, patches, without_islands
+from eigenfield.proxy.topology import filled, manifold, patches, without_islands
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
@@ -165,7 +165,7 @@ def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArra
 
     The R2 sequence (Roberts, 2018) folded into each triangle: no chance, so the same mesh gives the same points.
     """
-    area = areas(mesh)
+    area = mesh.face_areas()
     number = np.maximum(np.rint(count * area / max(float(area.sum()), 1e-300)), 1).astype(np.int64)
     face = np.repeat(np.arange(len(area)), number)
     step = np.arange(len(face)) - np.repeat(np.cumsum(number) - number, number)

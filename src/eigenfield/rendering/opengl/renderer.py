@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -12,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
+from eigenfield.rendering.checks import FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import HEAD, Composer, set_uniforms, shader
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.drawing import ONE_SAMPLE, make_surface, median_footprint
 from eigenfield.rendering.software.renderer import BLACK, background_of
 
-FILTERS = ("bilinear", "bicubic")  # BICUBIC 0, 1 of the shader
 VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
 
 VERTEX = """#version 330 core
@@ -54,7 +53,7 @@ class OpenGLRenderer:
         multisample: int = 0,
         context: Any = None,
     ) -> None:
-        _check_filter(filter)
+        check_filter(filter)
         self._scene = scene
         self._composer: Composer | None = None
         self._multisample = multisample
@@ -82,9 +81,7 @@ class OpenGLRenderer:
     def __enter__(self) -> OpenGLRenderer:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -142,8 +139,7 @@ class OpenGLRenderer:
         colour: NDArray[np.float32] | None = None,
     ) -> Any:
         """Draw into a framebuffer that stays on the GPU, bottom row first, and is drawn over by the next call."""
-        if textures is not None and textures < 0:
-            raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+        check_textures(textures)
         assert self._composer is not None, "the renderer is closed"
         largest = max((basis.count for plane in self._scene.appearance.planes for basis in plane.bases), default=0)
         self._composer.compose(largest if textures is None else min(textures, largest), weights, camera.centre)
@@ -228,11 +224,6 @@ def make_context() -> Any:
         f"no OpenGL 3.3 without a display here ({problems[0]})",
         remedy="install a GPU driver with EGL (Debian: libegl1 libgl1-mesa-dri), or use the software renderer",
     )
-
-
-def _check_filter(filter: str) -> None:
-    if filter not in FILTERS:
-        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
 
 
 def _clip_matrix(camera: Camera, middle: NDArray[np.float64], radius: float) -> NDArray[np.float64]:

@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas
+from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import (
     BAND,
     BOUND_SLACK,
@@ -31,7 +32,6 @@ from eigenfield.rendering.software.kernels import DEPTH, TILE, draw_texels, mark
 from eigenfield.rendering.software.simd import RUN
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-FILTERS = ("bilinear", "bicubic")
 MARGIN = 2  # texels that the widest filter reaches
 SAMPLES_LIMIT = 4  # along a side of a pixel, when chosen automatically
 ONE_SAMPLE = 1.5  # photograph pixels a pixel up to which one sample is enough
@@ -92,10 +92,8 @@ def make_surface(mesh: Mesh, height: int, width: int) -> Surface:
 
 def _rims(faces: NDArray[np.int32]) -> NDArray[np.bool_]:
     """(m,) whether a triangle has an edge whose two vertices no other has."""
-    ends = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2), axis=2).astype(np.int64)
-    keys = ends[..., 0] << 32 | ends[..., 1]
-    _, inverse, counts = np.unique(keys, return_inverse=True, return_counts=True)
-    return np.asarray((counts[inverse.reshape(keys.shape)] == 1).any(axis=1))
+    _, edge = face_edges(faces)
+    return np.asarray((np.bincount(edge)[edge] == 1).reshape(-1, 3).any(axis=1))
 
 
 def sparse_zeros(shape: tuple[int, ...], dtype: type[np.float32] | type[np.int32]) -> NDArray[Any]:
@@ -216,12 +214,6 @@ def shade(
     )  # fmt: skip
 
 
-def check_filter(filter: str) -> None:
-    """Raise OptionError `filter` unless it is one of `FILTERS`."""
-    if filter not in FILTERS:
-        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
-
-
 def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, detail: float = 1.0) -> Sampling:
     """k x k samples a pixel if k is asked for. Else from the median footprint of the triangles in view: smooth edges
     in a picture as large as the photographs or larger, `grid_side` samples in a smaller one.
@@ -265,8 +257,8 @@ def _footprint(surface: Surface, camera: Camera, faces: NDArray[np.int32]) -> fl
     corners = np.where((depth > 0)[:, None], pixels, np.nan).reshape(-1, 3, 2)
     middle = corners.mean(axis=1)
     shown = ((middle >= 0) & (middle < (camera.width, camera.height))).all(axis=1)
-    screen = _areas(corners[shown])
-    atlas = _areas(surface.texels[faces[shown]])
+    screen = np.abs(signed_areas(corners[shown]))
+    atlas = np.abs(signed_areas(surface.texels[faces[shown]]))
     kept = screen > 0
     if not kept.any():
         return 0.0
@@ -275,9 +267,3 @@ def _footprint(surface: Surface, camera: Camera, faces: NDArray[np.int32]) -> fl
     order = np.argsort(footprints, kind="stable")
     total = np.cumsum(screen[order])
     return float(footprints[order[np.searchsorted(total, total[-1] / 2)]])
-
-
-def _areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(T,) areas of (T, 3, 2) triangles."""
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

@@ -15,6 +15,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
+from eigenfield.rendering.checks import check_filter, check_textures
 from eigenfield.rendering.exposure import camera_colour, undo_colour
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture
@@ -23,7 +24,6 @@ from eigenfield.rendering.software.drawing import (
     Frame,
     Sampling,
     Surface,
-    check_filter,
     choose_sampling,
     cover,
     grid_side,
@@ -121,8 +121,7 @@ class Renderer:
         dtype: type[np.uint8] | type[np.float32],
     ) -> tuple[NDArray[Any], NDArray[np.float32]]:
         check_filter(filter)
-        if textures is not None and textures < 0:
-            raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+        check_textures(textures)
         behind = background_of(background, self.channels)
         sampling = choose_sampling(self._surface, camera, samples, self._detail)
         height, width = camera.height, camera.width
@@ -243,7 +242,7 @@ def viewpoint_colour(
 
 
 def camera_index(scene: Scene, name: str) -> int:
-    """Where `name` stands in `scene.names`. Raises OptionError `unknown-camera`, with the names most like it."""
+    """Where `name` stands in `scene.rig.names`. Raises OptionError `unknown-camera`, with the names most like it."""
     if name in scene.rig.names:
         return scene.rig.names.index(name)
     near = difflib.get_close_matches(name, scene.rig.names, n=3, cutoff=0.0)

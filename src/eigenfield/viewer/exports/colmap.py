@@ -15,7 +15,7 @@ from eigenfield.capture.points import SparsePoints
 from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual import captured_pixels, with_differences
@@ -150,7 +150,7 @@ def _surface_points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64
     positions, uv = mesh.vertices[chosen].astype(np.float64), mesh.uv[chosen].astype(np.float64)
     more = max(0, FEWEST - len(chosen))
     corners = mesh.vertices[mesh.faces].astype(np.float64)
-    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    area = triangle_areas(corners)
     if more == 0 or area.sum() == 0:
         return positions, uv
     random = np.random.default_rng(0)

@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Plane
-from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
+from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
@@ -36,8 +36,7 @@ def write_maps(
     Texels that no camera saw are what the file holds there. A harmonised scene's maps are in the common exposure.
     textures: how many eigen textures to sum. Raises OutputError, OptionError (`textures`, `not-a-picture`).
     """
-    if textures is not None and textures < 0:
-        raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+    check_textures(textures)
     make = camera_maps(scene)
     names = [scene.rig.names[index] for index in scene.rig.encoded]
     files = file_names(names)

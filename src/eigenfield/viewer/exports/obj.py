@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.quantise import basis_scale, texture_codes
 from eigenfield.core.appearance import Basis
-from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.imaging.png import png_bytes
+from eigenfield.rendering.checks import check_textures
 from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import eigen_maps, mean_map
@@ -69,8 +69,7 @@ def write_obj_folder(
     texture is what it adds to R, G and B at the atlas's size. Raises OutputError and OptionError (`not-a-picture`,
     `textures`).
     """
-    if textures is not None and textures < 0:
-        raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")
+    check_textures(textures)
     mean = png_bytes(mean_map(scene))
     count = scene.appearance.textures if textures is None else textures
     total = sum(min(count, basis.count) for plane in scene.appearance.planes for basis in plane.bases)

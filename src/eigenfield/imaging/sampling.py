@@ -1,0 +1,42 @@
+"""Choosing some of many points, and pictures at half their size."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def farthest_points(
+    distance_to: Callable[[int], NDArray[np.floating[Any]]], first: int, count: int
+) -> NDArray[np.int64]:
+    """Farthest point sampling (Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985).
+
+    Args:
+        distance_to: (n,) distances of all points from the one of an index. Points that are not to be chosen have a
+            negative one.
+        first: index of the point chosen first.
+        count: how many are chosen at most. Points that coincide with chosen ones are not.
+
+    Returns:
+        (k,) indices: `first`, then each time the point farthest from all those before it.
+    """
+    chosen = [first]
+    distance = distance_to(first)
+    while len(chosen) < count and distance.max() > 0:
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, distance_to(chosen[-1]))
+    return np.array(chosen, np.int64)
+
+
+def distances_to(points: NDArray[np.floating[Any]]) -> Callable[[int], NDArray[np.floating[Any]]]:
+    """Euclidean distances between points (n, d), as `farthest_points` asks for them."""
+    return lambda index: np.linalg.norm(points - points[index], axis=1)
+
+
+def halved(picture: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(h / 2, w / 2, ...) means of four pixels of (h, w, ...), h and w even."""
+    height, width, *channels = picture.shape
+    return np.asarray(picture.reshape(height // 2, 2, width // 2, 2, *channels).mean(axis=(1, 3)), np.float32)
