@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import eigenfield as ef
+from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.encoding.fitted import FitData, Pixels, PlaneSettings, fit_plane, open_fit_data, subsampled
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import with_robust_weights
@@ -19,8 +21,10 @@ from eigenfield.encoding.projected import (
     texture_maps,
     weights_of,
 )
-from eigenfield.imaging.metrics import to_codes
-from support.observations import InMemory, repeated
+from eigenfield.gltf import validate
+from eigenfield.imaging.metrics import psnr, to_codes
+from support.glb_surgery import changed, ours
+from support.observations import CalibratedInMemory, InMemory, repeated
 from support.scenes import bumpy_square, row_grid, smooth_pictures
 
 CAMERAS = row_grid(9, 72, 60)[3:6]
@@ -154,3 +158,45 @@ def test_different_photographs_at_two_times_are_told_apart_by_their_weights():
     apart = np.linalg.norm(weights[:, None] - weights[None], axis=2) + 9 * np.eye(6)
     assert apart.min() > 1  # of unit variance
     assert fit.uncoded > 30
+
+
+@pytest.fixture(scope="module")
+def moving():
+    """Three cameras at two instants, at the second of which all of the picture is darker."""
+    capture = CalibratedInMemory(repeated(PHOTOGRAPHS[:3], 2), CAMERAS, (0.0, 0.5))
+    capture.observations.pixels[3:] = [0.7 * one for one in PHOTOGRAPHS[:3]]
+    return capture
+
+
+@pytest.mark.parametrize("options", [{"fit": "none", "textures": 4, "atlas": 64}, {"textures": 4, "quality": 95}])
+def test_two_times_are_encoded_saved_and_drawn(moving, options, tmp_path):
+    scene = ef.encode(moving, MESH, **options)
+    assert scene.times == (0.0, 0.5) and scene.observations == 6
+    assert all(basis.weights.shape[0] == 6 for plane in scene.appearance.planes for basis in plane.bases)
+    assert scene.rows(time=1).tolist() == [3, 4, 5] and int(scene.rows(1, 1)) == 4
+    path = tmp_path / "two.glb"
+    ef.save(scene, path)
+    back = ef.load(path)
+    assert back.times == scene.times and not [one for one in validate(path) if one.severity == "error"]
+    found = []
+    for time in range(2):
+        for index in range(3):
+            drawn = ef.render(back, camera=moving.names[index], time=time)
+            shown = moving.photograph(3 * time + index).pixels
+            found.append(psnr(to_codes(drawn.image), to_codes(shown), drawn.covered))
+        between = ef.render(back, at=(0.5, 0.0), time=time)
+        assert np.isfinite(between.image).all()
+        found.append(between.image[between.covered].mean())
+    assert min(found[:3] + found[4:7]) > 24
+    assert found[7] == pytest.approx(0.7 * found[3], rel=0.05)
+    with pytest.raises(OptionError, match="no instant 2"):
+        ef.render(back, time=2)
+
+
+def test_times_that_do_not_follow_one_another_are_refused(moving, tmp_path):
+    path = tmp_path / "two.glb"
+    ef.save(ef.encode(moving, MESH, fit="none", textures=1, atlas=64), path)
+    path.write_bytes(changed(path.read_bytes(), ours("times", value=[0.5, 0.5])))
+    with pytest.raises(FormatError) as caught:
+        ef.load(path)
+    assert caught.value.code == "times"

@@ -37,6 +37,11 @@ def files(good):
     film = Residual(b"film", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full=True, smooth=True)
     made["coded"] = encode_scene(coded)
     made["precise"] = encode_scene(precise_scene())
+    still = tiny_scene(3, 2, cameras=3)
+    plane = still.appearance.planes[0]
+    twice = replace(plane.bases[0], weights=np.concatenate([plane.bases[0].weights] * 2))
+    moving = replace(still.appearance, planes=(replace(plane, bases=(twice,)),))
+    made["times"] = encode_scene(replace(still, times=(0.0, 0.5), appearance=moving))
     made["residual"] = encode_scene(replace(coded, residual=film))
     return made
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
 
 
@@ -39,6 +40,48 @@ class InMemory:
     def photograph(self, index: int) -> Photograph:
         self.decoded.append(index)
         return Photograph.of(self.pixels[index], self.masks[index] if self.masks else None)
+
+
+@dataclass(frozen=True, eq=False)
+class CalibratedInMemory:
+    """Observations in memory whose cameras are known: what `encode` takes in place of a light field.
+
+    Attributes:
+        observations: the photographs.
+        cameras: of the rig.
+        times: seconds.
+    """
+
+    observations: InMemory
+    cameras: Sequence[Camera]
+    times: Sequence[float]
+
+    def __len__(self) -> int:
+        return len(self.observations)
+
+    @property
+    def names(self) -> list[str]:
+        return [f"camera {index}" for index in range(len(self.cameras))]
+
+    @property
+    def lenses(self) -> list[None]:
+        return [None] * len(self.cameras)
+
+    @property
+    def metres_per_unit(self) -> None:
+        return None
+
+    def bytes(self, index: int) -> int:
+        return self.observations.pixels[index].size
+
+    def camera_of(self, index: int) -> int:
+        return self.observations.camera_of(index)
+
+    def time_of(self, index: int) -> int:
+        return self.observations.time_of(index)
+
+    def photograph(self, index: int) -> Photograph:
+        return self.observations.photograph(index)
 
 
 def repeated(pixels: Sequence[np.ndarray], times: int, masks: Sequence[np.ndarray | None] = ()) -> InMemory:

@@ -44,8 +44,13 @@ class CaptureViews:
 
     @property
     def grid(self) -> NDArray[np.int64] | None:
-        """(rows, columns) of the encoded cameras, counted among themselves, where they stand on a grid; else None."""
-        return grid_of(self.coordinates[self.rig.encoded])
+        """(rows, columns) of the observations, one instant below the other, where the encoded cameras stand on a grid;
+        else None. -1 where the grid has no camera."""
+        still = grid_of(self.coordinates[self.rig.encoded])
+        if still is None:
+            return None
+        firsts = range(0, len(self.observations), len(self.rig.encoded))
+        return np.concatenate([np.where(still < 0, -1, still + first) for first in firsts])
 
     @cached_property
     def observations(self) -> Observations:

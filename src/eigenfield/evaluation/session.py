@@ -133,7 +133,7 @@ class Session:
         texture = None
         if self.atlas is not None and not self.scene.rig.held_out[index]:
             values, seen = self.texture(index, photograph)
-            row = int(np.searchsorted(self.scene.rig.encoded, index))
+            row = int(self.scene.rows(index))
             counts = self.counts if index in self.curved else self.counts[-1:]
             texture = measure_map(
                 self.scene.appearance.planes[0], row, self.atlas, values, seen, counts, index in self.packed

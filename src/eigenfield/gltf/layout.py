@@ -6,6 +6,7 @@ code, through `Findings.part`.
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,8 +37,8 @@ from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quoted
 
 _KEYS = {
-    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "reference", "residual", "settings",
-    "scores", "generator",
+    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "times", "reference", "residual",
+    "settings", "scores", "generator",
 }  # fmt: skip
 
 
@@ -59,6 +60,7 @@ class Layout:
     settings: Mapping[str, Any]
     scores: Mapping[str, Any]
     generator: str
+    times: tuple[float, ...]
 
     @property
     def lost(self) -> int:
@@ -92,6 +94,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     settings: Mapping[str, Any] = {}
     scores: Mapping[str, Any] = {}
     generator = ""
+    times: tuple[float, ...] = (0.0,)
     with findings.part():
         document.check_buffer()
     with findings.part():
@@ -103,7 +106,9 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
     with findings.part():
         cameras = read_cameras(document, extension["cameras"])
     with findings.part():
-        planes = read_planes(document, extension["planes"], cameras, findings)
+        times = read_times(extension)
+    with findings.part():
+        planes = read_planes(document, extension["planes"], cameras, len(times), findings)
     with findings.part():
         to_rgb = read_matrix(extension, planes)
     with findings.part():
@@ -128,8 +133,19 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         generator = extension["generator"].text() if extension.has("generator") else ""
     return Layout(
         version, mesh, mesh_payload, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings,
-        scores, generator,
+        scores, generator, times,
     )  # fmt: skip
+
+
+def read_times(extension: Value) -> tuple[float, ...]:
+    """The instants of the observations, in seconds; one where nothing is said. FormatError: `times`, `json-*`."""
+    if not extension.has("times"):
+        return (0.0,)
+    entry = extension["times"]
+    times = tuple(item.number() for item in entry.items(limits.MAX_TIMES, 1))
+    if any(after <= before for before, after in itertools.pairwise(times)):
+        entry.fail("times", "instants do not follow one another")
+    return times
 
 
 def find_extension(document: Document) -> Value:

@@ -99,11 +99,15 @@ class PlaneLayout:
 
 
 def read_planes(
-    document: Document, entry: Value, cameras: CameraList | None, findings: Findings
+    document: Document, entry: Value, cameras: CameraList | None, times: int, findings: Findings
 ) -> tuple[PlaneLayout, ...]:
-    """FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`."""
+    """times: how many instants there are observations of.
+
+    FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`.
+    """
+    rows = 0 if cameras is None else cameras.encoded * times
     planes = tuple(
-        _read_plane(document, plane, index, cameras, findings)
+        _read_plane(document, plane, index, rows, findings)
         for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
     )
     count = sum(basis.count for plane in planes for basis in plane.bases)
@@ -123,9 +127,7 @@ def read_planes(
     return planes
 
 
-def _read_plane(
-    document: Document, entry: Value, index: int, cameras: CameraList | None, findings: Findings
-) -> PlaneLayout:
+def _read_plane(document: Document, entry: Value, index: int, rows: int, findings: Findings) -> PlaneLayout:
     channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
     if entry.has("mean"):
         size = _size(entry["mean"]["size"], channels)
@@ -136,9 +138,7 @@ def _read_plane(
         mean = read_image(document, channels)
     else:
         raise FormatError("plane-mean", "the plane has no mean", where=f"{entry.where}/mean")
-    bases = [
-        _read_basis(document, basis, channels, cameras, findings) for basis in entry["bases"].items(limits.MAX_BASES)
-    ]
+    bases = [_read_basis(document, basis, channels, rows, findings) for basis in entry["bases"].items(limits.MAX_BASES)]
     kept = tuple(basis for basis in bases if basis.count or not basis.lost)
     return PlaneLayout(mean, kept, sum(basis.lost for basis in bases))
 
@@ -153,9 +153,7 @@ def read_image(document: Document, channels: int) -> Picture:
     return Picture(data, codec, width, height, channels, None, image.where)
 
 
-def _read_basis(
-    document: Document, entry: Value, channels: int, cameras: CameraList | None, findings: Findings
-) -> BasisLayout:
+def _read_basis(document: Document, entry: Value, channels: int, rows: int, findings: Findings) -> BasisLayout:
     size = _size(entry["size"], channels)
     textures: list[Picture] = []
     total, lost = 0, 0
@@ -169,7 +167,6 @@ def _read_basis(
                 lost += count
                 continue
             textures.append(_picture(document, texture, "textures", size, channels, count))
-    rows = 0 if cameras is None else cameras.encoded
     weights = np.zeros((rows, 0), np.float32)
     stream: Payload | None = None
     if total:
@@ -203,7 +200,7 @@ def _decode_weights(stream: Payload, entry: Value, rows: int, count: int) -> NDA
         return np.zeros((0, count), np.float32)
     if weights.shape != (rows, count) or not all_finite(weights):
         found = "x".join(map(str, weights.shape))
-        entry.fail("weights-count", f"{found} weights, {rows} encoded cameras x {count} textures expected")
+        entry.fail("weights-count", f"{found} weights, {rows} observations x {count} textures expected")
     return weights
 
 
@@ -214,7 +211,7 @@ def _read_weights(document: Document, reference: Value, rows: int, count: int) -
     if rows == 0:  # only while validating a file whose cameras are damaged
         return np.zeros((0, count), np.float32)
     if len(flat) != rows * count:
-        reference.fail("weights-count", f"{len(flat)} weights, {rows} encoded cameras x {count} textures expected")
+        reference.fail("weights-count", f"{len(flat)} weights, {rows} observations x {count} textures expected")
     return flat.reshape(rows, count)
 
 

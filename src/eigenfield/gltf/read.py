@@ -144,6 +144,7 @@ def _scene(layout: Layout, planes: Sequence[Coded[Plane]], preview: Payload | No
         scores=layout.scores,
         generator=layout.generator,
         residual=layout.residual,
+        times=layout.times,
         payloads=payloads,
     )
 

@@ -158,6 +158,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
         **({} if scene.appearance.to_rgb is None else {"toRGB": shortest(scene.appearance.to_rgb.ravel())}),
         "cameras": cameras,
         "viewPlane": view_plane,
+        **({} if scene.times == (0.0,) else {"times": list(scene.times)}),
         "reference": int(scene.rig.reference),
         "settings": dict(scene.settings),
         "scores": dict(scene.scores),
@@ -350,6 +351,7 @@ def _needs(
         "regions": any(basis.grid is not None for plane in scene.appearance.planes for basis in plane.bases),
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
         "stacks": any(picture.count != 1 for picture in pictures),
+        "times": len(scene.times) != 1,
         "toRGB": scene.appearance.to_rgb is not None,
     }
     own = {CODECS[codec].needs for codec in codecs}

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.weights import view_weights
+from eigenfield.rendering.weights import place_weights
 
 
 def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
@@ -17,7 +17,7 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     rectified array the principal point moves with the camera, and so does this one's, which keeps the plane of zero
     parallax where it is. R is the weighted mean, made a rotation again.
     """
-    weights = view_weights(scene, at)
+    weights = place_weights(scene, at)
     x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
     reference = scene.rig.cameras[scene.rig.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))

@@ -6,32 +6,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, view_weights
+from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, place_weights
 
 NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
 
 
 def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDArray[np.float32]:
-    """(nodes, nodes, N) float32: ω(j) of equation 7 at X, Y of -1..1, first index Y, nodes on the edges.
+    """(nodes, nodes, N) float32: ω(j) of equation 7 at X, Y of -1..1 and the first instant, first index Y, nodes on the
+    edges.
 
-    N counts the components of all bases of all planes. Raises OptionError as `view_weights`.
+    N counts the components of all bases of all planes. Raises OptionError as `place_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
-    rows = component_rows(scene)
+    rows = component_rows(scene)[scene.rows()]
     found = np.full((nodes, nodes, rows.shape[1]), np.nan)
     if mode == "delaunay" and len(scene.rig.triangles):
         _fill_triangles(scene, steps, rows, found)
     if scene.rig.view_plane.is_line:  # Y counts for nothing
-        found[:] = np.array([view_weights(scene, (x, 0.0), mode) @ rows for x in steps])
+        found[:] = np.array([place_weights(scene, (x, 0.0), mode) @ rows for x in steps])
     for row, column in np.argwhere(np.isnan(found).any(axis=2)) if rows.shape[1] else ():
-        found[row, column] = view_weights(scene, (steps[column], steps[row]), mode) @ rows
+        found[row, column] = place_weights(scene, (steps[column], steps[row]), mode) @ rows
     return found.astype(np.float32)
 
 
 def component_rows(scene: Scene) -> NDArray[np.float64]:
-    """(Ne, N) float64: the weights of all bases of all planes, side by side."""
+    """(No, N) float64: the weights of all bases of all planes, side by side."""
     parts = [basis.weights for plane in scene.appearance.planes for basis in plane.bases]
-    return np.concatenate([np.zeros((len(scene.rig.encoded), 0)), *parts], axis=1, dtype=np.float64)
+    return np.concatenate([np.zeros((scene.observations, 0)), *parts], axis=1, dtype=np.float64)
 
 
 def _fill_triangles(

@@ -14,7 +14,14 @@ FLAT = 1e-6  # triangles whose area is below this part of their longest side squ
 SLACK = 1e-9  # by which rounding may put a point on an edge outside of both its triangles, or cells
 
 
-def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> NDArray[np.float64]:
+def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", time: int = 0) -> NDArray[np.float64]:
+    """(No,) weights over the observations of a scene: those of `place_weights` at instant `time`, 0 at the others."""
+    weights = np.zeros(scene.observations)
+    weights[scene.rows(time=time)] = place_weights(scene, at, mode)
+    return weights
+
+
+def place_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> NDArray[np.float64]:
     """(Ne,) weights over the encoded cameras at view-plane coordinates `at`, clamped to the array's [-1, 1]; sum 1.
 
     `nearest3` is equation 7 as printed: barycentric coordinates in the triangle of the three nearest cameras, which
@@ -38,12 +45,13 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") 
     raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(MODES)}")
 
 
-def camera_weights(scene: Scene, index: int, mode: str = "delaunay") -> NDArray[np.float64]:
-    """(Ne,) weights of a capture camera: its own row for an encoded one, else those of where it stands."""
-    if not scene.rig.held_out[index]:
-        return (scene.rig.encoded == index).astype(np.float64)
+def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> NDArray[np.float64]:
+    """(No,) weights of a capture camera: its own row for an encoded one, else those of where it stands."""
+    row = int(scene.rows(index, time))
+    if row >= 0:
+        return (np.arange(scene.observations) == row).astype(np.float64)
     x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
-    return view_weights(scene, (float(x), float(y)), mode)
+    return view_weights(scene, (float(x), float(y)), mode, time)
 
 
 def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:

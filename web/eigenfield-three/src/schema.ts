@@ -19,6 +19,8 @@ export interface SceneJson {
   cameras: CamerasJson;
   /** The least-squares plane through the camera centres. */
   viewPlane: ViewPlaneJson;
+  /** Instants of the observations, in seconds, ascending; absent: one. */
+  times?: number[];
   /** Index of the reference camera. */
   reference: number;
   /** Photographs of the encoded cameras minus what is drawn of them. */
@@ -44,6 +46,7 @@ export type Feature =
   | "regions"
   | "sharedPicture"
   | "stacks"
+  | "times"
   | "toRGB";
 
 /** Codecs of a mesh. */

@@ -23,6 +23,7 @@ from eigenfield.encoding.projected.project import TextureMaps, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.encoding.projected.uv_measure import smallest_count
 from eigenfield.encoding.projected.write_maps import write_maps
+from eigenfield.encoding.views import CaptureViews
 
 
 def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
@@ -51,7 +52,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     ) as maps:
         if options.harmonise is not None:
             own["harmonise"] = options.harmonise
-            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views.rig.held_out)
+            colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views)
         if options.align is not None:
             reference = views.taken_by.tolist().index(views.rig.reference)
             align_maps(maps, reference, options.align, progress)
@@ -100,9 +101,9 @@ def _basis_of(
     return Basis(pictures, ones, zeros, weights)
 
 
-def _for_all_cameras(fitted: NDArray[np.float32], held_out: NDArray[np.bool_]) -> NDArray[np.float32]:
+def _for_all_cameras(fitted: NDArray[np.float32], views: CaptureViews) -> NDArray[np.float32]:
     """(Nc, 2, 3) gains and offsets of all cameras: of a held-out one nothing may be known, so it has 1 and 0."""
-    colours = np.zeros((len(held_out), 2, 3), np.float32)
+    colours = np.zeros((len(views.rig.cameras), 2, 3), np.float32)
     colours[:, 0] = 1
-    colours[~held_out] = fitted
+    colours[views.taken_by] = fitted
     return colours

@@ -51,7 +51,7 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
         raise OptionError(
             "residual", f"{scene.rig.names[index]} is held out: it has no residual", remedy="name an encoded camera"
         )
-    position = int(np.flatnonzero(residual.order == np.searchsorted(scene.rig.encoded, index))[0])
+    position = int(np.flatnonzero(residual.order == scene.rows(index))[0])
     camera = scene.rig.cameras[index]
     for number, planes in enumerate(residual_frames(residual)):
         if number == position:

@@ -68,7 +68,7 @@ class Renderer:
         samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Picture:
-        """The view of `camera` with view weights (Ne,) over the encoded cameras.
+        """The view of `camera` with view weights (No,) over the observations.
 
         filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
         textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel; None: one, but four at
@@ -202,16 +202,17 @@ def render(
     background: Sequence[float] = BLACK,
     textures: int | None = None,
     samples: int | None = None,
+    time: int = 0,
 ) -> Picture:
     """Draw the view at view-plane coordinates `at` (X right, Y up, ±1 at the array's edges), or that of the capture
     camera named `camera`; the reference camera's if neither is given. In a harmonised scene a captured camera's picture
     has that camera's own exposure, a viewpoint's the common one.
 
-    resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. The rest as
-    `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is not there
-    `unknown-camera`.
+    resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. time: index of
+    the instant. The rest as `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is
+    not there `unknown-camera`, for an instant `time`.
     """
-    view, mix = viewpoint(scene, at=at, camera=camera, weights=weights)
+    view, mix = viewpoint(scene, at=at, camera=camera, weights=weights, time=time)
     if resolution is not None:
         view = at_resolution(view, resolution)
     colour = viewpoint_colour(scene, at=at, camera=camera)
@@ -221,15 +222,22 @@ def render(
 
 
 def viewpoint(
-    scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None, weights: str = "delaunay"
+    scene: Scene,
+    *,
+    at: tuple[float, float] | None = None,
+    camera: str | None = None,
+    weights: str = "delaunay",
+    time: int = 0,
 ) -> tuple[Camera, NDArray[np.float64]]:
-    """The camera and the view weights (Ne,) of `at`, of a capture camera by name, or of the reference camera."""
+    """The camera and the view weights (No,) of `at`, of a capture camera by name, or of the reference camera."""
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
+    if not 0 <= time < len(scene.times):
+        raise OptionError("time", f"there is no instant {time}", remedy=f"give 0 to {len(scene.times) - 1}")
     if at is not None:
-        return novel_camera(scene, at), view_weights(scene, at, weights)
+        return novel_camera(scene, at), view_weights(scene, at, weights, time)
     index = scene.rig.reference if camera is None else camera_index(scene, camera)
-    return scene.rig.cameras[index], camera_weights(scene, index, weights)
+    return scene.rig.cameras[index], camera_weights(scene, index, weights, time)
 
 
 def viewpoint_colour(

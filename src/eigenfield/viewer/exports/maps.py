@@ -51,13 +51,13 @@ def write_maps(
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
     """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
     compose = _composer(scene)
-    unit = np.eye(len(scene.rig.encoded))
+    unit = np.eye(scene.observations)[scene.rows()]
     return lambda row, textures: compose(unit[row], textures)
 
 
 def mean_map(scene: Scene) -> NDArray[np.float32]:
     """(H, W, C): the means of all planes, drawn at the atlas's size; not cut."""
-    return _composer(scene)(np.zeros(len(scene.rig.encoded)), 0)
+    return _composer(scene)(np.zeros(scene.observations), 0)
 
 
 def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:

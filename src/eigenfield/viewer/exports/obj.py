@@ -96,7 +96,7 @@ def write_obj_folder(
                 "textures": entries,
                 "weights": {
                     scene.rig.names[camera]: _numbers(np.array([of[row] for of in weights]))
-                    for row, camera in enumerate(scene.rig.encoded)
+                    for row, camera in zip(scene.rows().tolist(), scene.rig.encoded, strict=True)
                 },
             },
         )
