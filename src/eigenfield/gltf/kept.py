@@ -25,8 +25,8 @@ from eigenfield.runtime.parallel import parallel_map
 
 @dataclass(frozen=True, eq=False)
 class Kept:
-    """Parts are named as one writes them in Python: `mesh`, `cameras`, `planes[0].mean`, `planes[0].bases[1].weights`;
-    and there is `preview`, the picture for other viewers, which is made of the means.
+    """Parts are named by where they stand in a scene: `mesh`, `cameras`, `planes[0].mean`,
+    `planes[0].bases[1].weights`. One more is `preview`, the picture for other viewers, which is made of the means.
 
     Attributes:
         payloads: What each part that has not changed was coded to.
