@@ -6,6 +6,7 @@ import io
 import struct
 import tracemalloc
 import zlib
+from copy import deepcopy
 
 import numpy as np
 import pytest
@@ -101,7 +102,7 @@ def test_changed_json_never_surprises(tmp_path_factory, good, data):
         if data.draw(st.booleans()) and isinstance(place, dict):
             del place[last]
         else:
-            place[last] = data.draw(ODD)
+            place[last] = deepcopy(data.draw(ODD))  # a list may be changed in the next round
     outcome(tmp_path_factory.getbasetemp() / "json.glb", glb_surgery.join(gltf, binary))
 
 
