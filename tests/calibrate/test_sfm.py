@@ -58,9 +58,12 @@ def kept(scene: tuple[PhotoSet, LightField], tmp_path_factory: pytest.TempPathFa
 
 
 @pytest.fixture(scope="module")
-def solved(scene: tuple[PhotoSet, LightField]) -> Motion:
-    """Their cameras, by known intrinsics."""
-    return structure_from_motion(scene[0], intrinsics=KnownLens(K))
+def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> Motion:
+    """Their cameras, by known intrinsics: the killed run goes on from its matches."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("eigenfield.calibrate.motion.keep.extract_features", None)  # calling it would fail
+        patch.setattr("eigenfield.calibrate.motion.keep.match_pairs", None)
+        return structure_from_motion(scene[0], intrinsics=KnownLens(K), work=kept)
 
 
 @pytest.fixture(autouse=True, scope="module")
@@ -116,7 +119,7 @@ def test_a_focal_length_is_found_where_none_is_known(scene):
     assert np.abs(error.focal).max() < 0.05 and error.position.max() < 0.02
 
 
-def test_the_same_at_any_number_of_threads(scene, solved):
+def test_any_number_of_threads_and_a_work_folder_give_the_same_cameras(scene, solved):
     set_threads(1 if threads() > 1 else 3)
     try:
         motion = structure_from_motion(scene[0], intrinsics=KnownLens(K))
@@ -124,14 +127,6 @@ def test_the_same_at_any_number_of_threads(scene, solved):
         set_threads(None)
     assert numbers(motion.light_field) == numbers(solved.light_field)
     assert motion.points.positions.tobytes() == solved.points.positions.tobytes()
-
-
-def test_a_work_folder_goes_on_from_matches_to_the_same_cameras(scene, solved, kept, monkeypatch):
-    photos, _ = scene
-    monkeypatch.setattr("eigenfield.calibrate.motion.keep.extract_features", None)  # calling it would fail
-    monkeypatch.setattr("eigenfield.calibrate.motion.keep.match_pairs", None)
-    again = structure_from_motion(photos, intrinsics=KnownLens(K), work=kept)
-    assert numbers(solved.light_field) == numbers(again.light_field)
 
 
 def test_the_world_is_the_natural_gauge(solved):

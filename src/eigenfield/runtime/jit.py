@@ -40,6 +40,15 @@ def _cache_folder() -> str:
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 
+def _widen_literals(compiled: Any) -> None:
+    """Let kernels that pass constants share one compilation: numba compiles a kernel anew for each constant with which
+    another kernel calls it. LLVM still folds the constants of what it inlines."""
+    resolve, widen = compiled.get_call_template, numba.types.unliteral
+    compiled.get_call_template = lambda args, kws: resolve(
+        tuple(widen(kind) for kind in args), {name: widen(kind) for name, kind in kws.items()}
+    )
+
+
 def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
     """Decorator: compile with numba (nopython, nogil), keep the machine code between processes.
 
@@ -48,7 +57,7 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
     """
 
     def decorate(function: Kernel) -> Kernel:
-        options: dict[str, Any] = {"nogil": True, "fastmath": fastmath, "error_model": "numpy"}
+        options: dict[str, Any] = {"nogil": True, "fastmath": fastmath, "error_model": "numpy", "no_cfunc_wrapper": True}
         if inline:
             options["inline"] = "always"
         theirs = numba.config.CACHE_DIR
@@ -59,6 +68,7 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
             compiled = numba.njit(**options)(function)
         finally:
             numba.config.CACHE_DIR = theirs
+        _widen_literals(compiled)
         return compiled
 
     return decorate
