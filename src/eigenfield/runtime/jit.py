@@ -57,7 +57,8 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
     """
 
     def decorate(function: Kernel) -> Kernel:
-        options: dict[str, Any] = {"nogil": True, "fastmath": fastmath, "error_model": "numpy", "no_cfunc_wrapper": True}
+        options: dict[str, Any] = {"nogil": True, "no_cfunc_wrapper": True, "error_model": "numpy"}
+        options["fastmath"] = fastmath
         if inline:
             options["inline"] = "always"
         theirs = numba.config.CACHE_DIR
