@@ -20,7 +20,7 @@ from eigenfield.proxy.relief.contours import contour_chains, cut_sides, straight
 from eigenfield.proxy.relief.kernels import label_pixels
 from eigenfield.proxy.relief.sheet import make_sheet, sheet_components
 from eigenfield.proxy.relief.triangulation import LATTICE
-from eigenfield.stereo import Canvas, view_matrices
+from eigenfield.stereo import ReferenceView, view_matrices
 
 OFFSET, SCALE = 0.25, 0.01  # 1/Z = OFFSET + SCALE d
 
@@ -31,7 +31,7 @@ def camera(width=60, height=40, at=(0.0, 0.0, 0.0), focal=80.0):
 
 
 def canvas(height=40, width=60, margin=0):
-    return Canvas.around(camera(width - 2 * margin, height - 2 * margin), margin, OFFSET, SCALE)
+    return ReferenceView.with_margin(camera(width - 2 * margin, height - 2 * margin), margin, OFFSET, SCALE)
 
 
 def depth_of(mesh, frame):
@@ -288,7 +288,7 @@ def test_the_second_layer_finds_the_wall_behind_the_card_and_covers_every_view()
     spots = [(0.04 * i, 0.04 * j, 0.0) for j in range(-3, 4) for i in range(-3, 4)]
     cameras = [camera(64, 48, at) for at in spots]
     pictures = np.stack([world(at)[0] for at in spots])
-    frame = Canvas.around(camera(64, 48), margin, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), margin, OFFSET, SCALE)
     d = world((0, 0), *reversed(frame.shape))[1]
     matrices = view_matrices(frame, cameras)
     wide, valid = second_layer(pictures, matrices, d, cut=3.0)
@@ -316,7 +316,7 @@ def test_a_depth_map_without_cuts_needs_no_second_layer():
 
 def test_second_layer_reports_its_progress_from_the_first_step_to_the_last():
     spots = [(0.04 * i, 0.04 * j, 0.0) for j in (-1, 0, 1) for i in (-1, 0, 1)]
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     matrices = view_matrices(frame, [camera(64, 48, at) for at in spots])
     reports = []
     second_layer(
@@ -347,7 +347,7 @@ def open_pixels(mesh, cameras):
 
 
 def test_the_backdrop_closes_every_view_and_stays_behind_the_layers():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = leaves(frame)
     cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
     cameras += [turned(camera(64, 48, (0.1, 0, 0)), 8), turned(camera(64, 48, (-0.1, 0, 0)), -8)]
@@ -365,7 +365,7 @@ def test_the_backdrop_closes_every_view_and_stays_behind_the_layers():
 
 
 def test_without_anything_open_there_is_no_backdrop():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = ramp(*frame.shape)
     near = [camera(64, 48, (0.01 * i, 0, 0)) for i in (-1, 0, 1)]
     one = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1)
@@ -375,7 +375,7 @@ def test_without_anything_open_there_is_no_backdrop():
 
 
 def test_the_backdrop_keeps_to_its_share_of_the_triangles():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = leaves(frame)
     cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
     for triangles in (400, 2000):

@@ -47,8 +47,8 @@ from eigenfield.reconstruction.kept import (
 )
 from eigenfield.reconstruction.run import Run, Settings
 from eigenfield.stereo import depth_buffers, depth_range, mean_texture
-from eigenfield.stereo.extend import without_specks
-from eigenfield.stereo.steps import step_sides
+from eigenfield.stereo.discontinuities import find_discontinuities
+from eigenfield.stereo.extend import remove_speckles
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -146,7 +146,7 @@ def _layers(
     low, high = np.percentile(depth.d[depth.count > 0], [1, 99])
     cut, speck = max(CUT / reach, CUT_SHARE * float(high - low)), SPECK
     for _ in range(CUT_ROUNDS):
-        d = without_specks(depth.d, step_sides(depth.d, 1 / reach, cut), round(speck * depth.d.size))
+        d = remove_speckles(depth.d, find_discontinuities(depth.d, 1 / reach, cut), round(speck * depth.d.size))
         second = second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
         mesh = relief_mesh(
             depth.canvas, d, valid, second, cut=cut, tolerance=TOLERANCE / reach, triangles=triangles, cameras=cameras,

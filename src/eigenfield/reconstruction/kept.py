@@ -14,7 +14,7 @@ from eigenfield.calibrate import (
 )
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 
 MESH, ERROR, CAMERAS, DEPTH = "mesh.ply", "error.json", "cameras.npz", "depth.npz"
 
@@ -61,7 +61,7 @@ def write_planar(path: Path, planar: Planar) -> None:
 class ArrayDepth:
     """What `write_planar` kept: the depth map of an array, and how its views look at it."""
 
-    canvas: Canvas
+    canvas: ReferenceView
     d: NDArray[np.float32]
     confidence: NDArray[np.float32]
     texture: NDArray[np.float32]
@@ -78,6 +78,6 @@ def read_planar(path: Path) -> ArrayDepth:
         camera = Camera(data["K"], data["R"], data["t"], d.shape[1], d.shape[0])
         low, high = data["range"].tolist()
         return ArrayDepth(
-            Canvas(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
+            ReferenceView(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
             data["matrices"], low, high,
         )  # fmt: skip

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.stereo.canvas import Canvas, view_matrices
+from eigenfield.stereo.reference_view import ReferenceView, view_matrices
 
 PARAMETERS = 10
 POSITION = slice(0, 2)
@@ -40,7 +40,7 @@ class ArrayModel:
 
     bases: one camera each. reference: the camera from which depth is seen. anchor: (3,) world point.
     step: world units of one step. depth_unit: world units of cz.
-    offset, scale: 1/Z = offset + scale d in the reference camera (see `Canvas`).
+    offset, scale: 1/Z = offset + scale d in the reference camera (see `ReferenceView`).
     sigma: (10,) priors.
     """
 
@@ -82,18 +82,18 @@ class ArrayModel:
         """The cameras of `views`, (len(views), 10) parameters."""
         return [self.camera(int(view), row) for view, row in zip(views, parameters, strict=True)]
 
-    def canvas(self, margin: int) -> Canvas:
+    def canvas(self, margin: int) -> ReferenceView:
         """The reference camera's frame, widened by `margin` pixels."""
-        return Canvas.around(self.reference, margin, self.offset, self.scale)
+        return ReferenceView.with_margin(self.reference, margin, self.offset, self.scale)
 
     def matrices(
-        self, canvas: Canvas, views: NDArray[np.int64], parameters: NDArray[np.float64]
+        self, canvas: ReferenceView, views: NDArray[np.int64], parameters: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """(len(views), 3, 4) matrices on (x, y, d, 1)."""
         return view_matrices(canvas, self.cameras(views, parameters))
 
     def derivatives(
-        self, canvas: Canvas, views: NDArray[np.int64], parameters: NDArray[np.float64]
+        self, canvas: ReferenceView, views: NDArray[np.int64], parameters: NDArray[np.float64]
     ) -> NDArray[np.float64]:
         """(len(views), 10, 3, 4): the matrices' derivatives by each parameter, by central differences."""
         result = np.zeros((len(views), PARAMETERS, 3, 4))

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.calibrate.planar.array import PARAMETERS, ArrayModel
 from eigenfield.calibrate.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.canvas import Canvas
+from eigenfield.stereo.reference_view import ReferenceView
 
 TEXTURED = 2.0  # grey levels a pixel: weaker gradients say nothing of a camera
 POINTS = 60_000  # that cameras are fitted to
@@ -23,7 +23,7 @@ class Sight:
     """What cameras are fitted to: packed pictures (n, H, W), depth buffers (n, H, W) of the views with their bias, and
     points of the canvas (k, 3) x, y, d with their colours (k, 3)."""
 
-    canvas: Canvas
+    canvas: ReferenceView
     pictures: NDArray[np.uint32]
     buffers: NDArray[np.float32]
     points: NDArray[np.float32]

@@ -23,14 +23,14 @@ from eigenfield.calibrate.planar.start import PlanarStart, irregularity, reverse
 from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.canvas import Canvas
 from eigenfield.stereo.estimate import estimate_depth
-from eigenfield.stereo.extend import extended
+from eigenfield.stereo.extend import extend_depth
+from eigenfield.stereo.reference_view import ReferenceView
 from eigenfield.stereo.refine import refine_depth
-from eigenfield.stereo.semiglobal import semi_global
+from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
-from eigenfield.stereo.sweep import MOST, sweep
-from eigenfield.stereo.views import HALVE_PICTURE, halve, pack, unpack
+from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
+from eigenfield.stereo.views import HALF_FROM_FULL_INDEX, halve_pictures, pack_pictures, unpack_pictures
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
 log = logging.getLogger("eigenfield.calibrate")
@@ -65,7 +65,7 @@ class Planar:
 
     model: ArrayModel
     parameters: NDArray[np.float64]
-    canvas: Canvas
+    canvas: ReferenceView
     d: NDArray[np.float32]
     confidence: NDArray[np.float32]
     texture: NDArray[np.float32]
@@ -90,7 +90,7 @@ class _Joint:
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
         self.canvas = self.model.canvas(margin)
-        self.half = halve(pictures)
+        self.half = halve_pictures(pictures)
         shape = self.canvas.shape
         self.d = np.zeros(shape, np.float32)
         self.confidence = np.zeros(shape, np.float32)
@@ -122,13 +122,21 @@ class _Joint:
     def first_depth(self, views: NDArray[np.int64], coarser: float = 1.0) -> None:
         """Plane sweep at half resolution and semi-global optimisation."""
         small = self.canvas.halved()
-        matrices = HALVE_PICTURE @ self.model.matrices(small, views, self.parameters[views])
+        matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
         step = min(coarser * SWEEP_STEP / self.reach_of(views), (self.high - self.low) / 64)
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
-        reference, known = _framed(unpack(self.half[self.centre]), small.shape)
-        cost = sweep(self.half[views], matrices, small.shape, labels, reference=reference, known=known, unseen=MOST)
+        reference, known = _framed(unpack_pictures(self.half[self.centre]), small.shape)
+        cost = plane_sweep(
+            self.half[views],
+            matrices,
+            small.shape,
+            labels,
+            reference=reference,
+            known=known,
+            unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
+        )
         guide = cv2.cvtColor(reference, cv2.COLOR_RGB2GRAY).astype(np.float32)
-        d, _ = semi_global(cost, guide, labels)
+        d, _ = semi_global_matching(cost, guide, labels)
         self.d = np.asarray(cv2.resize(d, self.canvas.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)
         log.info("sweep: %d views, %d labels", len(views), len(labels))
 
@@ -187,15 +195,18 @@ class _Joint:
         apart = smooth / self.reach
         d, confidence = refine_depth(
             pictures, matrices, self.d, step / self.reach, buffers=buffers, texture=self.texture,
-            bias=BIAS / self.reach, depth=apart,
+            bias=BIAS / self.reach, depth_scale=apart,
         )  # fmt: skip
         half = SURE * self.reach**2
-        self.d, self.confidence = smooth_depth(d, confidence, self.texture, half=half, depth=apart), confidence
+        self.d, self.confidence = (
+            smooth_depth(d, confidence, self.texture, half_confidence=half, depth_scale=apart),
+            confidence,
+        )
         self.extend(len(views))
 
     def extend(self, views: int) -> None:
         """Outside the photographs' common part, where (too) few look, depth is drawn on from inside."""
-        self.d = extended(self.d, self.count >= max(2, LOOKING * views), self.low, self.high)
+        self.d = extend_depth(self.d, self.count >= max(2, LOOKING * views), self.low, self.high)
 
 
 def refine_planar(
@@ -206,7 +217,7 @@ def refine_planar(
     photographs: (n, H, W, 3). The result has near and far the right way round: where `start` does not know, occlusion
     decides.
     """
-    pictures = pack(photographs)
+    pictures = pack_pictures(photographs)
     joint = _Joint(pictures, start)
     rings = _rings(start.places)
     total = len(rings) + len(DEPTH_STEPS) + 1
@@ -295,7 +306,7 @@ def register_views(
     model = replace(planar.model, bases=tuple(bases or planar.model.bases[:1] * len(positions)))
     error = np.full(len(positions), np.nan)
     error[known] = planar.error
-    sharp = pack(photographs)
+    sharp = pack_pictures(photographs)
     soft = np.stack(parallel_map(_blurred, sharp))
     reach = max(1.0, float(np.linalg.norm(planar.parameters[:, POSITION], axis=1).max()))
     points = textured_points(planar.d, planar.texture, planar.count > max(2, SEEN * len(known)))
@@ -339,7 +350,7 @@ def _is_reversed(joint: _Joint, rings: Sequence[NDArray[np.int64]]) -> bool:
     height, width = joint.pictures.shape[1:3]
     inner = np.ascontiguousarray(joint.d[margin : margin + height, margin : margin + width])
     narrow = replace(joint.canvas, camera=joint.model.reference, margin=0)
-    reference = unpack(joint.pictures[joint.centre])
+    reference = unpack_pictures(joint.pictures[joint.centre])
     larger = smaller = 0
     for number, ring in enumerate(rings):
         views = ring if number == 0 else np.setdiff1d(ring, rings[number - 1])
@@ -350,7 +361,7 @@ def _is_reversed(joint: _Joint, rings: Sequence[NDArray[np.int64]]) -> bool:
 
         def votes(k: int, views=views, matrices=matrices, gap=gap) -> tuple[int, int]:  # type: ignore[no-untyped-def]
             near, far = np.full((height, width), -1, np.int64), np.full((height, width), -1, np.int64)
-            picture = unpack(joint.pictures[views[k]])
+            picture = unpack_pictures(joint.pictures[views[k]])
             return occlusion_votes(picture, reference, matrices[k], inner, gap, VOTE_CONTRAST, near, far)
 
         counts = np.sum(parallel_map(votes, range(len(views))), axis=0)
@@ -385,7 +396,7 @@ def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequen
 
 
 def _blurred(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    return pack(np.asarray(cv2.GaussianBlur(unpack(picture), (0, 0), 2.0), np.uint8)[None])[0]
+    return pack_pictures(np.asarray(cv2.GaussianBlur(unpack_pictures(picture), (0, 0), 2.0), np.uint8)[None])[0]
 
 
 def _framed(picture: NDArray[np.uint8], shape: tuple[int, int]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:

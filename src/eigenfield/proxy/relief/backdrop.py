@@ -25,7 +25,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.relief.sheet import Sheet, joined, sheet_mesh, used_part
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -37,7 +37,7 @@ BETWEEN = 3  # nearest cameras of each, half way to which such a view stands
 
 
 def backdrop(
-    canvas: Canvas,
+    canvas: ReferenceView,
     layers: Sequence[Sheet],
     cameras: Sequence[Camera],
     *,
@@ -91,7 +91,7 @@ def _between(cameras: Sequence[Camera]) -> list[Camera]:
     return [replace(cameras[i], t=-cameras[i].R @ (centres[i] + centres[j]) / 2) for i, j in pairs]
 
 
-def _widened(canvas: Canvas, layers: Sequence[Sheet], cameras: Sequence[Camera]) -> Canvas:
+def _widened(canvas: ReferenceView, layers: Sequence[Sheet], cameras: Sequence[Camera]) -> ReferenceView:
     """The canvas with a margin that holds every camera's frame at the depths of the layers."""
     labels = np.concatenate([layer.d for layer in layers])
     height, width = canvas.shape
@@ -114,7 +114,7 @@ def _widened(canvas: Canvas, layers: Sequence[Sheet], cameras: Sequence[Camera])
     return replace(canvas, camera=camera, margin=canvas.margin + pad)
 
 
-def _farthest(canvas: Canvas, layers: Sequence[Mesh]) -> NDArray[np.float32]:
+def _farthest(canvas: ReferenceView, layers: Sequence[Mesh]) -> NDArray[np.float32]:
     """(h, w) the least d of the layers at each pixel, carried on where there is none."""
     result = np.full(canvas.shape, np.inf, np.float32)
     for layer in layers:

@@ -18,9 +18,9 @@ from scipy.sparse.linalg import splu
 
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.relief.layers_kernels import mark_revealed
-from eigenfield.stereo.semiglobal import semi_global
-from eigenfield.stereo.sweep import sweep
-from eigenfield.stereo.views import Pictures, motion, pack
+from eigenfield.stereo.semiglobal import semi_global_matching
+from eigenfield.stereo.sweep import plane_sweep
+from eigenfield.stereo.views import Pictures, label_parallax, pack_pictures
 from eigenfield.stereo.visibility import depth_buffers
 
 log = logging.getLogger("eigenfield.proxy")
@@ -33,14 +33,14 @@ SLACK = 0.3  # of a cut: how much nearer than the far side of a cut the layer be
 BENEATH = 0.3  # .. and how far it stays behind the first layer
 BIAS = 0.3  # of a cut: bias of the depth test
 FEWEST = 3  # views that must see past the first layer
-MOST = 30.0  # grey levels, as in `sweep`
+MOST = 30.0  # grey levels, as in `plane_sweep`
 UNSEEN = 21.0
 SMOOTH = 5  # pixels, side of the window over which costs are averaged
 STEEP = 60.0  # grey levels a label unit: how strongly the far side holds its depth in the optimisation
-SMALL_STEP, LARGE_STEP = 1.5, 25.0  # penalties of `semi_global`
+SMALL_STEP, LARGE_STEP = 1.5, 25.0  # penalties of `semi_global_matching`
 RING = 12  # pixels of the far side on which the layer hangs
 UNDER = 4  # pixels by which it reaches under the far side, so that no gap opens between them
-SURE = 2.0  # confidence of `semi_global` at which a depth has half its say
+SURE = 2.0  # confidence of `semi_global_matching` at which a depth has half its say
 AGREED = 12.0  # grey levels above which photographs do not agree
 PLATE, MEMBRANE, ANCHOR = (
     100.0,
@@ -67,7 +67,7 @@ def second_layer(
     valid = np.ones(d.shape, np.bool_) if valid is None else valid
     report = progress or (lambda stage, done, total: None)
     report(STAGE, 0, 4)
-    moves = motion(matrices, d.shape, float(np.median(d[valid])) if valid.any() else 0.0)
+    moves = label_parallax(matrices, d.shape, float(np.median(d[valid])) if valid.any() else 0.0)
     want, ceiling = _revealed(d, valid, cut, moves)
     if not want.any():
         report(STAGE, 4, 4)
@@ -128,14 +128,14 @@ def _swept(
     """Depth of the wanted pixels from the views that see past the first layer, and how far it is to be trusted
     (0..1)."""
     chosen = np.arange(0, len(matrices), -(-len(matrices) // MOST_VIEWS))
-    packed, matrices = pack(pictures[chosen]), matrices[chosen]
+    packed, matrices = pack_pictures(pictures[chosen]), matrices[chosen]
     low, high = float(floor[want].min()), float(ceiling[want].max())
     step = max(STEP / max(float(np.abs(moves).max()), 1e-9), (high - low) / (MOST_LABELS - 4))
     labels = (low - step + step * np.arange(int(np.ceil((high - low) / step)) + 3)).astype(np.float32)
     buffers = depth_buffers(matrices, d, packed.shape[1:], valid)
-    cost = sweep(
-        packed, matrices, d.shape, labels, todo=want, floor=floor, ceiling=ceiling, buffers=buffers, bias=BIAS * cut,
-        most=MOST, fewest=FEWEST, unseen=UNSEEN,
+    cost = plane_sweep(
+        packed, matrices, d.shape, labels, mask=want, floor=floor, ceiling=ceiling, buffers=buffers, bias=BIAS * cut,
+        max_difference=MOST, min_views=FEWEST, unseen_cost=UNSEEN,
     )  # fmt: skip
     window = np.maximum(uniform_filter(want.astype(np.float32), SMOOTH), np.float32(1 / SMOOTH**2))
     best = np.full(d.shape, np.inf, np.float32)
@@ -147,7 +147,7 @@ def _swept(
         anchored = np.minimum(np.float32(MOST), np.abs(label - d) * np.float32(STEEP))
         layer = np.where(want, np.where(tried, level, np.float32(MOST)), anchored)
         cost[..., index] = np.rint(np.clip(layer * 8, 0, 240)).astype(np.uint8)
-    guess, confidence = semi_global(cost, np.zeros(d.shape, np.float32), labels, SMALL_STEP, LARGE_STEP)
+    guess, confidence = semi_global_matching(cost, np.zeros(d.shape, np.float32), labels, SMALL_STEP, LARGE_STEP)
     trust = np.where(best < AGREED, confidence / (confidence + np.float32(SURE)), 0)
     return np.minimum(guess, np.where(want, ceiling, np.inf)).astype(np.float32), trust.astype(np.float32)
 

@@ -21,7 +21,7 @@ from eigenfield.proxy.atlas.unwrap import DEFAULT_TRIANGLES
 from eigenfield.proxy.relief.backdrop import backdrop
 from eigenfield.proxy.relief.packing import packed_layers
 from eigenfield.proxy.relief.sheet import joined, make_sheet, sheet_mesh, used_part
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 
 SECOND_SHARE = 0.3  # of the triangles that the second layer may take
 BACKDROP_SHARE = 0.05  # likewise, the backdrop
@@ -31,7 +31,7 @@ GUTTER = 4.0  # canvas pixels between charts: six texels at density 1.5
 
 
 def relief_mesh(
-    canvas: Canvas,
+    canvas: ReferenceView,
     d: NDArray[np.float32],
     valid: NDArray[np.bool_],
     second: tuple[NDArray[np.float32], NDArray[np.bool_]] | None = None,

@@ -22,7 +22,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.relief.contours import contour_chains, cut_sides, straightened
 from eigenfield.proxy.relief.kernels import label_pixels, refine, wedge_moments
 from eigenfield.proxy.relief.triangulation import LATTICE, constrain, restore, triangulate
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -299,7 +299,7 @@ def joined(sheets: Sequence[Sheet]) -> Sheet:
     return Sheet(x, y, d, np.concatenate(faces))
 
 
-def sheet_mesh(canvas: Canvas, sheet: Sheet) -> Mesh:
+def sheet_mesh(canvas: ReferenceView, sheet: Sheet) -> Mesh:
     """A sheet in the world, without UVs, counter-clockwise to the canvas's camera; nothing is put farther away than
     1 / FARTHEST times the nearest vertex."""
     nearest = canvas.offset + canvas.scale * sheet.d.max()

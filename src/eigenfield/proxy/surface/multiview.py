@@ -28,7 +28,7 @@ from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_point
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplified_with_error, trimmed, within_masks
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 from eigenfield.stereo.estimate import estimate_depth
 
 log = logging.getLogger("eigenfield.proxy")
@@ -230,7 +230,7 @@ def _depth_map(
     axis = own.camera.R[2]
     across = [np.linalg.norm(d - (d @ axis) * axis) for d in (camera.centre - own.camera.centre for camera in cameras)]
     unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
-    canvas = Canvas.around(own.camera, 0, span[0], unit)
+    canvas = ReferenceView.with_margin(own.camera, 0, span[0], unit)
     reach = (span[1] - span[0]) / unit
     height, width = max(p.pixels.shape[0] for p in pictures), max(p.pixels.shape[1] for p in pictures)
     stack = np.zeros((len(others) + 1, height, width, 3), np.uint8)
