@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibrate import (
-    Planar,
+    PlanarArray,
     PlanarStart,
     refine_planar,
     register_views,
@@ -198,7 +198,7 @@ def _positions(capture: Capture) -> NDArray[np.float64]:
     return fit_view_plane(capture.cameras).coordinates([camera.centre for camera in capture.cameras])
 
 
-def _light_field(capture: Capture, planar: Planar) -> LightField:
+def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
     """The capture with the cameras that were found, at full size, without the views that fit nowhere."""
     views = np.arange(len(capture))
     cameras = planar.model.cameras(views, planar.parameters)
@@ -233,7 +233,7 @@ def _inverse_depths(
             return max(float(low - WIDENED * (high - low)), 0.3 * float(low)), float(high + WIDENED * (high - low))
     # disparities of one step, from infinity to a fifth of the picture
     provisional = start_given(cameras, *(1e-3, 1.0))
-    canvas = provisional.model.canvas(0)
+    canvas = provisional.model.reference_view(0)
     matrices = provisional.model.matrices(canvas, np.arange(len(cameras)), provisional.parameters)
     chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[:RANGE_VIEWS]
     found = depth_range(pictures[chosen], matrices[chosen], canvas.shape, (0.0, canvas.camera.width / 5))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibrate import (
-    Planar,
+    PlanarArray,
 )
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
@@ -47,8 +47,8 @@ def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.f
     return replace(light_field, problems=problems), points
 
 
-def write_planar(path: Path, planar: Planar) -> None:
-    canvas = planar.canvas
+def write_planar(path: Path, planar: PlanarArray) -> None:
+    canvas = planar.reference
     views = np.arange(len(planar.parameters))
     np.savez(
         path, d=planar.d, confidence=planar.confidence, texture=planar.texture, count=planar.count, K=canvas.camera.K,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import structure_from_motion, triangulated_points
+from eigenfield.calibrate import structure_from_motion, triangulate_points
 from eigenfield.capture import Capture, LightField, PhotoSet
 from eigenfield.capture.lightfield import PhotographSource
 from eigenfield.capture.writers.save import save_calibration
@@ -170,7 +170,7 @@ def _poisson(
     inputs = [identity, None if points is None else len(points), settings.triangles, by_hand]
 
     def build(folder: Path) -> None:
-        known = triangulated_points(light_field, progress=run.progress) if points is None else points
+        known = triangulate_points(light_field, progress=run.progress) if points is None else points
         surface = surface_from_views(
             light_field, known, triangles=settings.triangles, background=settings.background,
             primitives=_by_hand(run, light_field), progress=run.progress,

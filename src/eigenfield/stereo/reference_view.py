@@ -78,7 +78,7 @@ class ReferenceView:
             local = rays / (self.offset + self.scale * d)[..., None]
         return (local - self.camera.t) @ self.camera.R
 
-    def halved(self) -> ReferenceView:
+    def at_half_resolution(self) -> ReferenceView:
         """The same view at half the resolution, with sizes rounded up. Labels keep their meaning."""
         width, height = (self.camera.width + 1) // 2, (self.camera.height + 1) // 2
         K = np.diag([0.5, 0.5, 1]) @ self.camera.K
