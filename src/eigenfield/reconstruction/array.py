@@ -29,9 +29,9 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.proxy import (
+    estimate_second_layer,
     read_mesh,
     relief_mesh,
-    second_layer,
     write_ply,
 )
 from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
@@ -147,7 +147,7 @@ def _layers(
     cut, speck = max(CUT / reach, CUT_SHARE * float(high - low)), SPECK
     for _ in range(CUT_ROUNDS):
         d = remove_speckles(depth.d, find_discontinuities(depth.d, 1 / reach, cut), round(speck * depth.d.size))
-        second = second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
+        second = estimate_second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
         mesh = relief_mesh(
             depth.canvas, d, valid, second, cut=cut, tolerance=TOLERANCE / reach, triangles=triangles, cameras=cameras,
             progress=progress,

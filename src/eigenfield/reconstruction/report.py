@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import AtlasStatistics, atlas_statistics
-from eigenfield.proxy.background import coverage
+from eigenfield.proxy.background import camera_coverage
 from eigenfield.proxy.surface.trim import SurfaceError
 
 
@@ -42,4 +42,4 @@ class ProxyReport:
 
 def report_of(mesh: Mesh, cameras: Sequence[Camera], error: SurfaceError | None) -> ProxyReport:
     """Measured on a mesh with an atlas."""
-    return ProxyReport(len(mesh.faces), coverage(mesh, cameras), error, atlas_statistics(mesh))
+    return ProxyReport(len(mesh.faces), camera_coverage(mesh, cameras), error, atlas_statistics(mesh))

@@ -15,7 +15,7 @@ from eigenfield.proxy import (
     parse_primitive,
     parse_region,
 )
-from eigenfield.proxy.atlas.unwrap import FEWEST_TRIANGLES
+from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger("eigenfield.reconstruction")
@@ -39,11 +39,11 @@ class Settings:
     def __post_init__(self) -> None:
         if self.surface not in SURFACES:
             raise OptionError("surface", f"no surface is called {self.surface}", remedy=f"use {', '.join(SURFACES)}")
-        if self.triangles < FEWEST_TRIANGLES:
+        if self.triangles < UNWRAP_MIN_TRIANGLES:
             raise OptionError(
                 "triangles",
                 f"{self.triangles} triangles were asked for",
-                remedy=f"ask for {FEWEST_TRIANGLES} or more",
+                remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more",
             )
         for text in self.primitives:
             parse_primitive(text)

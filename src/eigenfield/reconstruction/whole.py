@@ -29,7 +29,7 @@ from eigenfield.proxy import (
     parse_region,
     read_mesh,
     surface_from_views,
-    unwrapped,
+    unwrap_mesh,
     write_ply,
 )
 from eigenfield.proxy.surface.trim import SurfaceError
@@ -196,7 +196,7 @@ def _finished(run: Run, light_field: LightField, mesh: Mesh, identity: list[Any]
         result = mesh
         for primitive in _by_hand(run, light_field) if relief else ():
             result = insert_primitive(result, primitive, light_field.cameras)
-        result = unwrapped(result, triangles=len(result.faces), cameras=light_field.cameras, progress=run.progress)
+        result = unwrap_mesh(result, triangles=len(result.faces), cameras=light_field.cameras, progress=run.progress)
         write_ply(result, folder / MESH)
 
     return read_mesh(run.stage("proxy", inputs, build) / MESH)

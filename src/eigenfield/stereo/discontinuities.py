@@ -9,8 +9,8 @@ from scipy.ndimage import median_filter
 
 STEP_SLOPE_WINDOW_EDGES = 15  # the median difference over them is the slope: a smear covers less than half
 STEP_MAX_SMEAR_EDGES = 7  # over which a step may be smeared
-STEP_MIN_EDGE_PIXELS = 0.15  # in the outermost view: how far an edge of a step departs from the slope ..
-STEP_MIN_TOTAL_PIXELS = 0.8  # .. and how far the whole step does
+STEP_MIN_EDGE_PIXELS = 0.15  # in the outermost view: least departure of one edge of a step from the slope
+STEP_MIN_TOTAL_PIXELS = 0.8  # least departure of the whole step
 STEP_NOISE_WINDOW_PIXELS = 21
 STEP_NOISE_FACTOR = 4.0
 STEP_NOISE_QUANTUM_PIXELS = 0.02

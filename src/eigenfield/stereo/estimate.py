@@ -39,8 +39,8 @@ class DepthTuning:
 
     Attributes:
         refinement_step_labels: Distance of the labels that each round of refinement tries.
-        min_views: Views that must see a point outside the reference picture ..
-        min_view_fraction: .. and the fraction of all views that must.
+        min_views: Views that must see a point outside the reference picture.
+        min_view_fraction: Fraction of all views that must see it.
         sweep_max_views: Views in the sweeps. More views tell nothing new about a label.
         sweep_stride_pixels: Movement between two labels in the view that moves most.
         sweep_max_labels: Labels of one sweep.

@@ -24,8 +24,8 @@ class MappingTuning:
 
     Attributes:
         min_views: Views of the smallest model.
-        relaxed_min_inliers: Points that must agree for a photograph that the usual thresholds leave over ..
-        relaxed_min_inlier_ratio: .. and the fraction of its points that must.
+        relaxed_min_inliers: Points that must agree for a photograph that the usual thresholds leave over.
+        relaxed_min_inlier_ratio: Fraction of its points that must agree.
         min_observations: Points that a registered view must see.
         min_angle_degrees: Angle between the rays of a point that is kept.
         outlier_spreads: Spreads of the residuals beyond which a point is dropped, one a round.

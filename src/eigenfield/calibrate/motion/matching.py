@@ -38,8 +38,8 @@ class MatchingTuning:
         grid_long_steps: Further steps along rows and columns, for wider baselines.
         block_rows: Rows of the similarity matrix that are computed at a time.
         preview_multiplications: Multiplications that the choice of similar photographs may take.
-        preview_min_features: Features a photograph that the choice compares: at least ..
-        preview_max_features: .. and at most.
+        preview_min_features: Features a photograph that the choice compares, at least.
+        preview_max_features: Features a photograph that the choice compares, at most.
         descriptor_length: Norm of a descriptor.
         max_angle_ratio: Largest ratio of the best to the second-best angle between descriptors.
         max_angle_radians: Largest angle between matching descriptors.

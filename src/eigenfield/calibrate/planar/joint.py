@@ -45,12 +45,12 @@ class PlanarTuning:
         tau_levels: Scale of the Cauchy loss, grey levels.
         visibility_bias_pixels: Distance behind the depth buffer at which a point still counts as visible.
         sweep_step_pixels: Distance between two labels of a sweep.
-        smooth_pixels: Distance within which neighbours are one surface ..
-        last_smooth_pixels: .. and in the last rounds.
+        smooth_pixels: Distance within which neighbours are one surface.
+        last_smooth_pixels: The same, in the last rounds.
         half_confidence: Curvature of the cost, squared grey levels per squared pixel, at which smoothing gives a depth
             half weight.
-        depth_step_pixels: Steps of the rounds of depth refinement ..
-        last_depth_step_pixels: .. and of the rounds after the cameras are final.
+        depth_step_pixels: Steps of the rounds of depth refinement.
+        last_depth_step_pixels: Steps of the rounds after the cameras are final.
         regular_pixels: Cameras this close to a regular grid, or to their calibration, are not corrected.
         min_depth_view_fraction: Fraction of the views that must see a point for its depth to be its own.
         sweep_max_views: Views of a plane sweep.
