@@ -112,11 +112,11 @@ def cached_matches(
         known and [[k.K.tolist(), k.lens and [k.lens.model, k.lens.coefficients]] for k in known],
         layout and [layout.rows.tolist(), layout.columns.tolist(), layout.positions.tolist(), layout.measured],
     ])  # fmt: skip
-    folder = stages.run("matches", key, lambda place: _write(place / MATCH_CACHE_FILE, compute()))
-    return _read(folder / MATCH_CACHE_FILE)
+    folder = stages.run("matches", key, lambda place: _write_matches(place / MATCH_CACHE_FILE, compute()))
+    return _read_matches(folder / MATCH_CACHE_FILE)
 
 
-def _write(path: Path, matches: Sequence[Match]) -> None:
+def _write_matches(path: Path, matches: Sequence[Match]) -> None:
     good = [match for match in matches if match.geometry is not None]
     kinds: dict[str, Any] = {
         name: np.array([_matrix(getattr(m.geometry, name)) for m in good]).reshape(-1, 3, 3) for name in "EFH"
@@ -136,7 +136,7 @@ def _matrix(value: Any) -> Any:
     return np.full((3, 3), np.nan) if value is None else np.asarray(value)
 
 
-def _read(path: Path) -> list[Match]:
+def _read_matches(path: Path) -> list[Match]:
     with np.load(path) as file:
         stored = {name: file[name] for name in file.files}
     ends = np.cumsum(stored["count"])

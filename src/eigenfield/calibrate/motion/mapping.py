@@ -147,14 +147,14 @@ def _map(
     )
     if not models or models[0].num_reg_images() < MAPPING_TUNING.min_views:
         return None
-    others = [_registered(model) for model in models[1:]]
+    others = [_registered_views(model) for model in models[1:]]
     best = pycolmap.Reconstruction(models[0])
     if best.num_reg_images() < count:
         best = _register_leftovers(best, _options(fixed, seed), database, count, check, progress)
     check()
-    before = set(_registered(best))
+    before = set(_registered_views(best))
     _adjust_and_filter(best, fixed)
-    registered = _registered(best)
+    registered = _registered_views(best)
     if len(registered) < MAPPING_TUNING.min_views:
         return None
     rest = [tuple(sorted(set(other) - set(registered))) for other in others]
@@ -166,7 +166,7 @@ def _map(
     )
 
 
-def _registered(model: Any) -> tuple[int, ...]:
+def _registered_views(model: Any) -> tuple[int, ...]:
     return tuple(sorted(image - 1 for image in model.reg_image_ids()))
 
 
@@ -182,7 +182,7 @@ def _run(
     pipeline = pycolmap.IncrementalPipeline(options, database, manager)
     most = 0
 
-    def registered() -> None:
+    def report_registered() -> None:
         nonlocal most
         check()
         done = max((manager.get(k).num_reg_images() for k in range(manager.size())), default=0)
@@ -193,7 +193,7 @@ def _run(
     if progress is not None:
         progress(stage, 0, count)
     for event in ("INITIAL_IMAGE_PAIR_REG_CALLBACK", "NEXT_IMAGE_REG_CALLBACK"):
-        pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, registered)
+        pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, report_registered)
     pipeline.run()
     if progress is not None:
         progress(stage, count, count)

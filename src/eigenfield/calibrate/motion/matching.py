@@ -199,12 +199,12 @@ def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> l
     )
     large = [_as_float(f.descriptors[:preview]) for f in features]
 
-    def shared(i: int) -> list[int]:
+    def count_shared(i: int) -> list[int]:
         return [len(mutual_matches(large[i], large[j])) for j in range(i + 1, count)]
 
     score = np.zeros((count, count), np.int64)
     with threadpool_limits(1, "blas"):
-        rows = track(parallel_stream(shared, range(count)), "similar photographs", count, progress)
+        rows = track(parallel_stream(count_shared, range(count)), "similar photographs", count, progress)
         for i, row in enumerate(rows):
             score[i, i + 1 :] = row
     score += score.T

@@ -114,7 +114,7 @@ def structure_from_motion(
             that determines the cameras. `calibration-failed`: fewer than three fit together; the message says why.
         OptionError: As `check_matching`; `intrinsics-count`.
     """
-    known = _known(intrinsics, photos)
+    known = _check_intrinsics(intrinsics, photos)
     _check_photographs(photos)
     check_matching(matching, photos.layout)
     stages = None if work is None else Stages(work)
@@ -130,7 +130,7 @@ def structure_from_motion(
     return _assemble(photos, features, undistorted, known, model, report)
 
 
-def _known(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
+def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
     if intrinsics is None:
         return None
     known = [intrinsics] * len(photos) if isinstance(intrinsics, KnownLens) else list(intrinsics)
