@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
-from eigenfield.calibrate.planar.array import PARAMETERS, ArrayModel
+from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
 from eigenfield.calibrate.planar.start import nominal_positions
 from eigenfield.capture import Layout
 from eigenfield.core.errors import CaptureError
@@ -74,7 +74,7 @@ def test_near_and_far_are_told_by_occlusion(right, down, names):
     distance, scale = same_array(found, places)
     assert scale > 0
     assert distance < 0.03
-    margin = planar.canvas.margin
+    margin = planar.reference.margin
     d = planar.d[margin:-margin, margin:-margin] / scale
     assert np.median(d[SIDE // 2 - 20 : SIDE // 2, SIDE // 2 : SIDE // 2 + 30]) == pytest.approx(2.93, abs=0.15)
     assert np.median(d[-30:-5, 5:30]) == pytest.approx(-0.65, abs=0.15)
@@ -121,14 +121,14 @@ def test_given_cameras_start_where_they_are(jittering):
 
 def test_derivatives_are_those_of_the_projection():
     model = ArrayModel.planar(1, 200, 100, 180.0, 1.0, 0.1)
-    canvas = model.canvas(8)
+    reference = model.reference_view(8)
     rng = np.random.default_rng(1)
-    parameters = rng.uniform(-1, 1, (1, PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
-    derivatives = model.derivatives(canvas, np.array([0]), parameters)[0]
-    for index in range(PARAMETERS):
+    parameters = rng.uniform(-1, 1, (1, ARRAY_PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
+    derivatives = model.derivatives(reference, np.array([0]), parameters)[0]
+    for index in range(ARRAY_PARAMETERS):
         moved = parameters.copy()
         moved[0, index] += 1e-6
-        change = model.matrices(canvas, np.array([0]), moved) - model.matrices(canvas, np.array([0]), parameters)
+        change = model.matrices(reference, np.array([0]), moved) - model.matrices(reference, np.array([0]), parameters)
         np.testing.assert_allclose(change[0] / 1e-6, derivatives[index], rtol=1e-3, atol=1e-3)
 
 

@@ -17,13 +17,13 @@ from click.testing import CliRunner
 
 from eigenfield.calibrate import (
     KnownLens,
-    Motion,
+    SfmResult,
     calibration_error,
     structure_from_motion,
 )
 from eigenfield.calibrate.align import angle_between
-from eigenfield.calibrate.lenses import undistorted
-from eigenfield.calibrate.motion.features import FeatureOptions, features_of
+from eigenfield.calibrate.lenses import undistort_pixels
+from eigenfield.calibrate.motion.features import FeatureOptions, extract_features_of
 from eigenfield.calibrate.motion.matching import choose_pairs
 from eigenfield.capture import Layout, Lens, LightField, PhotoSet, Shot, open_capture
 from eigenfield.cli import group
@@ -58,7 +58,7 @@ def kept(scene: tuple[PhotoSet, LightField], tmp_path_factory: pytest.TempPathFa
 
 
 @pytest.fixture(scope="module")
-def solved(scene: tuple[PhotoSet, LightField]) -> Motion:
+def solved(scene: tuple[PhotoSet, LightField]) -> SfmResult:
     """Their cameras, by known intrinsics."""
     return structure_from_motion(scene[0], intrinsics=KnownLens(K))
 
@@ -67,7 +67,7 @@ def solved(scene: tuple[PhotoSet, LightField]) -> Motion:
 def strong_features() -> Iterator[None]:
     """Small photographs have few features: looking for weaker ones, as the temple needs, takes four times as long."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("eigenfield.calibrate.motion.features.LITTLE_TEXTURE", 0)
+        patch.setattr("eigenfield.calibrate.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)
         yield
 
 
@@ -128,8 +128,8 @@ def test_the_same_at_any_number_of_threads(scene, solved):
 
 def test_a_work_folder_goes_on_from_matches_to_the_same_cameras(scene, solved, kept, monkeypatch):
     photos, _ = scene
-    monkeypatch.setattr("eigenfield.calibrate.motion.keep.extract_features", None)  # calling it would fail
-    monkeypatch.setattr("eigenfield.calibrate.motion.keep.match_pairs", None)
+    monkeypatch.setattr("eigenfield.calibrate.motion.cache.extract_features", None)  # calling it would fail
+    monkeypatch.setattr("eigenfield.calibrate.motion.cache.match_pairs", None)
     again = structure_from_motion(photos, intrinsics=KnownLens(K), work=kept)
     assert numbers(solved.light_field) == numbers(again.light_field)
 
@@ -149,7 +149,7 @@ def test_a_known_lens_is_kept_and_its_distortion_understood(scene, tmp_path):
     photos, truth = scene
     lens = KnownLens(K, Lens("brown", (-0.25, 0.05, 0.001, -0.002, 0.0)))
     v, u = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
-    straight = undistorted(np.column_stack([u.ravel(), v.ravel()]), lens).reshape(HEIGHT, WIDTH, 2) - 0.5
+    straight = undistort_pixels(np.column_stack([u.ravel(), v.ravel()]), lens).reshape(HEIGHT, WIDTH, 2) - 0.5
     shots = []
     for index, shot in enumerate(photos.shots):
         pixels = truth.photograph(index).pixels
@@ -243,16 +243,16 @@ def test_features_stay_within_the_mask(scene, tmp_path):
     mask = np.zeros((HEIGHT, WIDTH, 3))
     mask[:, 100:200] = 1
     hidden = picture(tmp_path, "mask.png", mask)
-    found = features_of(replace(photos.shots[0], mask=hidden.path), FeatureOptions())
-    whole = features_of(photos.shots[0], FeatureOptions())
+    found = extract_features_of(replace(photos.shots[0], mask=hidden.path), FeatureOptions())
+    whole = extract_features_of(photos.shots[0], FeatureOptions())
     assert 20 < len(found) < len(whole)
     assert (found.points[:, 0] >= 100).all() and (found.points[:, 0] < 200).all()
 
 
 def test_features_of_a_reduced_photograph_lie_in_its_own_pixels(scene):
     photos, _ = scene
-    whole = features_of(photos.shots[0], FeatureOptions())
-    half = features_of(photos.shots[0], FeatureOptions(side=WIDTH // 2))
+    whole = extract_features_of(photos.shots[0], FeatureOptions())
+    half = extract_features_of(photos.shots[0], FeatureOptions(max_side=WIDTH // 2))
     nearest = np.linalg.norm(half.points[:, None] - whole.points[None], axis=2).min(axis=1)
     assert len(half) > 30 and np.median(nearest) < 1.0
 
@@ -290,7 +290,7 @@ def test_pairs_of_a_grid_are_neighbours_and_join_it_all():
 
 def test_similar_photographs_are_found(scene):
     photos, _ = scene
-    features = [features_of(shot, FeatureOptions()) for shot in photos.shots]
+    features = [extract_features_of(shot, FeatureOptions()) for shot in photos.shots]
     pairs = choose_pairs(features, "similar", None)
     assert {(i, i + 1) for i in range(4)} <= set(pairs) <= set(choose_pairs(features, "exhaustive", None))
 
