@@ -8,7 +8,7 @@ import pytest
 from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
 from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
 from eigenfield.calibrate.planar.start import nominal_positions
-from eigenfield.capture import Layout
+from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
 from support.planes import everywhere, paint, photograph
 
@@ -25,7 +25,7 @@ LAYERS = [(2.6, 0.004, 0.0, paint(2, detail=2.0), inner), (-1.4, 0.0, 0.006, pai
 
 def layout(**more):
     row, column = (index.ravel() for index in np.mgrid[:SIZE, :SIZE])
-    return Layout(row, column, np.stack([column, row], axis=1).astype(float), **more)
+    return GridLayout(row, column, np.stack([column, row], axis=1).astype(float), **more)
 
 
 def array(right=1.0, down=0.85, jitter=0.0, seed=0):
@@ -140,7 +140,7 @@ def test_the_anchor_moves_with_the_shift_alone():
 
 
 def test_measured_positions_keep_their_jitter():
-    measured = Layout(
+    measured = GridLayout(
         np.array([0, 0, 1, 1]), np.array([0, 1, 0, 1]),
         np.array([[0, 0], [10.0, 0.5], [0.2, 8.0], [10.1, 8.2]]), measured=True,
     )  # fmt: skip

@@ -25,7 +25,7 @@ from eigenfield.calibrate.align import angle_between
 from eigenfield.calibrate.lenses import undistort_pixels
 from eigenfield.calibrate.motion.features import FeatureOptions, extract_features_of
 from eigenfield.calibrate.motion.matching import choose_pairs
-from eigenfield.capture import Layout, Lens, LightField, PhotoSet, Shot, open_capture
+from eigenfield.capture import GridLayout, Lens, LightField, PhotoSet, Shot, open_capture
 from eigenfield.cli import group
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
@@ -209,7 +209,7 @@ def test_too_few_photographs_and_rectified_grids_are_refused(scene):
         structure_from_motion(photos.subset([0, 1]))
     assert error.value.code == "too-few"
     line = np.arange(len(photos))
-    layout = Layout(line * 0, line, np.column_stack([line, line * 0]).astype(float), rectified=True)
+    layout = GridLayout(line * 0, line, np.column_stack([line, line * 0]).astype(float), rectified=True)
     with pytest.raises(CaptureError) as error:
         structure_from_motion(replace(photos, layout=layout))
     assert error.value.code == "planar-rectified" and "encode" in str(error.value)
@@ -272,9 +272,9 @@ def test_an_exception_of_the_progress_ends_it(scene, kept):
 # which photographs are compared
 
 
-def layout_of(rows: int, columns: int) -> Layout:
+def layout_of(rows: int, columns: int) -> GridLayout:
     r, c = np.divmod(np.arange(rows * columns), columns)
-    return Layout(r, c, np.column_stack([c, -r]).astype(float), measured=True)
+    return GridLayout(r, c, np.column_stack([c, -r]).astype(float), measured=True)
 
 
 def test_pairs_of_a_grid_are_neighbours_and_join_it_all():

@@ -18,7 +18,7 @@ from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its
 from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import Features
 from eigenfield.calibrate.motion.matching_kernels import find_best_two, mask_off_lines
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.runtime.parallel import parallel_stream, pieces
@@ -96,7 +96,7 @@ class Match:
 def choose_pairs(
     features: Sequence[Features],
     matching: Matching,
-    layout: Layout | None,
+    layout: GridLayout | None,
     progress: Progress | None = None,
 ) -> list[Pair]:
     """Pairs (i, j), i < j, to compare, in order.
@@ -131,7 +131,7 @@ def choose_pairs(
     return _grid_neighbours(layout) if matching == "grid" else _nearest_pairs(layout.positions)
 
 
-def check_matching(matching: str, layout: Layout | None) -> None:
+def check_matching(matching: str, layout: GridLayout | None) -> None:
     """Check the way of matching before any work.
 
     Args:
@@ -153,7 +153,7 @@ def check_matching(matching: str, layout: Layout | None) -> None:
         )
 
 
-def _grid_neighbours(layout: Layout) -> list[Pair]:
+def _grid_neighbours(layout: GridLayout) -> list[Pair]:
     node: dict[tuple[int, int], list[int]] = {}
     for index, key in enumerate(zip(layout.rows.tolist(), layout.columns.tolist(), strict=True)):
         node.setdefault(key, []).append(index)

@@ -19,7 +19,7 @@ from eigenfield.calibrate.planar.array import (
 )
 from eigenfield.calibrate.planar.parallax import Parallax, measure_parallax
 from eigenfield.calibrate.planar.tracks import Tracks, find_tracks
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.viewplane import fit_view_plane
@@ -62,7 +62,7 @@ class PlanarStart:
 
 
 def start_planar(
-    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: Layout, names: Sequence[str]
+    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: GridLayout, names: Sequence[str]
 ) -> PlanarStart:
     """Estimate spacing, direction and disparities of a planar array from points tracked around its centre.
 
@@ -92,7 +92,7 @@ def start_planar(
 
 
 def _estimate_start(
-    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: Layout, names: Sequence[str]
+    pictures: Sequence[NDArray[np.uint8]] | NDArray[np.uint8], layout: GridLayout, names: Sequence[str]
 ) -> PlanarStart:
     nominal = nominal_positions(layout)
     centre = int(np.argmin(np.linalg.norm(nominal - (nominal.min(axis=0) + nominal.max(axis=0)) / 2, axis=1)))
@@ -141,7 +141,7 @@ def _refuse_still(tracks: Tracks, name: str) -> None:
         )
 
 
-def nominal_positions(layout: Layout) -> NDArray[np.float64]:
+def nominal_positions(layout: GridLayout) -> NDArray[np.float64]:
     """(n, 2) positions in steps, x right, y DOWN; one step is the median distance of neighbouring columns.
 
     Args:
@@ -159,7 +159,7 @@ def _median_spacing(values: NDArray[np.float64]) -> float:
     return float(np.median(gaps)) if gaps.size else 1.0
 
 
-def _median_step(places: NDArray[np.float64], layout: Layout) -> float:
+def _median_step(places: NDArray[np.float64], layout: GridLayout) -> float:
     for index, axis in ((layout.columns, 0), (layout.rows, 1)):
         nodes = np.unique(index)
         if len(nodes) > 1:
@@ -168,7 +168,7 @@ def _median_step(places: NDArray[np.float64], layout: Layout) -> float:
     return 1.0
 
 
-def _views_around(layout: Layout, centre: int) -> list[int]:
+def _views_around(layout: GridLayout, centre: int) -> list[int]:
     """Views in the eight directions around the central node, at START_TRACK_DISTANCES_STEPS nodes."""
     rows = np.searchsorted(np.unique(layout.rows), layout.rows)
     columns = np.searchsorted(np.unique(layout.columns), layout.columns)
@@ -195,7 +195,7 @@ def _disparity_range(parallax: Parallax) -> tuple[float, float]:
     return float(low - START_RANGE_MARGIN_FRACTION * spread), float(high + START_RANGE_MARGIN_FRACTION * spread)
 
 
-def _array_model(layout: Layout, count: int, width: int, height: int, low: float, high: float) -> ArrayModel:
+def _array_model(layout: GridLayout, count: int, width: int, height: int, low: float, high: float) -> ArrayModel:
     """Intrinsics and the meaning of disparity.
 
     If neither focal length nor distance are known, the frame is chosen so that all depths are positive and moderate.
