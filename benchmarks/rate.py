@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 import eigenfield as ef
 import measure
 from eigenfield.encoding import EncodeOptions
-from eigenfield.evaluation.session import evenly
+from eigenfield.evaluation.session import sample_evenly
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
 from evidence import captures, codecs, colour, ours, pictures, prepared, rates
@@ -106,7 +106,7 @@ def of_capture(
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
     if others:
         contact_sheet(ready, mine["points"], others[0], photographs, covered)
-    some = evenly(views, 16)
+    some = sample_evenly(views, 16)
     there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
     names = [ready.light_field.names[i] for i in some]
     ceiling = rates.point(there_and_back, [photographs[i] for i in some], [covered[i] for i in some], names)

@@ -18,8 +18,8 @@ from PIL import Image
 from eigenfield.capture import LightField
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
-from eigenfield.evaluation import Circle, match_photographs
-from eigenfield.evaluation.image import Figures, measure_picture, summary
+from eigenfield.evaluation import ExcludedCircle, match_photographs
+from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
@@ -67,7 +67,7 @@ def between(
     sample: int | None = None,
     *,
     file: Path | None = None,
-    circles: Mapping[str, Circle] | None = None,
+    circles: Mapping[str, ExcludedCircle] | None = None,
 ) -> dict[str, Any]:
     """Figures of every way to draw the held-out views: rows under "methods", in the order of TITLES.
 
@@ -91,7 +91,10 @@ def between(
 
 
 def weights_study(
-    scene: Scene, light_field: LightField, sample: int | None = None, circles: Mapping[str, Circle] | None = None
+    scene: Scene,
+    light_field: LightField,
+    sample: int | None = None,
+    circles: Mapping[str, ExcludedCircle] | None = None,
 ) -> dict[str, Any]:
     """The view weights of our scene on held-out views: a row for each of `rendering.MODES`, as `between` has them."""
     stage = Stage(scene, light_field, match_photographs(scene, light_field), Renderer(scene))
@@ -176,7 +179,7 @@ def _chosen(stage: Stage, sample: int | None) -> list[int]:
 
 
 def _measured(
-    stage: Stage, chosen: Sequence[int], ways: Mapping[str, Way], circles: Mapping[str, Circle] | None
+    stage: Stage, chosen: Sequence[int], ways: Mapping[str, Way], circles: Mapping[str, ExcludedCircle] | None
 ) -> tuple[list[dict[str, Any]], list[str]]:
     """A row for each way that this array allows, and a word on each that it does not."""
     notes = []
@@ -188,7 +191,7 @@ def _measured(
             notes.append(f"No {key} view weights: {error.message}.")
         else:
             usable[key] = draw
-    figures: dict[str, list[Figures]] = {key: [] for key in usable}
+    figures: dict[str, list[ImageScores]] = {key: [] for key in usable}
     seconds: dict[str, list[float]] = {key: [] for key in usable}
     for index in chosen:
         photograph = stage.capture.photograph(stage.views[index])
@@ -206,7 +209,7 @@ def _measured(
     names = [stage.scene.rig.names[index] for index in chosen]
     rows = []
     for key in usable:
-        row: dict[str, Any] = {"key": key, "title": TITLES[key], **summary(figures[key], names)}
+        row: dict[str, Any] = {"key": key, "title": TITLES[key], **summarise_scores(figures[key], names)}
         rows.append({**row, "seconds": round(float(np.median(seconds[key])), 4)})
     return rows, notes
 

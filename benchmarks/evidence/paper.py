@@ -11,8 +11,8 @@ import eigenfield as ef
 import render
 from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, texture_codes
 from eigenfield.core.scene import Scene
-from eigenfield.evaluation.session import Session, evenly, start_session
-from eigenfield.evaluation.uv import MapFigures, measure_map, png_size
+from eigenfield.evaluation.session import Session, sample_evenly, start_session
+from eigenfield.evaluation.uv import MapScores, measure_map, png_size
 from eigenfield.gltf import encode_scene
 from eigenfield.runtime.parallel import parallel_map
 from evidence.pictures import figure6
@@ -86,7 +86,8 @@ def _map_bytes(session: Session) -> int:
         return measure_map(plane, row, atlas, values, seen, (0,), png=True).png or 0
 
     return round(
-        float(np.mean(parallel_map(of_camera, evenly(range(len(scene.rig.encoded)), MAPS)))) * len(scene.rig.encoded)
+        float(np.mean(parallel_map(of_camera, sample_evenly(range(len(scene.rig.encoded)), MAPS))))
+        * len(scene.rig.encoded)
     )
 
 
@@ -95,7 +96,7 @@ def _measured(session: Session, counts: list[int]) -> list[dict[str, Any]]:
     scene, atlas, plane = session.scene, session.atlas, session.scene.appearance.planes[0]
     assert atlas is not None
 
-    def of_camera(index: int) -> MapFigures:
+    def of_camera(index: int) -> MapScores:
         values, seen = session.texture(index, session.photograph(index))
         return measure_map(plane, int(np.searchsorted(scene.rig.encoded, index)), atlas, values, seen, counts)
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.evaluation.session import evenly
+from eigenfield.evaluation.session import sample_evenly
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
 from evidence import codecs, colour, ours, pictures, rates, stills
@@ -142,7 +142,7 @@ def _ceiling(
     photographs: Sequence[NDArray[np.uint8]], names: Sequence[str], covered: Sequence[NDArray[np.bool_]]
 ) -> dict[str, Any]:
     """What the way to 10 bit 4:2:0 and back leaves without any codec, from up to 16 views."""
-    some = evenly(range(len(photographs)), 16)
+    some = sample_evenly(range(len(photographs)), 16)
     there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
     point = rates.point(
         there_and_back, [photographs[i] for i in some], [covered[i] for i in some], [names[i] for i in some]

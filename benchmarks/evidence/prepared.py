@@ -18,7 +18,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import Grid, find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
-from eigenfield.evaluation import Circle, read_circles
+from eigenfield.evaluation import ExcludedCircle, read_circles
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
 from eigenfield.rendering import Renderer, camera_weights
@@ -42,7 +42,7 @@ class Prepared:
     def mesh(self) -> Mesh:
         return read_mesh(self.mesh_file)
 
-    def circles(self) -> Mapping[str, Circle] | None:
+    def circles(self) -> Mapping[str, ExcludedCircle] | None:
         """Circles to leave out, by camera, where the capture has some."""
         file = self.capture.circles
         return None if file is None else read_circles(file, self.light_field.names)

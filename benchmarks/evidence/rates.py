@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from eigenfield.evaluation.image import Figures, measure_picture, summary
+from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.runtime.parallel import parallel_stream
 
 Point = Mapping[str, Any]
@@ -34,12 +34,12 @@ def point(
     pictures are held at a time.
     """
 
-    def of_view(task: tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.bool_]]) -> Figures:
+    def of_view(task: tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.bool_]]) -> ImageScores:
         picture, photograph, counted = task
         return measure_picture(picture, counted, photograph)
 
     views = list(parallel_stream(of_view, zip(decoded, photographs, covered, strict=True)))
-    return dict(summary(views, names))
+    return dict(summarise_scores(views, names))
 
 
 def bd_rate(anchor: Sequence[Point], test: Sequence[Point], key: str = "psnr") -> float | None:

@@ -77,13 +77,13 @@ def test_the_study_of_view_weights_gives_the_same_figures(capture):
 
 
 def test_pixels_outside_circles_are_counted_apart(capture):
-    from eigenfield.evaluation import Circle
+    from eigenfield.evaluation import ExcludedCircle
 
     _, light_field, scene, _ = capture
-    none = {name: Circle(0, 0, 0) for name in scene.rig.names}
+    none = {name: ExcludedCircle(0, 0, 0) for name in scene.rig.names}
     row = weights_study(scene, light_field, 2, none)["methods"][0]
     assert row["psnr_outside"] == row["psnr"]
-    left = {name: Circle(0, 28, 32) for name in scene.rig.names}
+    left = {name: ExcludedCircle(0, 28, 32) for name in scene.rig.names}
     row = weights_study(scene, light_field, 2, left)["methods"][0]
     assert row["psnr_outside"] != row["psnr"]
 

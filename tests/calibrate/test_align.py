@@ -56,9 +56,9 @@ def test_what_cannot_be_aligned_is_refused():
 def test_the_error_of_a_moved_copy_is_none_and_of_a_turned_camera_its_angle(scene):
     _, truth = scene
     scale, R, t = natural_gauge(truth.cameras)
-    from eigenfield.calibrate.align import moved_camera
+    from eigenfield.calibrate.align import transform_camera
 
-    views = [replace(v, camera=moved_camera(v.camera, scale, R, t)) for v in truth.views]
+    views = [replace(v, camera=transform_camera(v.camera, scale, R, t)) for v in truth.views]
     error = calibration_error(replace(truth, views=tuple(views)), truth)
     assert error.rotation.max() < 1e-6 and error.position.max() < 1e-9
     turn, _ = cv2.Rodrigues(np.radians([0.0, 2.0, 0.0]))

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.calibrate.charts import board as boards
-from eigenfield.calibrate.charts.corners import Look, find_corners, looks
-from eigenfield.calibrate.charts.intrinsics import start_intrinsics
-from eigenfield.calibrate.charts.lens_models import LADDER, project, project_with_derivatives
+from eigenfield.calibrate.charts.corners import BoardVariant, board_variants, find_corners
+from eigenfield.calibrate.charts.intrinsics import estimate_intrinsics
+from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER, project_points, project_points_with_derivatives
 from eigenfield.core.errors import CaptureError, OptionError
 from support import charts
 from support.charts import CHARUCO, CHECKER, TOML
@@ -46,8 +46,8 @@ def test_turns_of_a_checkerboard_are_rotations_and_colours_decide_between_them(c
         assert np.array_equal(before, after)
     expected = {True: 4 if columns % 2 == 0 else 2, False: 2 if (columns + rows) % 2 == 0 else 1}
     assert len(symmetries) == expected[columns == rows]
-    if board.recolouring() is not None:
-        before, after = turned(board.recolouring())
+    if board.colour_swapping_rotation() is not None:
+        before, after = turned(board.colour_swapping_rotation())
         assert np.array_equal(before, 1 - after)
 
 
@@ -56,8 +56,8 @@ def test_sizes_and_lengths_are_read_as_people_write_them():
     assert boards.parse_length("25mm") == (25.0, "mm")
     assert boards.parse_length("2.5 cm") == (2.5, "cm") and boards.parse_length("1in") == (1.0, "in")
     assert boards.parse_length("54") == (54.0, "")
-    assert boards.converted(2.5, "cm", "mm") == pytest.approx(25)
-    assert boards.converted(2.5, "", "mm") == 2.5
+    assert boards.convert_length(2.5, "cm", "mm") == pytest.approx(25)
+    assert boards.convert_length(2.5, "", "mm") == 2.5
     for text in ("9", "9x", "9x6x3", "-9x6"):
         with pytest.raises(OptionError, match="COLUMNSxROWS"):
             boards.parse_size(text)
@@ -119,15 +119,15 @@ def test_projection_is_opencvs_and_its_derivatives_are_right(seed):
     row = np.array([500.0, 510, 320, 240, *random.uniform(-0.1, 0.1, 5)])
     K = np.array([[row[0], 0, row[2]], [0, row[1], row[3]], [0, 0, 1]])
     theirs = cv2.projectPoints(points, np.zeros(3), np.zeros(3), K, row[4:])[0][:, 0]
-    at, by_point, by_intrinsics = project_with_derivatives(points, row)
-    assert np.allclose(at, theirs, atol=1e-9) and np.allclose(project(points, row), at)
+    at, by_point, by_intrinsics = project_points_with_derivatives(points, row)
+    assert np.allclose(at, theirs, atol=1e-9) and np.allclose(project_points(points, row), at)
     for axis in range(3):
         step = np.eye(3)[axis] * 1e-6
-        slope = (project(points + step, row) - project(points - step, row)) / 2e-6
+        slope = (project_points(points + step, row) - project_points(points - step, row)) / 2e-6
         assert np.allclose(by_point[:, :, axis], slope, atol=1e-3)
     for k in range(9):
         step = np.eye(9)[k] * 1e-6
-        slope = (project(points, row + step) - project(points, row - step)) / 2e-6
+        slope = (project_points(points, row + step) - project_points(points, row - step)) / 2e-6
         assert np.allclose(by_intrinsics[:, :, k], slope, atol=1e-3)
 
 
@@ -136,22 +136,22 @@ def test_the_lens_model_is_as_loose_as_the_pictures_ask_for():
     true[:5] = 600, 600, 331, 228, -0.25
     true[5] = 0.08
     poses = charts.board_poses(CHECKER, 14, tilt=45, spread=150)
-    plain = charts.sightings(CHECKER, [charts.look_at([0, 0, -420.0])], poses, noise=0.1)
-    bent = charts.sightings(CHECKER, [charts.look_at([0, 0, -420.0])], poses, noise=0.1, intrinsics=true)
-    start = start_intrinsics(CHECKER.points, [s.corners for s in plain], charts.SIZE)
-    assert start.freedom in LADDER[:3]
+    plain = charts.observations(CHECKER, [charts.look_at([0, 0, -420.0])], poses, noise=0.1)
+    bent = charts.observations(CHECKER, [charts.look_at([0, 0, -420.0])], poses, noise=0.1, intrinsics=true)
+    start = estimate_intrinsics(CHECKER.points, [s.corners for s in plain], charts.SIZE)
+    assert start.model in LENS_MODEL_LADDER[:3]
     assert np.allclose(start.intrinsics[:4], charts.INTRINSICS[:4], atol=3)
-    start = start_intrinsics(CHECKER.points, [s.corners for s in bent], charts.SIZE)
-    assert start.freedom.distortion >= 1 and start.freedom.centre
+    start = estimate_intrinsics(CHECKER.points, [s.corners for s in bent], charts.SIZE)
+    assert start.model.distortion >= 1 and start.model.centre
     assert np.allclose(start.intrinsics[:4], true[:4], atol=3)
 
 
-def test_a_sighting_that_does_not_fit_its_camera_is_left_out():
-    seen = [s.corners for s in charts.sightings(CHECKER, charts.rig(1), charts.board_poses(CHECKER, 10), noise=0.1)]
+def test_an_observation_that_does_not_fit_its_camera_is_left_out():
+    seen = [s.corners for s in charts.observations(CHECKER, charts.rig(1), charts.board_poses(CHECKER, 10), noise=0.1)]
     seen[4] = replace(seen[4], pixels=seen[4].pixels + np.random.default_rng(1).normal(0, 4, seen[4].pixels.shape))
-    start = start_intrinsics(CHECKER.points, seen, charts.SIZE)
-    assert 4 not in start.kept and len(start.kept) == 9
-    assert start_intrinsics(CHECKER.points, seen[:2], charts.SIZE) is None
+    start = estimate_intrinsics(CHECKER.points, seen, charts.SIZE)
+    assert 4 not in start.inliers and len(start.inliers) == 9
+    assert estimate_intrinsics(CHECKER.points, seen[:2], charts.SIZE) is None
 
 
 # --- corners in pictures
@@ -165,8 +165,8 @@ NEAR = charts.look_at([40.0, -30, -500])
 def test_corners_of_a_checkerboard_keep_their_names_however_the_camera_is_held(inverted, roll):
     camera = charts.look_at([40.0, -30, -500], roll=roll)
     grey, true = charts.photograph(CHECKER, camera, POSE, inverted=inverted)
-    first = find_corners(grey, CHECKER, Look(False))
-    found = find_corners(grey, CHECKER, Look(inverted))
+    first = find_corners(grey, CHECKER, BoardVariant(False))
+    found = find_corners(grey, CHECKER, BoardVariant(inverted))
     assert np.abs(found.pixels - true[found.ids if not inverted else found.ids[::-1]]).max() < 0.15
     if first is not None:  # the sector-based detector finds both kinds
         assert np.abs(first.pixels - found.pixels).max() < 0.2
@@ -175,9 +175,9 @@ def test_corners_of_a_checkerboard_keep_their_names_however_the_camera_is_held(i
 @pytest.mark.parametrize("how", [{}, {"inverted": True}, {"mirrored": True}, {"legacy": True}])
 def test_corners_of_a_charuco_board(how):
     grey, true = charts.photograph(CHARUCO, NEAR, charts.board_poses(CHARUCO, 3, seed=5)[2], **how)
-    found = {look: find_corners(grey, CHARUCO, look) for look in looks(CHARUCO)}
+    found = {variant: find_corners(grey, CHARUCO, variant) for variant in board_variants(CHARUCO)}
     best = max(found, key=lambda look: 0 if found[look] is None else len(found[look].ids))
-    assert best == Look(how.get("inverted", False), how.get("legacy", False))
+    assert best == BoardVariant(how.get("inverted", False), how.get("legacy", False))
     assert found[best].mirrored == how.get("mirrored", False)
     assert len(found[best].ids) == 20
     assert np.abs(found[best].pixels - true[found[best].ids]).max() < 0.3
@@ -185,6 +185,6 @@ def test_corners_of_a_charuco_board(how):
 
 def test_a_picture_without_a_board_has_no_corners():
     grey = np.random.default_rng(0).integers(0, 255, (240, 320), dtype=np.uint8)
-    assert find_corners(grey, CHECKER, Look(False)) is None
-    assert find_corners(grey, CHARUCO, Look(True)) is None
-    assert find_corners(np.zeros((8, 8), np.uint8), CHECKER, Look(False)) is None
+    assert find_corners(grey, CHECKER, BoardVariant(False)) is None
+    assert find_corners(grey, CHARUCO, BoardVariant(True)) is None
+    assert find_corners(np.zeros((8, 8), np.uint8), CHECKER, BoardVariant(False)) is None

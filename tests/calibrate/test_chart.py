@@ -18,9 +18,9 @@ from hypothesis import strategies as st
 
 from eigenfield.calibrate.charts import board as boards
 from eigenfield.calibrate.charts import corners
-from eigenfield.calibrate.charts.bundle import Rig, adjust
+from eigenfield.calibrate.charts.bundle import RigEstimate, adjust_bundle
 from eigenfield.calibrate.charts.calibrate import calibrate_charts
-from eigenfield.calibrate.charts.lens_models import LADDER
+from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER
 from eigenfield.calibrate.charts.pictures import find_charts, split_name
 from eigenfield.calibrate.charts.rig import solve_rig
 from eigenfield.capture import open_capture
@@ -34,7 +34,7 @@ from support.charts import CHARUCO, CHECKER, TOML
 # --- the rig
 
 
-def solved(board, cameras, seen, moments=12, basis=LADDER[2].basis):
+def solved(board, cameras, seen, moments=12, basis=LENS_MODEL_LADDER[2].basis):
     count = len(cameras)
     start = np.repeat(charts.INTRINSICS[None], count, axis=0)
     return solve_rig(
@@ -55,17 +55,17 @@ def assert_poses(rig, cameras, joined, degrees=0.1, away=1.0):
 def test_a_rig_is_recovered_even_when_boards_look_the_same_turned(size):
     board = boards.checkerboard(*size, 25.0)
     cameras = charts.rig(3)
-    seen = charts.sightings(board, cameras, charts.board_poses(board, 9))
+    seen = charts.observations(board, cameras, charts.board_poses(board, 9))
     symmetries = board.symmetries()
     random = np.random.default_rng(3)
     seen = [
         replace(s, corners=replace(s.corners, ids=symmetries[random.integers(len(symmetries))][s.corners.ids]))
         for s in seen
     ]
-    solution = solved(board, cameras, seen, basis=LADDER[0].basis)
-    assert solution.joined == (0, 1, 2) and not solution.dropped
+    solution = solved(board, cameras, seen, basis=LENS_MODEL_LADDER[0].basis)
+    assert solution.joined == (0, 1, 2) and not solution.outliers
     assert_poses(solution.rig, cameras, (0, 1, 2), degrees=1, away=15)
-    errors = np.concatenate([solution.rig.residuals(board.points, s).ravel() for s in solution.kept])
+    errors = np.concatenate([solution.rig.residuals(board.points, s).ravel() for s in solution.inliers])
     assert errors.std() == pytest.approx(0.2, rel=0.1)
     assert np.all(solution.focal_deviations < 5)
 
@@ -73,19 +73,19 @@ def test_a_rig_is_recovered_even_when_boards_look_the_same_turned(size):
 def test_moments_in_which_the_board_moved_are_dropped():
     cameras = charts.rig(3)
     poses = charts.board_poses(CHECKER, 12)
-    seen = charts.sightings(CHECKER, cameras, poses)
+    seen = charts.observations(CHECKER, cameras, poses)
     moved = [(R, t + np.array([30.0, 0, 0])) for R, t in poses]
-    late = {(s.camera, s.moment): s for s in charts.sightings(CHECKER, cameras, moved)}
+    late = {(s.camera, s.moment): s for s in charts.observations(CHECKER, cameras, moved)}
     seen = [late[1, s.moment] if s.camera == 1 and s.moment in (2, 5, 7) else s for s in seen]
     solution = solved(CHECKER, cameras, seen)
-    assert {(s.camera, s.moment) for s in solution.dropped} >= {(1, 2), (1, 5), (1, 7)}
-    assert len(solution.dropped) <= 6
+    assert {(s.camera, s.moment) for s in solution.outliers} >= {(1, 2), (1, 5), (1, 7)}
+    assert len(solution.outliers) <= 6
     assert_poses(solution.rig, cameras, (0, 1, 2), degrees=0.3, away=4)
 
 
 def test_cameras_far_apart_are_joined_through_those_between():
     cameras = charts.rig(4)
-    seen = charts.sightings(CHECKER, cameras, charts.board_poses(CHECKER, 12))
+    seen = charts.observations(CHECKER, cameras, charts.board_poses(CHECKER, 12))
     common = {0: range(0, 5), 1: range(0, 9), 2: range(5, 12), 3: range(9, 12)}
     seen = [s for s in seen if s.moment in common[s.camera]]
     solution = solved(CHECKER, cameras, seen)
@@ -96,15 +96,15 @@ def test_cameras_far_apart_are_joined_through_those_between():
 def test_bundle_adjustment_ends_where_it_began_without_noise():
     cameras = charts.rig(2)
     poses = charts.board_poses(CHECKER, 4)
-    seen = charts.sightings(CHECKER, cameras, poses, noise=0)
-    rig = Rig(
+    seen = charts.observations(CHECKER, cameras, poses, noise=0)
+    rig = RigEstimate(
         np.repeat(charts.INTRINSICS[None], 2, axis=0), *(np.array(x) for x in zip(*cameras, strict=True)),
         *(np.array(x) for x in zip(*poses, strict=True)),
     )  # fmt: skip
-    after, _ = adjust(CHECKER.points, seen, rig, [LADDER[-1].basis] * 2, 0)
+    after, _ = adjust_bundle(CHECKER.points, seen, rig, [LENS_MODEL_LADDER[-1].basis] * 2, 0)
     assert np.allclose(after.t, rig.t, atol=1e-6) and np.allclose(after.intrinsics, rig.intrinsics, atol=1e-5)
     shaken = replace(rig, t=rig.t + np.array([[0, 0, 0], [3, -2, 4.0]]), board_shift=rig.board_shift + 2)
-    after, _ = adjust(CHECKER.points, seen, shaken, [LADDER[1].basis] * 2, 0)
+    after, _ = adjust_bundle(CHECKER.points, seen, shaken, [LENS_MODEL_LADDER[1].basis] * 2, 0)
     assert np.allclose(after.t, rig.t, atol=1e-3) and np.allclose(after.R, rig.R, atol=1e-5)
 
 

@@ -13,7 +13,7 @@ from eigenfield.calibrate import (
     KnownLens,
     read_known_lenses,
 )
-from eigenfield.calibrate.lenses import distorted, undistorted
+from eigenfield.calibrate.lenses import distort_to_pixels, undistort_pixels
 from eigenfield.capture import Lens, LightField, PhotoSet
 from eigenfield.core.errors import CaptureError
 from support.motion import HEIGHT, WIDTH, K, photographed
@@ -39,15 +39,15 @@ def scene(tmp_path_factory: pytest.TempPathFactory) -> tuple[PhotoSet, LightFiel
 def test_undistorting_is_the_inverse(lens):
     known = KnownLens(K, lens)
     points = np.random.default_rng(1).uniform([0, 0], [WIDTH, HEIGHT], (200, 2))
-    flat = undistorted(points, known)
+    flat = undistort_pixels(points, known)
     assert np.isfinite(flat).all()
     rays = (flat - K[:2, 2]) / [K[0, 0], K[1, 1]]
-    np.testing.assert_allclose(distorted(rays, known), points, atol=1e-6)
+    np.testing.assert_allclose(distort_to_pixels(rays, known), points, atol=1e-6)
 
 
 def test_pixels_beyond_the_lens_are_nowhere():
     known = KnownLens(K, Lens("brown", (-1.0, 0.0, 0.0, 0.0, 0.0)))  # the picture ends at a radius of 0.385
-    flat = undistorted(np.array([[165.0, 118.0], [165 + 0.3 * 300, 118.0], [165 + 0.5 * 300, 118.0]]), known)
+    flat = undistort_pixels(np.array([[165.0, 118.0], [165 + 0.3 * 300, 118.0], [165 + 0.5 * 300, 118.0]]), known)
     assert np.isfinite(flat[:2]).all() and np.isnan(flat[2]).all()
 
 

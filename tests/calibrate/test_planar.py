@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from eigenfield.calibrate import refine_planar, register_views, start_given, start_planar
-from eigenfield.calibrate.planar.array import PARAMETERS, ArrayModel
+from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
 from eigenfield.calibrate.planar.start import nominal_positions
-from eigenfield.capture import Layout
+from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
 from support.planes import everywhere, paint, photograph
 
@@ -26,7 +26,7 @@ LAYERS = [(2.6, 0.004, 0.0, paint(2, detail=2.0), inner), (-1.4, 0.0, 0.006, pai
 
 def layout(**more):
     row, column = (index.ravel() for index in np.mgrid[:SIZE, :SIZE])
-    return Layout(row, column, np.stack([column, row], axis=1).astype(float), **more)
+    return GridLayout(row, column, np.stack([column, row], axis=1).astype(float), **more)
 
 
 def array(right=1.0, down=0.85, jitter=0.0, seed=0):
@@ -76,7 +76,7 @@ def test_spacing_and_range_are_estimated(even, names):
 
 
 def assert_near_before_far(planar, scale):
-    margin = planar.canvas.margin
+    margin = planar.reference.margin
     d = planar.d[margin:-margin, margin:-margin] / scale
     assert np.median(d[SIDE // 2 - 20 : SIDE // 2, SIDE // 2 : SIDE // 2 + 30]) == pytest.approx(2.93, abs=0.15)
     assert np.median(d[-30:-5, 5:30]) == pytest.approx(-0.65, abs=0.15)
@@ -136,14 +136,14 @@ def test_given_cameras_start_where_they_are(jittering):
 
 def test_derivatives_are_those_of_the_projection():
     model = ArrayModel.planar(1, 200, 100, 180.0, 1.0, 0.1)
-    canvas = model.canvas(8)
+    reference = model.reference_view(8)
     rng = np.random.default_rng(1)
-    parameters = rng.uniform(-1, 1, (1, PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
-    derivatives = model.derivatives(canvas, np.array([0]), parameters)[0]
-    for index in range(PARAMETERS):
+    parameters = rng.uniform(-1, 1, (1, ARRAY_PARAMETERS)) * [2, 2, 3, 3, 0.01, 0.01, 0.01, 0.01, 0.02, 0.01]
+    derivatives = model.derivatives(reference, np.array([0]), parameters)[0]
+    for index in range(ARRAY_PARAMETERS):
         moved = parameters.copy()
         moved[0, index] += 1e-6
-        change = model.matrices(canvas, np.array([0]), moved) - model.matrices(canvas, np.array([0]), parameters)
+        change = model.matrices(reference, np.array([0]), moved) - model.matrices(reference, np.array([0]), parameters)
         np.testing.assert_allclose(change[0] / 1e-6, derivatives[index], rtol=1e-3, atol=1e-3)
 
 
@@ -155,7 +155,7 @@ def test_the_anchor_moves_with_the_shift_alone():
 
 
 def test_measured_positions_keep_their_jitter():
-    measured = Layout(
+    measured = GridLayout(
         np.array([0, 0, 1, 1]), np.array([0, 1, 0, 1]),
         np.array([[0, 0], [10.0, 0.5], [0.2, 8.0], [10.1, 8.2]]), measured=True,
     )  # fmt: skip

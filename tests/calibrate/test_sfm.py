@@ -17,15 +17,15 @@ from click.testing import CliRunner
 
 from eigenfield.calibrate import (
     KnownLens,
-    Motion,
+    SfmResult,
     calibration_error,
     structure_from_motion,
 )
 from eigenfield.calibrate.align import angle_between
-from eigenfield.calibrate.lenses import undistorted
-from eigenfield.calibrate.motion.features import FeatureOptions, features_of
+from eigenfield.calibrate.lenses import undistort_pixels
+from eigenfield.calibrate.motion.features import FeatureOptions, extract_features_of
 from eigenfield.calibrate.motion.matching import choose_pairs
-from eigenfield.capture import Layout, Lens, LightField, PhotoSet, Shot, open_capture
+from eigenfield.capture import GridLayout, Lens, LightField, PhotoSet, Shot, open_capture
 from eigenfield.cli import group
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError
@@ -58,11 +58,11 @@ def kept(scene: tuple[PhotoSet, LightField], tmp_path_factory: pytest.TempPathFa
 
 
 @pytest.fixture(scope="module")
-def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> Motion:
+def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> SfmResult:
     """Their cameras, by known intrinsics: the killed run goes on from its matches."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("eigenfield.calibrate.motion.keep.extract_features", None)  # calling it would fail
-        patch.setattr("eigenfield.calibrate.motion.keep.match_pairs", None)
+        patch.setattr("eigenfield.calibrate.motion.cache.extract_features", None)  # calling it would fail
+        patch.setattr("eigenfield.calibrate.motion.cache.match_pairs", None)
         return structure_from_motion(scene[0], intrinsics=KnownLens(K), work=kept)
 
 
@@ -70,7 +70,7 @@ def solved(scene: tuple[PhotoSet, LightField], kept: Path) -> Motion:
 def strong_features() -> Iterator[None]:
     """Small photographs have few features: looking for weaker ones, as the temple needs, takes four times as long."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("eigenfield.calibrate.motion.features.LITTLE_TEXTURE", 0)
+        patch.setattr("eigenfield.calibrate.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)
         yield
 
 
@@ -144,7 +144,7 @@ def test_a_known_lens_is_kept_and_its_distortion_understood(scene, tmp_path):
     photos, truth = scene
     lens = KnownLens(K, Lens("brown", (-0.25, 0.05, 0.001, -0.002, 0.0)))
     v, u = np.mgrid[0:HEIGHT, 0:WIDTH] + 0.5
-    straight = undistorted(np.column_stack([u.ravel(), v.ravel()]), lens).reshape(HEIGHT, WIDTH, 2) - 0.5
+    straight = undistort_pixels(np.column_stack([u.ravel(), v.ravel()]), lens).reshape(HEIGHT, WIDTH, 2) - 0.5
     shots = []
     for index, shot in enumerate(photos.shots):
         pixels = truth.photograph(index).pixels
@@ -204,7 +204,7 @@ def test_too_few_photographs_and_rectified_grids_are_refused(scene):
         structure_from_motion(photos.subset([0, 1]))
     assert error.value.code == "too-few"
     line = np.arange(len(photos))
-    layout = Layout(line * 0, line, np.column_stack([line, line * 0]).astype(float), rectified=True)
+    layout = GridLayout(line * 0, line, np.column_stack([line, line * 0]).astype(float), rectified=True)
     with pytest.raises(CaptureError) as error:
         structure_from_motion(replace(photos, layout=layout))
     assert error.value.code == "planar-rectified" and "encode" in str(error.value)
@@ -238,16 +238,16 @@ def test_features_stay_within_the_mask(scene, tmp_path):
     mask = np.zeros((HEIGHT, WIDTH, 3))
     mask[:, 100:200] = 1
     hidden = picture(tmp_path, "mask.png", mask)
-    found = features_of(replace(photos.shots[0], mask=hidden.path), FeatureOptions())
-    whole = features_of(photos.shots[0], FeatureOptions())
+    found = extract_features_of(replace(photos.shots[0], mask=hidden.path), FeatureOptions())
+    whole = extract_features_of(photos.shots[0], FeatureOptions())
     assert 20 < len(found) < len(whole)
     assert (found.points[:, 0] >= 100).all() and (found.points[:, 0] < 200).all()
 
 
 def test_features_of_a_reduced_photograph_lie_in_its_own_pixels(scene):
     photos, _ = scene
-    whole = features_of(photos.shots[0], FeatureOptions())
-    half = features_of(photos.shots[0], FeatureOptions(side=WIDTH // 2))
+    whole = extract_features_of(photos.shots[0], FeatureOptions())
+    half = extract_features_of(photos.shots[0], FeatureOptions(max_side=WIDTH // 2))
     nearest = np.linalg.norm(half.points[:, None] - whole.points[None], axis=2).min(axis=1)
     assert len(half) > 30 and np.median(nearest) < 1.0
 
@@ -267,9 +267,9 @@ def test_an_exception_of_the_progress_ends_it(scene, kept):
 # which photographs are compared
 
 
-def layout_of(rows: int, columns: int) -> Layout:
+def layout_of(rows: int, columns: int) -> GridLayout:
     r, c = np.divmod(np.arange(rows * columns), columns)
-    return Layout(r, c, np.column_stack([c, -r]).astype(float), measured=True)
+    return GridLayout(r, c, np.column_stack([c, -r]).astype(float), measured=True)
 
 
 def test_pairs_of_a_grid_are_neighbours_and_join_it_all():
@@ -285,7 +285,7 @@ def test_pairs_of_a_grid_are_neighbours_and_join_it_all():
 
 def test_similar_photographs_are_found(scene):
     photos, _ = scene
-    features = [features_of(shot, FeatureOptions()) for shot in photos.shots]
+    features = [extract_features_of(shot, FeatureOptions()) for shot in photos.shots]
     pairs = choose_pairs(features, "similar", None)
     assert {(i, i + 1) for i in range(4)} <= set(pairs) <= set(choose_pairs(features, "exhaustive", None))
 

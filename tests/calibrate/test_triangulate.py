@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eigenfield.calibrate import triangulated_points
+from eigenfield.calibrate import triangulate_points
 from eigenfield.calibrate.motion.features import Features
-from eigenfield.calibrate.motion.triangulate import _pairs, _triangulated, fundamental
+from eigenfield.calibrate.motion.triangulate import _pairs, _triangulate_tracks, fundamental_matrix
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.core.errors import CaptureError
 from eigenfield.imaging.raster import rasterise_view
@@ -57,7 +57,7 @@ def painted(tmp_path_factory):
 def test_the_fundamental_matrix_joins_pixels_of_one_point():
     points = np.random.default_rng(0).normal(size=(40, 3))
     first, second = five_cameras()[0], five_cameras()[3]
-    F = fundamental(first, second)
+    F = fundamental_matrix(first, second)
     x1, x2 = (np.column_stack([camera.project(points)[0], np.ones(40)]) for camera in (first, second))
     line = x1 @ F.T
     assert np.abs((line * x2).sum(axis=1) / np.linalg.norm(line[:, :2], axis=1)).max() < 1e-9
@@ -66,7 +66,7 @@ def test_the_fundamental_matrix_joins_pixels_of_one_point():
 
 
 def test_photographs_give_points_on_the_surfaces(painted):
-    points = triangulated_points(painted)
+    points = triangulate_points(painted)
     off = truth(points)
     assert len(points) > 100
     assert np.median(off) < 0.01 and np.percentile(off, 95) < 0.05
@@ -76,7 +76,7 @@ def test_photographs_give_points_on_the_surfaces(painted):
 def test_bare_photographs_give_none(tmp_path):
     cameras = five_cameras()[:3]
     grey = [np.full((240, 320, 3), 128, np.uint8)] * 3
-    assert triangulated_points(saved(tmp_path, grey, cameras)).shape == (0, 3)
+    assert triangulate_points(saved(tmp_path, grey, cameras)).shape == (0, 3)
 
 
 def test_an_unreadable_photograph_is_named(painted, tmp_path):
@@ -84,7 +84,7 @@ def test_an_unreadable_photograph_is_named(painted, tmp_path):
     broken.write_bytes(b"no picture")
     views = (replace(painted.views[0], path=broken), *painted.views[1:])
     with pytest.raises(CaptureError, match=r"broken\.png"):
-        triangulated_points(replace(painted, views=views))
+        triangulate_points(replace(painted, views=views))
 
 
 def test_wrong_matches_are_no_points():
@@ -94,7 +94,7 @@ def test_wrong_matches_are_no_points():
     features[2].points[:10] += [0, 8]  # ten tracks have one view that does not fit
     same = np.repeat(np.arange(30)[:, None], 2, axis=1)
     matches = [(0, 1, same), (1, 2, same), (3, 4, same)]  # 3 and 4 are two views alone
-    points = _triangulated(features, cameras, matches)
+    points = _triangulate_tracks(features, cameras, matches)
     assert len(points) == 20
     assert np.abs(points - true[10:]).max() < 1e-9
 
@@ -106,7 +106,7 @@ def test_a_track_with_two_features_of_one_view_is_dropped():
     same = np.repeat(np.arange(4)[:, None], 2, axis=1)
     mixed = same.copy()
     mixed[0, 1] = 1  # view 2's second feature now also belongs to the first point
-    assert len(_triangulated(features, cameras, [(0, 1, same), (1, 2, same), (0, 2, mixed)])) == 2
+    assert len(_triangulate_tracks(features, cameras, [(0, 1, same), (1, 2, same), (0, 2, mixed)])) == 2
 
 
 def test_rays_that_hardly_cross_give_no_point():
@@ -114,7 +114,7 @@ def test_rays_that_hardly_cross_give_no_point():
     true = np.random.default_rng(1).uniform(-0.5, 0.5, (5, 3))
     same = np.repeat(np.arange(5)[:, None], 2, axis=1)
     features = [seen(true, camera) for camera in near]
-    assert len(_triangulated(features, near, [(0, 1, same), (1, 2, same)])) == 0
+    assert len(_triangulate_tracks(features, near, [(0, 1, same), (1, 2, same)])) == 0
 
 
 def test_views_at_one_place_and_back_to_back_are_no_pair():

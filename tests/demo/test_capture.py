@@ -13,10 +13,10 @@ from eigenfield.capture import open_capture
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.demo import demo_scene_geometry, draw_demo_capture
-from eigenfield.demo.cameras import HALF_ARRAY, array_camera, array_cameras
+from eigenfield.demo.cameras import DEMO_HALF_ARRAY_UNITS, array_camera, array_cameras
 from eigenfield.demo.capture import draw_view
-from eigenfield.demo.light import environment, radiance
-from eigenfield.demo.surface import baked_surface
+from eigenfield.demo.light import environment_map, radiance
+from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, atlas_statistics, read_mesh
 from eigenfield.runtime.parallel import set_threads
@@ -87,7 +87,9 @@ def test_every_pixel_of_every_view_is_covered():
         assert (rasterise_view(mesh, camera).face >= 0).all()
     for x in (-1.1, 1.1):
         for y in (-1.1, 1.1):
-            assert (rasterise_view(mesh, array_camera(x * HALF_ARRAY, y * HALF_ARRAY, 128)).face >= 0).all()
+            assert (
+                rasterise_view(mesh, array_camera(x * DEMO_HALF_ARRAY_UNITS, y * DEMO_HALF_ARRAY_UNITS, 128)).face >= 0
+            ).all()
 
 
 def test_the_reader_finds_the_cameras_that_drew_it(capture):
@@ -110,7 +112,7 @@ def test_cameras_are_an_uneven_grid_in_a_plane_with_the_parallax_of_a_gantry():
     steps = np.diff(plane.coordinates([camera.centre for camera in cameras[:17]])[:, 0])
     assert 0.02 < steps.std() / steps.mean() < 0.25
     mesh = demo_scene_geometry()
-    left, right = (array_camera(x * HALF_ARRAY, 0.0, 512).project(mesh.vertices)[0][:, 0] for x in (-1, 1))
+    left, right = (array_camera(x * DEMO_HALF_ARRAY_UNITS, 0.0, 512).project(mesh.vertices)[0][:, 0] for x in (-1, 1))
     shift = (right - left)[np.unique(mesh.faces[rasterise_view(mesh, array_camera(0.0, 0.0, 512)).face])]
     assert 25 < shift.max() < 70 and 25 < -shift.min() < 70
 
@@ -129,7 +131,7 @@ def test_two_drawings_have_the_same_bytes_at_one_and_two_threads(tmp_path):
 
 @pytest.fixture(scope="module")
 def look():
-    return baked_surface(512), environment()
+    return bake_surface(512), environment_map()
 
 
 def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
@@ -162,7 +164,7 @@ def test_highlights_move_with_the_camera_and_paint_does_not(look):
     change = []
     for surface in (look[0], dull):
         values = []
-        for x in (-HALF_ARRAY, HALF_ARRAY):
+        for x in (-DEMO_HALF_ARRAY_UNITS, DEMO_HALF_ARRAY_UNITS):
             camera = array_camera(x, 0.0, 256)
             picture = draw_view(mesh, camera, surface, look[1]).astype(np.float32)
             place = camera.project(points)[0]

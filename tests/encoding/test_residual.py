@@ -33,7 +33,7 @@ from eigenfield.encoding.residual.views import captured_samples
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, read_scene, validate, without_residual
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import Shots, camera_colour, camera_weights
+from eigenfield.rendering import RenderJob, camera_colour, camera_weights
 from support import glb_surgery
 from support.captures import write_capture
 from support.glb_surgery import ours, outcome, without
@@ -295,11 +295,11 @@ def test_a_damaged_film_harms_captured_views_alone(base, data, tmp_path):
 def test_shots_that_are_drawn_otherwise_have_none(exact):
     index, difference = 0, difference_of(exact, 0)
     expected = to_codes(corrected(ef.render(exact, camera="view_00.png"), difference).image)
-    np.testing.assert_array_equal(captured_pixels(Shots(exact), index, difference), expected)
-    assert captured_pixels(Shots(exact, background=None), index, difference).shape[2] == 4
+    np.testing.assert_array_equal(captured_pixels(RenderJob(exact), index, difference), expected)
+    assert captured_pixels(RenderJob(exact, background=None), index, difference).shape[2] == 4
     for other in ({"resolution": (32, 32)}, {"filter": "bilinear"}, {"textures": 1}, {"samples": 2}):
         with pytest.raises(OptionError, match="other pictures"):
-            captured_pixels(Shots(exact, **other), index, difference)
+            captured_pixels(RenderJob(exact, **other), index, difference)
 
 
 def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
@@ -318,7 +318,7 @@ def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
     plain, smooth = (ef.render(found, camera="view_00.png", samples=samples) for samples in (1, None))
     assert (plain.image != smooth.image).any()
     expected = to_codes(corrected(plain, difference).image)
-    np.testing.assert_array_equal(captured_pixels(Shots(found), 0, difference), expected)
+    np.testing.assert_array_equal(captured_pixels(RenderJob(found), 0, difference), expected)
     assert [captured_samples(found, index) for index in (0, 3)] == [1, 2]
     assert captured_samples(exact, 3) is None
 
@@ -326,9 +326,9 @@ def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
 def test_harmonised_scenes_have_their_own_exposure(capture):
     scene = ef.encode(capture, capture.root / "proxy.ply", textures=2, atlas=64, harmonise="gain")
     exact = with_residual(read_scene(encode_scene(scene, quality=40)), capture, FINE)
-    shots = Shots(exact)
-    drawn = shots.picture(exact.rig.cameras[2], camera_weights(exact, 2), camera_colour(exact, 2))
-    made = captured_pixels(shots, 2, difference_of(exact, 2))
+    job = RenderJob(exact)
+    drawn = job.picture(exact.rig.cameras[2], camera_weights(exact, 2), camera_colour(exact, 2))
+    made = captured_pixels(job, 2, difference_of(exact, 2))
     assert psnr(made, to_codes(capture.photograph(2).pixels), drawn.coverage > 0.999) >= 50
 
 
@@ -387,7 +387,7 @@ def test_a_residual_on_the_papers_way(run, capture, tmp_path, codec):
     plain, made = ef.load(tmp_path / "plain.glb"), ef.load(out)
     for name in ("view_00.png", "view_07.png"):
         np.testing.assert_array_equal(ef.render(made, camera=name).image, ef.render(plain, camera=name).image)
-    shown = captured_pixels(Shots(made), 7, difference_of(made, 7))
+    shown = captured_pixels(RenderJob(made), 7, difference_of(made, 7))
     assert psnr(shown, to_codes(capture.photograph(7).pixels)) > 45
 
 

@@ -14,7 +14,7 @@ from eigenfield.encoding import EncodeOptions
 from eigenfield.encoding.geometry import triangles_worth
 from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
 from eigenfield.encoding.plan import plan_encoding
-from eigenfield.proxy import simplified, unwrapped
+from eigenfield.proxy import simplify_mesh, unwrap_mesh
 from support.captures import write_capture
 from support.observations import greys, repeated
 from support.scenes import row_grid
@@ -51,7 +51,7 @@ def test_a_plane_is_worth_next_to_nothing_and_waves_as_many_as_their_bytes_pay_f
 
 
 def test_few_triangles_and_meshes_that_no_camera_sees_stay():
-    small = simplified(wavy(0.1), 200)
+    small = simplify_mesh(wavy(0.1), 200)
     assert worth(small, 1.0) is None
     assert worth(replace(wavy(0.1), vertices=wavy(0.1).vertices - np.float32([0, 0, 50])), 1.0) is None
 
@@ -112,7 +112,7 @@ def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_a
     smooth = ball(radius=1.5)
     bumps = 1 + 0.03 * np.sin(9 * smooth.vertices).prod(axis=1, keepdims=True)
     given = replace(smooth, vertices=(smooth.vertices * bumps).astype(np.float32))
-    field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrapped(given)))
+    field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrap_mesh(given)))
     coarse = plan_encoding(field, given, EncodeOptions(quality=55))
     fine = coarse.at_quality(92)
     counts = [len(plan.mesh.faces) for plan in (coarse, fine)]

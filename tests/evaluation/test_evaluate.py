@@ -13,7 +13,7 @@ from click.testing import CliRunner
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, OutputError
 from eigenfield.encoding.projected import make_atlas, texture_map
-from eigenfield.evaluation import PSNR_CAP, Circle, evaluate, flip, reconstructions, stored_scores
+from eigenfield.evaluation import PSNR_CAP, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save
 from eigenfield.rendering import Renderer, camera_weights
@@ -104,7 +104,7 @@ def test_masks_bound_the_covered_pixels_and_the_coverage(scene, tmp_path):
 
 
 def test_circles_are_left_out_of_the_outside_figures(scene, tmp_path):
-    circle = Circle(20, 20, 8)
+    circle = ExcludedCircle(20, 20, 8)
 
     def spot(index, picture):
         return np.where(circle.outside(*picture.shape[1::-1])[..., None], picture, 255 - picture).astype(np.uint8)
@@ -124,7 +124,7 @@ def test_circles_are_left_out_of_the_outside_figures(scene, tmp_path):
 
 def test_flip_is_measured_when_asked_for(scene, tmp_path):
     capture = write_capture(scene, tmp_path / "c", lighter(2))
-    figures = evaluate(scene, capture, flip=True, circles={scene.rig.names[2]: Circle(24, 20, 9)})
+    figures = evaluate(scene, capture, flip=True, circles={scene.rig.names[2]: ExcludedCircle(24, 20, 9)})
     encoded, held = figures["image"]["encoded"], figures["image"]["held_out"]
     assert held["flip"] == held["worst"]["flip"]["value"] == 0
     worst = encoded["worst"]["flip"]  # the highest: lower is better
@@ -166,7 +166,7 @@ def test_reconstruction_is_equation_8_at_every_count(scene):
     for bases in ((basis,), (coded,), (basis, coded)):
         mixed = dataclasses.replace(plane, bases=bases)
         counts = range(sum(b.count for b in bases) + 1)
-        made = [picture.copy() for picture in reconstructions(mixed, 5, counts)]
+        made = [picture.copy() for picture in reconstruct_maps(mixed, 5, counts)]
         expected = [plane.mean.astype(np.float64)]
         for b in bases:
             expected += [
@@ -174,14 +174,14 @@ def test_reconstruction_is_equation_8_at_every_count(scene):
             ]
         for count in counts:
             np.testing.assert_allclose(made[count], np.sum(expected[: count + 1], axis=0), atol=2e-6)
-        (direct,) = reconstructions(mixed, 5, [counts[-1]])
+        (direct,) = reconstruct_maps(mixed, 5, [counts[-1]])
         np.testing.assert_allclose(direct, made[-1], atol=2e-6)
 
 
 def test_a_map_that_is_the_reconstruction_is_perfect_and_one_in_the_wrong_place_is_not(scene):
     plane, height, width = scene.appearance.planes[0], 48, 48
     atlas = make_atlas(scene.proxy.mesh, width, height)
-    (texture,) = reconstructions(plane, 3, [3])
+    (texture,) = reconstruct_maps(plane, 3, [3])
     values = texture.reshape(-1, 3)[atlas.texel]
     seen = np.ones(atlas.count, np.uint8)
     seen[::3] = 0
@@ -217,7 +217,7 @@ def test_uv_figures_are_those_of_the_maps(scene, tmp_path):
 
 
 def test_a_curve_of_some_cameras(scene, tmp_path, monkeypatch):
-    monkeypatch.setattr("eigenfield.evaluation.session.SAMPLE", 2)
+    monkeypatch.setattr("eigenfield.evaluation.session.EVALUATION_SAMPLE_CAMERAS", 2)
     capture = write_capture(scene, tmp_path / "c", lighter(1))
     whole, some = (evaluate(scene, capture, curve=which) for which in ("all", "sample"))
     assert some["uv"] == whole["uv"] and some["image"] == whole["image"]

@@ -26,8 +26,8 @@ from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout
-from eigenfield.proxy.atlas.unwrap import unwrapped
-from eigenfield.proxy.relief.find_lattice import _spacing, relief_lattice, relief_proxy
+from eigenfield.proxy.atlas.unwrap import unwrap_mesh
+from eigenfield.proxy.relief.find_lattice import _column_spacing, relief_lattice, relief_proxy
 from support.coded_scenes import coded
 from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
@@ -86,7 +86,7 @@ def test_what_stands_before_a_relief_makes_it_none():
     as a layer of the relief behind it."""
     cameras = row_grid(9)
     wall = relief(cameras[5], 0.5, False)
-    thing = unwrapped(Mesh((ball(level=2).vertices * 0.3 + (0, 0, 2)).astype(np.float32), ball(level=2).faces))
+    thing = unwrap_mesh(Mesh((ball(level=2).vertices * 0.3 + (0, 0, 2)).astype(np.float32), ball(level=2).faces))
     assert relief_lattice(beside(wall, thing, 0.75), cameras, DEPTH_ERROR) is None
     layer = replace(wall, vertices=(wall.vertices * 1.1 - 0.1 * cameras[5].centre).astype(np.float32))
     assert relief_lattice(beside(wall, layer, 0.5), cameras, DEPTH_ERROR) is not None
@@ -105,15 +105,15 @@ def test_columns_are_found_however_many_vertices_stand_between_them(columns, par
     contours = rng.integers(0, 4 * wide, int(between * 2000)) / 4
     first = rng.uniform(0, 1 - part)
     values = (first + (np.concatenate([whole, contours]) + 0.5) / columns).astype(np.float32).astype(np.float64)
-    found, near = 1 / _spacing(values) / columns, 0.02 / wide
+    found, near = 1 / _column_spacing(values) / columns, 0.02 / wide
     assert min(abs(found * finer - 1) for finer in (1, 2, 4, 1 / 2, 1 / 4)) < near
     assert abs(found - 1) < near or between > 0.2 or cells > 1  # else others are as good a guess
 
 
 def test_vertices_in_no_columns():
-    assert _spacing(np.random.default_rng(1).uniform(0, 1, 3000)) == 0
-    assert _spacing(np.full(100, 0.5)) == 0
-    assert _spacing(np.zeros(3)) == 0
+    assert _column_spacing(np.random.default_rng(1).uniform(0, 1, 3000)) == 0
+    assert _column_spacing(np.full(100, 0.5)) == 0
+    assert _column_spacing(np.zeros(3)) == 0
 
 
 def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():

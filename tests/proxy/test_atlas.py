@@ -17,14 +17,14 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import (
-    DEFAULT_TRIANGLES,
+    PROXY_DEFAULT_TRIANGLES,
     atlas_fault,
     atlas_statistics,
     child,
     prepare_proxy,
     read_mesh,
-    simplified,
-    unwrapped,
+    simplify_mesh,
+    unwrap_mesh,
     write_ply,
 )
 
@@ -93,17 +93,17 @@ def test_statistics_do_not_depend_on_turning_scaling_and_mirroring(angle, size, 
 def test_a_valid_atlas_is_kept_to_the_bit(caplog):
     mesh = grid(20)
     with caplog.at_level(logging.INFO, "eigenfield.proxy"):
-        kept = unwrapped(mesh)
+        kept = unwrap_mesh(mesh)
     np.testing.assert_array_equal(kept.vertices, mesh.vertices)
     np.testing.assert_array_equal(kept.faces, mesh.faces)
     np.testing.assert_array_equal(kept.uv, mesh.uv)
     assert caplog.text == ""
-    assert unwrapped(mesh, triangles=800).uv is not None  # 800 triangles it has
+    assert unwrap_mesh(mesh, triangles=800).uv is not None  # 800 triangles it has
 
 
 def test_uvs_a_hair_outside_are_clipped():
     mesh = grid(4)
-    kept = unwrapped(with_uv(mesh, mesh.vertices[:, :2] * 1.0004 - 0.0002))
+    kept = unwrap_mesh(with_uv(mesh, mesh.vertices[:, :2] * 1.0004 - 0.0002))
     assert len(kept.vertices) == len(mesh.vertices)
     assert kept.uv.min() == 0 and kept.uv.max() == 1
 
@@ -127,7 +127,7 @@ def test_texture_coordinates_that_are_no_atlas_say_why(word):
 def test_a_mesh_without_uvs_gets_charts_that_hold():
     mesh = ball()
     calls = []
-    result = unwrapped(mesh, progress=lambda *call: calls.append(call))
+    result = unwrap_mesh(mesh, progress=lambda *call: calls.append(call))
     assert atlas_fault(result) is None
     statistics = atlas_statistics(result)
     assert statistics.overlap == 0 and statistics.fill > 0.4 and statistics.stretch < 1.2
@@ -136,7 +136,7 @@ def test_a_mesh_without_uvs_gets_charts_that_hold():
     theirs = np.sort(np.linalg.norm(mesh.vertices[mesh.faces].sum(axis=1), axis=1))
     ours = np.sort(np.linalg.norm(result.vertices[result.faces].sum(axis=1), axis=1))
     np.testing.assert_array_equal(ours, theirs)  # the same triangles, vertices doubled only
-    again = unwrapped(mesh)
+    again = unwrap_mesh(mesh)
     np.testing.assert_array_equal(again.uv, result.uv)
     np.testing.assert_array_equal(again.faces, result.faces)
 
@@ -148,7 +148,7 @@ def test_charts_keep_their_distance():
     from eigenfield.imaging.raster import rasterise_atlas
     from eigenfield.proxy import chart_labels
 
-    mesh = unwrapped(ball(2))
+    mesh = unwrap_mesh(ball(2))
     face = rasterise_atlas(mesh, 1024, 1024).face
     chart = np.where(face >= 0, chart_labels(mesh)[face], -1)
     highest = maximum_filter(chart, 7)
@@ -165,7 +165,7 @@ def test_refused_uvs_are_welded_and_cut_anew(caplog):
         np.tile([(0, 0), (1, 0), (0, 1)], (len(mesh.faces), 1)).astype(np.float32),  # every triangle over the others
     )
     with caplog.at_level(logging.WARNING, "eigenfield.proxy"):
-        result = unwrapped(soup)
+        result = unwrap_mesh(soup)
     assert "no atlas" in caplog.text and "more than one triangle" in caplog.text
     assert atlas_statistics(result).charts < 10
     assert len(result.vertices) < len(soup.vertices) / 2
@@ -173,32 +173,32 @@ def test_refused_uvs_are_welded_and_cut_anew(caplog):
 
 def test_a_large_mesh_without_an_atlas_is_simplified_and_the_log_says_so(caplog):
     mesh = grid(130, uv=False, height=0.1)
-    assert len(mesh.faces) > DEFAULT_TRIANGLES
+    assert len(mesh.faces) > PROXY_DEFAULT_TRIANGLES
     with caplog.at_level(logging.WARNING, "eigenfield.proxy"):
-        result = unwrapped(mesh, triangles=500)
+        result = unwrap_mesh(mesh, triangles=500)
     assert "simplified from 33800 to" in caplog.text
     assert 300 <= len(result.faces) <= 500
     assert atlas_fault(result) is None
-    assert len(simplified(mesh, DEFAULT_TRIANGLES).faces) <= DEFAULT_TRIANGLES
+    assert len(simplify_mesh(mesh, PROXY_DEFAULT_TRIANGLES).faces) <= PROXY_DEFAULT_TRIANGLES
 
 
 def test_a_large_mesh_with_an_atlas_is_kept_unless_triangles_are_named():
     mesh = grid(130)
-    assert len(unwrapped(mesh).faces) == len(mesh.faces)
-    assert len(unwrapped(mesh, triangles=400).faces) <= 400
+    assert len(unwrap_mesh(mesh).faces) == len(mesh.faces)
+    assert len(unwrap_mesh(mesh, triangles=400).faces) <= 400
 
 
 def test_simplification_far_from_the_origin_keeps_the_shape():
     mesh = grid(40, uv=False, height=0.1)
     far = Mesh((mesh.vertices * 1000 + (1e5, -2e5, 3e4)).astype(np.float32), mesh.faces)
-    less = simplified(far, 400)
+    less = simplify_mesh(far, 400)
     np.testing.assert_allclose(less.vertices.min(axis=0), far.vertices.min(axis=0), atol=10)
     np.testing.assert_allclose(less.vertices.max(axis=0), far.vertices.max(axis=0), atol=10)
 
 
 def test_too_few_triangles_are_refused():
     with pytest.raises(OptionError) as caught:
-        unwrapped(grid(3), triangles=0)
+        unwrap_mesh(grid(3), triangles=0)
     assert caught.value.code == "triangles"
 
 
@@ -206,12 +206,12 @@ def test_too_few_triangles_are_refused():
 def test_a_mesh_larger_than_a_pipe_reaches_a_slow_xatlas(monkeypatch, tmp_path):
     """The process starts to read only after several ticks: none of the mesh may get lost on the way."""
     script = tmp_path / "python"
-    script.write_text(f'#!/bin/sh\nsleep {5 * child.TICK}\nexec "{sys.executable}" "$@"\n')
+    script.write_text(f'#!/bin/sh\nsleep {5 * child.CHILD_POLL_SECONDS}\nexec "{sys.executable}" "$@"\n')
     script.chmod(0o755)
     monkeypatch.setattr(child.sys, "executable", str(script))
     mesh = grid(70, uv=False, height=0.05)
     assert mesh.vertices.nbytes + mesh.faces.nbytes > 65536
-    assert len(unwrapped(mesh).faces) == len(mesh.faces)
+    assert len(unwrap_mesh(mesh).faces) == len(mesh.faces)
 
 
 def test_ctrl_c_ends_xatlas_too(monkeypatch):
@@ -229,7 +229,7 @@ def test_ctrl_c_ends_xatlas_too(monkeypatch):
     monkeypatch.setattr(child.subprocess, "Popen", spy)
     start = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        unwrapped(ball(5), progress=interrupt)
+        unwrap_mesh(ball(5), progress=interrupt)
     assert time.monotonic() - start < 5
     assert children[0].poll() is not None
 
@@ -288,7 +288,7 @@ def test_a_mesh_from_memory_is_checked_too():
 
 def test_tarot_is_kept_exactly(data):
     mesh = read_mesh(data / "tarot_17x17_512/calibration/proxy.ply")
-    kept = unwrapped(mesh)
+    kept = unwrap_mesh(mesh)
     np.testing.assert_array_equal(kept.uv, mesh.uv)
     np.testing.assert_array_equal(kept.faces, mesh.faces)
     statistics = atlas_statistics(mesh)
@@ -299,7 +299,7 @@ def test_tarot_is_kept_exactly(data):
 def test_the_cube_gets_an_atlas(data):
     mesh = read_mesh(data / "cube_colmap_mesh/proxy.obj")
     assert len(mesh.faces) == 25_798
-    result = unwrapped(mesh)
+    result = unwrap_mesh(mesh)
     statistics = atlas_statistics(result)
     assert atlas_fault(result) is None
     assert statistics.fill > 0.45 and statistics.stretch < 1.02 and statistics.overlap < 1e-4

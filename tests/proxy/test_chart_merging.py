@@ -6,9 +6,9 @@ import numpy as np
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import edge_components
-from eigenfield.proxy import atlas_statistics, unwrapped
+from eigenfield.proxy import atlas_statistics, unwrap_mesh
 from eigenfield.proxy.atlas import lscm_charts
-from eigenfield.proxy.atlas.chart_merging import Chart, merged_charts, shared_edges
+from eigenfield.proxy.atlas.chart_merging import Chart, merge_charts, shared_edges
 from support.surfaces import ball, square
 
 SIDE = 20
@@ -49,7 +49,7 @@ def test_single_triangles_join_the_chart_around_them_and_are_sewn_all_round():
     label = np.zeros(len(FLAT.faces), np.int64)
     label[[100, 301, 302, 555]] = 1, 2, 3, 4
     mesh, charts = cut(FLAT, label)
-    (whole,) = merged_charts(mesh, charts, plan)
+    (whole,) = merge_charts(mesh, charts, plan)
     check(mesh, [whole])
     assert len(whole.vertices) == len(FLAT.vertices)  # nothing is doubled any more
 
@@ -58,7 +58,7 @@ def test_small_ones_that_only_touch_each_other_arrive_in_rounds():
     label = np.arange(len(FLAT.faces))  # every triangle by itself but for one half
     label[: len(label) // 2] = 0
     mesh, charts = cut(FLAT, label)
-    merged = merged_charts(mesh, charts, plan)
+    merged = merge_charts(mesh, charts, plan)
     check(mesh, merged)
     assert len(merged) < len(charts) / 20
     assert max(len(chart.faces) for chart in merged) > len(label) / 2
@@ -68,7 +68,7 @@ def test_large_charts_stay_apart_and_the_order_of_charts_is_kept():
     column = FLAT.vertices[FLAT.faces].mean(axis=1)[:, 0]
     label = np.digitize(column, [-0.5, 0, 0.5])
     mesh, charts = cut(FLAT, label)
-    merged = merged_charts(mesh, charts, plan)
+    merged = merge_charts(mesh, charts, plan)
     assert [len(chart.faces) for chart in merged] == [len(chart.faces) for chart in charts]
     for one, other in zip(merged, charts, strict=True):
         assert one is other
@@ -84,7 +84,7 @@ def test_what_cannot_be_laid_out_with_it_stays_and_the_others_still_join():
         has = (np.abs(points[corners] - bad).max(axis=(1, 2)) == 0).any()
         return None if has else plan(points, corners)
 
-    merged = merged_charts(mesh, charts, layout)
+    merged = merge_charts(mesh, charts, layout)
     check(mesh, merged)
     assert sorted(len(chart.faces) for chart in merged) == [1, len(FLAT.faces) - 1]
 
@@ -104,7 +104,7 @@ def test_seams_within_a_chart_stay_cut():
         faces = np.flatnonzero(label == one)
         used, corners = np.unique(doubled.faces[faces], return_inverse=True)
         charts.append(Chart(faces, used, corners.reshape(-1, 3).astype(np.int32), doubled.vertices[used, :2], False))
-    (whole,) = merged_charts(doubled, charts, plan)
+    (whole,) = merge_charts(doubled, charts, plan)
     assert len(whole.vertices) == len(FLAT.vertices) + 1
 
 
@@ -125,9 +125,9 @@ def test_a_noisy_ball_has_fewer_charts_than_xatlas_cuts(monkeypatch):
     smooth = ball(level=4)
     noise = np.random.default_rng(0).normal(size=(len(smooth.vertices), 1))
     rough = Mesh((smooth.vertices * (1 + 0.05 * noise)).astype(np.float32), smooth.faces)
-    merged = unwrapped(rough)
-    monkeypatch.setattr(lscm_charts, "merged_charts", lambda mesh, charts, layout: charts)
-    as_cut = unwrapped(rough)
+    merged = unwrap_mesh(rough)
+    monkeypatch.setattr(lscm_charts, "merge_charts", lambda mesh, charts, layout: charts)
+    as_cut = unwrap_mesh(rough)
     ours, theirs = atlas_statistics(merged), atlas_statistics(as_cut)
     assert ours.charts < 0.6 * theirs.charts
     assert len(merged.vertices) < 0.95 * len(as_cut.vertices)

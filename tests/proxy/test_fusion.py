@@ -11,7 +11,7 @@ from eigenfield.capture.photographs.lens import Lens, source_positions
 from eigenfield.core.errors import ProxyError
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.surface import multiview
-from eigenfield.proxy.surface.fusion import DepthView, fuse, thinned
+from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps, subsample_points
 from eigenfield.proxy.surface.multiview import surface_from_views
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, spread_views
 from eigenfield.runtime import parallel
@@ -30,7 +30,7 @@ def cameras():
 
 @pytest.fixture(scope="module")
 def points(scene, cameras):
-    return fuse(depth_views(scene, cameras))
+    return fuse_depth_maps(depth_views(scene, cameras))
 
 
 def test_fused_points_lie_on_the_surfaces_and_face_outwards(points):
@@ -55,9 +55,9 @@ def test_one_point_stands_for_a_surface_element(points):
 def test_fusion_does_not_depend_on_threads(scene, cameras, points):
     try:
         parallel.set_threads(1)
-        one = fuse(depth_views(scene, cameras))
+        one = fuse_depth_maps(depth_views(scene, cameras))
         parallel.set_threads(3)
-        three = fuse(depth_views(scene, cameras))
+        three = fuse_depth_maps(depth_views(scene, cameras))
     finally:
         parallel.set_threads(None)
     for name in ("positions", "normals", "colours", "spacing"):
@@ -71,7 +71,7 @@ def test_wrong_depths_in_one_view_leave_no_trace(scene, cameras):
     wrong[30:60, 40:80] *= 1.5  # a piece that floats before everything
     wrong[0, :5] = [np.nan, np.inf, -1, 0, 1e30]
     views[4] = DepthView(views[4].camera, wrong)
-    fused = fuse(views)
+    fused = fuse_depth_maps(views)
     assert np.percentile(truth(fused.positions), 99.5) < 0.02
 
 
@@ -82,7 +82,7 @@ def test_colours_come_from_the_photographs(scene, cameras):
         on_ball = (raster.face >= 0) & (raster.face < 20480)
         colour = np.where(on_ball[..., None], np.uint8([255, 0, 0]), np.uint8([0, 128, 255]))
         views.append(DepthView(camera, raster.inverse_depth, colour))
-    fused = fuse(views)
+    fused = fuse_depth_maps(views)
     on_ball = np.abs(np.linalg.norm(fused.positions, axis=1) - 1) < 0.005
     assert (fused.colours[on_ball] == [255, 0, 0]).all(axis=1).mean() > 0.99
     assert (fused.colours[~on_ball] == [0, 128, 255]).all(axis=1).mean() > 0.98
@@ -93,7 +93,7 @@ def test_masks_keep_the_foreground_only(scene, cameras):
     views = [
         DepthView(c, rasterise_view(scene, c).inverse_depth, mask=mask) for c, mask in zip(cameras, masks, strict=True)
     ]
-    fused = fuse(views)
+    fused = fuse_depth_maps(views)
     assert np.abs(np.linalg.norm(fused.positions, axis=1) - 1).max() < 0.05
 
 
@@ -103,13 +103,13 @@ def test_one_mask_that_was_not_drawn_does_not_bring_the_background_back(scene, c
     views = [
         DepthView(c, rasterise_view(scene, c).inverse_depth, mask=mask) for c, mask in zip(cameras, masks, strict=True)
     ]
-    assert np.abs(np.linalg.norm(fuse(views).positions, axis=1) - 1).max() < 0.05
+    assert np.abs(np.linalg.norm(fuse_depth_maps(views).positions, axis=1) - 1).max() < 0.05
 
 
 def test_masks_that_hide_everything(scene, cameras):
     nothing = np.zeros((120, 160), np.bool_)
     with pytest.raises(ProxyError, match="masks hide") as caught:
-        fuse(depth_views(scene, cameras, mask=nothing))
+        fuse_depth_maps(depth_views(scene, cameras, mask=nothing))
     assert caught.value.code == "surface-masked" and caught.value.remedy
 
 
@@ -117,22 +117,22 @@ def test_no_agreement_is_said(cameras):
     random = np.random.default_rng(0)
     views = [DepthView(c, random.uniform(0.1, 1, (120, 160)).astype(np.float32)) for c in cameras]
     with pytest.raises(ProxyError) as caught:
-        fuse(views)
+        fuse_depth_maps(views)
     assert caught.value.code == "surface-no-points" and "9 views" in str(caught.value)
     with pytest.raises(ProxyError) as caught:
-        fuse([])
+        fuse_depth_maps([])
     assert caught.value.code == "surface-no-points"
     with pytest.raises(ProxyError):
-        fuse([DepthView(c, np.zeros((120, 160), np.float32)) for c in cameras])
+        fuse_depth_maps([DepthView(c, np.zeros((120, 160), np.float32)) for c in cameras])
 
 
 def test_thinning_keeps_the_surface_and_the_limit(points):
-    few = thinned(points, 2000)
+    few = subsample_points(points, 2000)
     assert 800 < len(few) <= 2000
     assert np.median(truth(few.positions)) < 0.005
     assert np.median(few.spacing) > 2 * np.median(points.spacing)
     assert np.allclose(np.linalg.norm(few.normals, axis=1), 1, atol=1e-5)
-    assert thinned(points, len(points)) is points
+    assert subsample_points(points, len(points)) is points
 
 
 def test_neighbours_stand_aside_but_not_too_far():
@@ -190,7 +190,7 @@ def test_resizing_keeps_what_a_camera_sees():
     small = camera.resized(53, 40)
     x, y = np.meshgrid(np.arange(160) + 0.5, np.arange(121) + 0.5)
     picture = np.stack([x, y, np.zeros_like(x)], axis=-1).astype(np.float32)
-    result = multiview._resampled(picture, camera, small)
+    result = multiview._resample(picture, camera, small)
     back = np.linalg.inv(small.K) @ np.array([20.5, 10.5, 1])  # the middle of pixel (10, 20)
     place = camera.K @ back
     assert np.allclose(result[10, 20, :2], place[:2] / place[2], atol=0.05)

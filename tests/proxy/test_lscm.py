@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.imaging.graph import edge_components
-from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, prepare_proxy, unwrapped
+from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, prepare_proxy, unwrap_mesh
 from eigenfield.proxy.atlas.lscm import boundary_vertices, conformal_energy, conformal_map
 from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
 
@@ -212,10 +212,10 @@ def test_rough_surfaces_get_an_atlas_without_overlap(seed):
 
     vertices, faces = patch(14, 14, place)
     mesh = Mesh(vertices.astype(np.float32), faces)
-    result = unwrapped(mesh, cameras=[looking_along(2, 1, 3.0)])
+    result = unwrap_mesh(mesh, cameras=[looking_along(2, 1, 3.0)])
     statistics = atlas_statistics(result)
     assert statistics.overlap == 0 and statistics.flat == 0
     assert result.uv.min() >= 0 and result.uv.max() <= 1
     theirs = np.sort(np.linalg.norm(result.vertices[result.faces].sum(axis=1), axis=1))
     np.testing.assert_array_equal(theirs, np.sort(np.linalg.norm(mesh.vertices[mesh.faces].sum(axis=1), axis=1)))
-    np.testing.assert_array_equal(unwrapped(mesh, cameras=[looking_along(2, 1, 3.0)]).uv, result.uv)
+    np.testing.assert_array_equal(unwrap_mesh(mesh, cameras=[looking_along(2, 1, 3.0)]).uv, result.uv)

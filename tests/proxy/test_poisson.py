@@ -9,17 +9,17 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.background import coverage, fill_background, joined
-from eigenfield.proxy.surface.fusion import DepthView, Points, fuse
+from eigenfield.proxy.background import camera_coverage, fill_background, join_meshes
+from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints, fuse_depth_maps
 from eigenfield.proxy.surface.multiview import surface_from_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import (
-    distances,
-    simplified_with_error,
+    simplify_with_error,
+    surface_distances,
     surface_error,
     surface_samples,
-    trimmed,
-    within_masks,
+    trim_by_masks,
+    trim_surface,
 )
 from support.surfaces import Drawn, ball, ball_before_wall, depth_views, looking, nine_cameras, square
 
@@ -36,7 +36,7 @@ def cameras():
 
 @pytest.fixture(scope="module")
 def points(scene, cameras):
-    return fuse(depth_views(scene, cameras))
+    return fuse_depth_maps(depth_views(scene, cameras))
 
 
 @pytest.fixture(scope="module")
@@ -51,13 +51,13 @@ def test_poisson_is_the_same_twice_and_true(whole, points):
 
 
 def test_the_surface_is_true_covers_and_is_manifold(whole, points, scene, cameras):
-    mesh = trimmed(whole, points)
+    mesh = trim_surface(whole, points)
     for camera in cameras:
         drawn, true = rasterise_view(mesh, camera).inverse_depth, rasterise_view(scene, camera).inverse_depth
         both = (drawn > 0) & (true > 0)
         off = np.abs(drawn[both] / true[both] - 1)
         assert np.median(off) < 1e-3 and (off < 0.01).mean() > 0.95 and both.mean() > 0.8
-    assert coverage(mesh, cameras)[4] > 0.99
+    assert camera_coverage(mesh, cameras)[4] > 0.99
     _, number = face_edges(mesh.faces)
     assert np.bincount(number).max() == 2
     assert np.abs(mesh.vertices).max() < 4.4  # Poisson's closed balloon is cut
@@ -67,7 +67,7 @@ def test_the_surface_is_true_covers_and_is_manifold(whole, points, scene, camera
 @pytest.mark.parametrize("seen", ["nothing", "the air"])
 def test_a_bare_patch_stays_unless_depth_maps_look_through_it(points, scene, cameras, seen):
     bare = (np.abs(points.positions[:, :2] - [2.0, 0]) < 0.75).all(axis=1) & (points.positions[:, 2] > 1.1)
-    fewer = points.chosen(~bare)
+    fewer = points.subset(~bare)
     mesh = poisson_surface(fewer)
     views = []
     for view in depth_views(scene, cameras):  # the depth maps have nothing there, or something far behind
@@ -79,36 +79,38 @@ def test_a_bare_patch_stays_unless_depth_maps_look_through_it(points, scene, cam
         inverse[patch] *= 0 if seen == "nothing" else 0.5
         views.append(DepthView(view.camera, inverse))
     middle = looking(np.array([2.0, 0, -5.0]), (2, 0, 1.2), width=20, height=20)
-    plain = coverage(trimmed(mesh, fewer), [middle])[0]
+    plain = camera_coverage(trim_surface(mesh, fewer), [middle])[0]
     assert plain < 0.5
-    kept = coverage(trimmed(mesh, fewer, views=views), [middle])[0]
+    kept = camera_coverage(trim_surface(mesh, fewer, views=views), [middle])[0]
     assert kept == 1 if seen == "nothing" else kept < 0.5
 
 
 def test_simplification_reports_its_error(points, cameras, whole):
-    fine = trimmed(whole, points)
-    mesh, error = simplified_with_error(fine, points, 2000, cameras[4])
+    fine = trim_surface(whole, points)
+    mesh, error = simplify_with_error(fine, points, 2000, cameras[4])
     assert 1000 < len(mesh.faces) <= 2000
     assert error.rms < 0.02 and error.relative < 0.003 and error.pixels < 0.6
-    _, coarse = simplified_with_error(fine, points, 150, cameras[4])
+    _, coarse = simplify_with_error(fine, points, 150, cameras[4])
     assert coarse.rms > 2 * error.rms and coarse.pixels > 2 * error.pixels
     assert "%" in str(error) and "px" in str(error)
 
 
 def test_masks_cut_the_surface(scene, cameras):
     masks = [rasterise_view(ball(), camera).face >= 0 for camera in cameras]
-    mesh = within_masks(scene, cameras, masks)
+    mesh = trim_by_masks(scene, cameras, masks)
     on_ball = np.abs(np.linalg.norm(mesh.vertices, axis=1) - 1) < 1e-4
     assert on_ball.sum() == 10242 and len(mesh.faces) < 20600  # all of the ball, of the wall only what it hides
     assert np.linalg.norm(mesh.vertices[~on_ball][:, :2], axis=1).max() < 0.9
-    assert len(within_masks(ball(), cameras, [None] * 9).faces) == len(ball().faces)
+    assert len(trim_by_masks(ball(), cameras, [None] * 9).faces) == len(ball().faces)
     with pytest.raises(ProxyError) as caught:
-        within_masks(scene, cameras, [np.zeros((120, 160), np.bool_)] * 9)
+        trim_by_masks(scene, cameras, [np.zeros((120, 160), np.bool_)] * 9)
     assert caught.value.code == "surface-empty"
 
 
 def test_too_few_points_are_no_surface():
-    few = Points(np.zeros((3, 3)), np.zeros((3, 3), np.float32), np.zeros((3, 3), np.uint8), np.ones(3, np.float32))
+    few = OrientedPoints(
+        np.zeros((3, 3)), np.zeros((3, 3), np.float32), np.zeros((3, 3), np.uint8), np.ones(3, np.float32)
+    )
     with pytest.raises(ProxyError, match="3 points") as caught:
         poisson_surface(few)
     assert caught.value.code == "surface-no-points"
@@ -116,18 +118,18 @@ def test_too_few_points_are_no_surface():
 
 def test_a_surface_far_from_all_points_comes_out_empty(points):
     with pytest.raises(ProxyError) as caught:
-        trimmed(ball(centre=(50, 0, 0), level=5, radius=8), points)
+        trim_surface(ball(centre=(50, 0, 0), level=5, radius=8), points)
     assert caught.value.code == "surface-empty"
 
 
 def test_distances_of_known_points():
     mesh = square(1, 0.0, 5)
     away = np.array([[0.1, 0.2, 0.5], [0.3, -0.2, -2.0], [2.0, 0.0, 0.0], [2.0, 2.0, 1.0]])
-    assert np.allclose(distances(mesh, away), [0.5, 2.0, 1.0, np.sqrt(3)], atol=1e-6)
+    assert np.allclose(surface_distances(mesh, away), [0.5, 2.0, 1.0, np.sqrt(3)], atol=1e-6)
 
 
 def test_samples_are_spread_by_area():
-    mesh = joined(square(1, 0.0, 5), square(2, 1.0, 5))
+    mesh = join_meshes(square(1, 0.0, 5), square(2, 1.0, 5))
     samples, face = surface_samples(mesh, 10_000)
     assert np.isclose((samples[:, 2] == 1).mean(), 0.8, atol=0.01)
     assert np.abs(samples[samples[:, 2] == 1][:, :2].mean(axis=0)).max() < 0.03
@@ -135,11 +137,11 @@ def test_samples_are_spread_by_area():
 
 
 def test_the_background_closes_every_view_behind_everything(cameras):
-    mesh = joined(ball(), square(1.5, 1.2))
-    before = coverage(mesh, cameras)
+    mesh = join_meshes(ball(), square(1.5, 1.2))
+    before = camera_coverage(mesh, cameras)
     assert before.max() < 0.6
     closed = fill_background(mesh, cameras)
-    assert (coverage(closed, cameras) == 1).all()
+    assert (camera_coverage(closed, cameras) == 1).all()
     for camera in cameras:  # nothing of the mesh is hidden by it, beyond a pixel's rounding
         own, both = rasterise_view(mesh, camera), rasterise_view(closed, camera)
         there = own.face >= 0
@@ -152,7 +154,7 @@ def test_the_background_goes_on_in_the_plane_of_a_slanted_wall(cameras):
     wall = square(2.5, 0.0, 40)
     tilt = wall.vertices.astype(np.float64) @ np.array([[1, 0, 0.3], [0, 1, 0], [0, 0, 1]])
     closed = fill_background(Mesh(tilt.astype(np.float32), wall.faces), cameras)
-    assert (coverage(closed, cameras) == 1).all()
+    assert (camera_coverage(closed, cameras) == 1).all()
     far = closed.vertices[len(wall.vertices) :].astype(np.float64)
     inside = np.abs(far[:, :2]).max(axis=1) < 3.5
     assert inside.sum() > 20
@@ -164,7 +166,7 @@ def test_a_walk_around_gets_a_dome(cameras):
         looking(np.array([5 * np.sin(a), -1.0, 5 * np.cos(a)]), (0, 0, 0)) for a in np.linspace(0, 2 * np.pi, 12)[:-1]
     ]
     closed = fill_background(ball(), around)
-    assert (coverage(closed, around) == 1).all()
+    assert (camera_coverage(closed, around) == 1).all()
     assert np.linalg.norm(closed.vertices[2562:], axis=1).min() > 5.0  # beyond all cameras
 
 

@@ -14,13 +14,13 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
-from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, relief_mesh, second_layer
-from eigenfield.proxy.relief import sheet as relief_sheet
-from eigenfield.proxy.relief.contours import contour_chains, cut_sides, straightened
+from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, estimate_second_layer, relief_mesh
+from eigenfield.proxy.relief import height_field
+from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
+from eigenfield.proxy.relief.height_field import face_components, triangulate_height_field
 from eigenfield.proxy.relief.kernels import label_pixels
-from eigenfield.proxy.relief.sheet import make_sheet, sheet_components
-from eigenfield.proxy.relief.triangulation import LATTICE
-from eigenfield.stereo import Canvas, view_matrices
+from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
+from eigenfield.stereo import ReferenceView, view_matrices
 
 OFFSET, SCALE = 0.25, 0.01  # 1/Z = OFFSET + SCALE d
 
@@ -30,12 +30,12 @@ def camera(width=60, height=40, at=(0.0, 0.0, 0.0), focal=80.0):
     return Camera(K, np.eye(3), -np.asarray(at, np.float64), width, height)
 
 
-def canvas(height=40, width=60, margin=0):
-    return Canvas.around(camera(width - 2 * margin, height - 2 * margin), margin, OFFSET, SCALE)
+def reference_view(height=40, width=60, margin=0):
+    return ReferenceView.with_margin(camera(width - 2 * margin, height - 2 * margin), margin, OFFSET, SCALE)
 
 
 def depth_of(mesh, frame):
-    """The labels that a mesh shows on the canvas, and where it does."""
+    """The labels that a mesh shows in the reference view, and where it does."""
     drawn = rasterise_view(mesh, frame.camera)
     return (drawn.inverse_depth - frame.offset) / frame.scale, drawn.face >= 0
 
@@ -45,11 +45,11 @@ def ramp(height=40, width=60):
     return (0.03 * x - 0.05 * y + 1).astype(np.float32)
 
 
-def covers(sheet, valid):
+def covers(field, valid):
     """Does a triangle lie over the centre of every valid pixel? In whole numbers, so exactly."""
     owner = np.empty(valid.shape, np.int32)
-    points = np.rint(np.stack([sheet.x, sheet.y], axis=1) * LATTICE).astype(np.int64)
-    label_pixels(points, sheet.faces.astype(np.int64), len(sheet.faces), owner)
+    points = np.rint(np.stack([field.x, field.y], axis=1) * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
+    label_pixels(points, field.faces.astype(np.int64), len(field.faces), owner)
     return bool((owner[valid] >= 0).all())
 
 
@@ -59,9 +59,9 @@ def everywhere(d):
 
 def test_a_plane_is_two_triangles_and_exact():
     d = ramp()
-    mesh = relief_mesh(canvas(), d, everywhere(d), cut=1.0, tolerance=0.01)
+    mesh = relief_mesh(reference_view(), d, everywhere(d), cut=1.0, tolerance=0.01)
     assert len(mesh.faces) <= 4
-    shown, covered = depth_of(mesh, canvas())
+    shown, covered = depth_of(mesh, reference_view())
     assert covered.all()
     np.testing.assert_allclose(shown, d, atol=2e-3)
     centre = mesh.vertices.mean(axis=0)
@@ -72,21 +72,21 @@ def test_a_plane_is_two_triangles_and_exact():
 def test_a_step_is_cut_and_its_two_sides_are_exact():
     d = ramp()
     d[:, 30:] += 3
-    sheet = make_sheet(d, everywhere(d), cut=1.0, tolerance=0.01)
-    on = np.abs(sheet.x - 29.5) < 1e-6
-    top = np.sort(sheet.d[on & (sheet.y < 1)])
+    field = triangulate_height_field(d, everywhere(d), cut=1.0, tolerance=0.01)
+    on = np.abs(field.x - 29.5) < 1e-6
+    top = np.sort(field.d[on & (field.y < 1)])
     np.testing.assert_allclose(np.diff(top), [3], atol=0.02)  # two vertices at one place, 3 apart
-    assert len(sheet.faces) <= 12
-    mesh = relief_mesh(canvas(), d, everywhere(d), cut=1.0, tolerance=0.01)
-    shown, covered = depth_of(mesh, canvas())
+    assert len(field.faces) <= 12
+    mesh = relief_mesh(reference_view(), d, everywhere(d), cut=1.0, tolerance=0.01)
+    shown, covered = depth_of(mesh, reference_view())
     assert covered.all()
     np.testing.assert_allclose(shown, d, atol=0.02)
 
 
-def test_without_a_cut_the_step_is_a_sheet():
+def test_without_a_cut_the_step_is_one_surface():
     d = ramp()
     d[:, 30:] += 3
-    whole = make_sheet(d, everywhere(d), cut=10.0, tolerance=0.01)
+    whole = triangulate_height_field(d, everywhere(d), cut=10.0, tolerance=0.01)
     places = np.stack([whole.x, whole.y], axis=1)
     assert len(np.unique(places.round(6), axis=0)) == len(places)
 
@@ -95,19 +95,21 @@ def test_a_cut_that_ends_inside_leaves_one_surface():
     """A gap that closes: both sides of the cut have their own vertices, its end has one."""
     y, x = np.mgrid[:60, :80]
     d = np.where(x < 40, 0.0, np.maximum(0, 3 - 0.1 * y)).astype(np.float32)
-    sheet = make_sheet(d, everywhere(d), cut=0.5, tolerance=0.05)
-    assert sheet_components(sheet.faces, len(sheet.x)).max() == 0
-    on = np.abs(sheet.x - 39.5) < 0.6
-    places, count = np.unique(np.stack([sheet.x[on], sheet.y[on]], 1).round(4), axis=0, return_counts=True)
+    field = triangulate_height_field(d, everywhere(d), cut=0.5, tolerance=0.05)
+    assert face_components(field.faces, len(field.x)).max() == 0
+    on = np.abs(field.x - 39.5) < 0.6
+    places, count = np.unique(np.stack([field.x[on], field.y[on]], 1).round(4), axis=0, return_counts=True)
     assert (count == 2).sum() >= 1 and places[count == 2, 1].max() < 27
 
 
 def test_a_leaning_edge_is_straight_and_not_a_staircase():
     y, x = np.mgrid[:80, :100]
     inside = x * np.cos(0.3) + y * np.sin(0.3) < 60.3
-    chains = contour_chains(*cut_sides(np.where(inside, 2, 0).astype(np.float32), np.ones((80, 100), np.bool_), 1.0))
+    chains = trace_contours(
+        *find_cut_edges(np.where(inside, 2, 0).astype(np.float32), np.ones((80, 100), np.bool_), 1.0)
+    )
     assert len(chains) == 1
-    line = straightened(chains[0], 0.5)
+    line = straighten_chain(chains[0], 0.5)
     assert len(line) <= 5
     off = line[1:-1] @ (np.cos(0.3), np.sin(0.3)) - 60.3
     assert np.abs(off).max(initial=0) < 0.3
@@ -118,10 +120,10 @@ def test_a_leaning_edge_is_straight_and_not_a_staircase():
 def test_contours_of_a_square_and_of_a_junction():
     label = np.zeros((12, 12), np.float32)
     label[3:9, 3:9] = 5
-    chains = contour_chains(*cut_sides(label, np.ones((12, 12), np.bool_), 1.0))
+    chains = trace_contours(*find_cut_edges(label, np.ones((12, 12), np.bool_), 1.0))
     assert len(chains) == 1 and (chains[0][0] == chains[0][-1]).all() and len(chains[0]) == 25
     label[6:, :] += 20
-    chains = contour_chains(*cut_sides(label, np.ones((12, 12), np.bool_), 1.0))
+    chains = trace_contours(*find_cut_edges(label, np.ones((12, 12), np.bool_), 1.0))
     ends = np.array([chain[[0, -1]] for chain in chains])
     assert len(chains) == 5  # two arcs, one line through, cut into three at the junctions
     assert {(2.5, 5.5), (8.5, 5.5)} <= {tuple(p) for p in ends.reshape(-1, 2)}
@@ -144,12 +146,12 @@ def test_every_relief_covers_its_pixels_within_the_tolerance(seed, tolerance):
     d, valid = bumpy(seed)
     if not valid.any():
         return
-    frame = canvas(*d.shape)
+    frame = reference_view(*d.shape)
     mesh = relief_mesh(frame, d, valid, cut=0.6, tolerance=tolerance)
     shown, covered = depth_of(mesh, frame)
     assert covered[valid].mean() > 0.99  # float32 vertices leave hairlines at cuts
-    assert covers(make_sheet(d, valid, cut=0.6, tolerance=tolerance), valid)
-    beside, below = cut_sides(d, valid, 0.6)
+    assert covers(triangulate_height_field(d, valid, cut=0.6, tolerance=tolerance), valid)
+    beside, below = find_cut_edges(d, valid, 0.6)
     mixed = np.zeros(d.shape, np.bool_)
     mixed[:, 1:] |= beside
     mixed[:, :-1] |= beside
@@ -172,14 +174,14 @@ def test_every_pixel_of_noise_is_cut_without_crossings(seed):
     """Independent pixels: contours everywhere, many junctions, lines that cross when straightened."""
     random = np.random.default_rng(seed)
     d = random.integers(0, 4, (24, 24)).astype(np.float32)
-    sheet = make_sheet(d, everywhere(d), cut=0.5, tolerance=0.1)
-    p = np.stack([sheet.x, sheet.y], axis=1)[sheet.faces]
+    field = triangulate_height_field(d, everywhere(d), cut=0.5, tolerance=0.1)
+    p = np.stack([field.x, field.y], axis=1)[field.faces]
     a, b = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     area = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
     assert (area > 0).all()
     assert area.sum() == pytest.approx(26 * 26, rel=0.03)  # a pixel more all round
-    assert covers(sheet, everywhere(d))
-    between = replace(sheet, x=4 * sheet.x + 0.3, y=4 * sheet.y + 0.3)  # no hole between pixels either
+    assert covers(field, everywhere(d))
+    between = replace(field, x=4 * field.x + 0.3, y=4 * field.y + 0.3)  # no hole between pixels either
     assert covers(between, np.ones((93, 93), np.bool_))
 
 
@@ -188,15 +190,15 @@ def test_lines_that_cross_when_straightened_go_back_to_their_chains(monkeypatch)
     hills = gaussian_filter(random.normal(size=(80, 80)), 2.2)
     d = np.digitize(hills, np.quantile(hills, [0.2, 0.4, 0.6, 0.8])).astype(np.float32)
     clashes = []
-    real = relief_sheet._constrained
+    real = height_field._constrained_delaunay
 
     def spy(*arguments):
         result = real(*arguments)
         clashes.append(int(result[1].sum()))
         return result
 
-    monkeypatch.setattr(relief_sheet, "_constrained", spy)
-    assert covers(make_sheet(d, everywhere(d), cut=0.5, tolerance=0.1), everywhere(d))
+    monkeypatch.setattr(height_field, "_constrained_delaunay", spy)
+    assert covers(triangulate_height_field(d, everywhere(d), cut=0.5, tolerance=0.1), everywhere(d))
     assert clashes[0] >= 1 and clashes[-1] == 0
 
 
@@ -204,7 +206,7 @@ def test_two_layers_share_the_atlas_without_overlap():
     y, x = np.mgrid[:120, :160]
     d = (0.02 * x + np.sin(y / 9)).astype(np.float32)
     near = gaussian_filter((np.random.default_rng(1).random(d.shape) > 0.995).astype(np.float64), 4) > 0.005
-    frame = canvas(*d.shape)
+    frame = reference_view(*d.shape)
     mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1, gutter=4)
     statistics = atlas_statistics(mesh)
     assert statistics.overlap == 0 and statistics.fill > 0.6
@@ -234,14 +236,14 @@ def texels(mesh, frame):
 
 def test_texels_are_even():
     d, valid = bumpy(3, 90, 120)
-    even = texels(relief_mesh(canvas(*d.shape), d, valid, cut=0.6, tolerance=0.05), canvas(*d.shape))
+    even = texels(relief_mesh(reference_view(*d.shape), d, valid, cut=0.6, tolerance=0.05), reference_view(*d.shape))
     assert even.max() / even.min() < 1.001
 
 
 def test_the_limit_of_triangles_holds(caplog):
     d, valid = bumpy(11, 120, 160)
     d += np.random.default_rng(0).normal(0, 0.2, d.shape).astype(np.float32)
-    frame = canvas(*d.shape)
+    frame = reference_view(*d.shape)
     free = relief_mesh(frame, d, valid, cut=1.5, tolerance=0.05)
     with caplog.at_level(logging.INFO, "eigenfield.proxy"):
         few = relief_mesh(frame, d, valid, cut=1.5, tolerance=0.05, triangles=1500)
@@ -252,14 +254,14 @@ def test_the_limit_of_triangles_holds(caplog):
 def test_a_depth_map_without_surface():
     d = ramp()
     with pytest.raises(ProxyError) as caught:
-        relief_mesh(canvas(), d, np.zeros(d.shape, np.bool_), cut=1, tolerance=0.1)
+        relief_mesh(reference_view(), d, np.zeros(d.shape, np.bool_), cut=1, tolerance=0.1)
     assert caught.value.code == "relief-empty"
 
 
 def test_labels_beyond_infinity_are_put_far_away():
     d = np.full((20, 30), -40, np.float32)  # 1/Z = -0.15
     d[:, 15:] = 0
-    mesh = relief_mesh(canvas(20, 30), d, everywhere(d), cut=5, tolerance=0.1)
+    mesh = relief_mesh(reference_view(20, 30), d, everywhere(d), cut=5, tolerance=0.1)
     assert np.isfinite(mesh.vertices).all() and (mesh.vertices[:, 2] > 0).all()
 
 
@@ -288,10 +290,10 @@ def test_the_second_layer_finds_the_wall_behind_the_card_and_covers_every_view()
     spots = [(0.04 * i, 0.04 * j, 0.0) for j in range(-3, 4) for i in range(-3, 4)]
     cameras = [camera(64, 48, at) for at in spots]
     pictures = np.stack([world(at)[0] for at in spots])
-    frame = Canvas.around(camera(64, 48), margin, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), margin, OFFSET, SCALE)
     d = world((0, 0), *reversed(frame.shape))[1]
     matrices = view_matrices(frame, cameras)
-    wide, valid = second_layer(pictures, matrices, d, cut=3.0)
+    wide, valid = estimate_second_layer(pictures, matrices, d, cut=3.0)
     assert valid.any() and (wide[valid] < d[valid]).all()
     card = d > 10
     hidden = valid & card
@@ -303,23 +305,23 @@ def test_the_second_layer_finds_the_wall_behind_the_card_and_covers_every_view()
     holes = [(rasterise_view(one, c).face < 0).mean() for c in corners]
     left = [(rasterise_view(two, c).face < 0).mean() for c in corners]
     assert min(holes) > 0.01 > max(left)
-    again = second_layer(pictures, matrices, d, cut=3.0)
+    again = estimate_second_layer(pictures, matrices, d, cut=3.0)
     np.testing.assert_array_equal(again[0], wide)
 
 
 def test_a_depth_map_without_cuts_needs_no_second_layer():
     pictures = np.zeros((2, 40, 60, 3), np.uint8)
-    matrices = view_matrices(canvas(), [camera(), camera(at=(0.1, 0, 0))])
-    _, valid = second_layer(pictures, matrices, ramp(), cut=1.0)
+    matrices = view_matrices(reference_view(), [camera(), camera(at=(0.1, 0, 0))])
+    _, valid = estimate_second_layer(pictures, matrices, ramp(), cut=1.0)
     assert not valid.any()
 
 
 def test_second_layer_reports_its_progress_from_the_first_step_to_the_last():
     spots = [(0.04 * i, 0.04 * j, 0.0) for j in (-1, 0, 1) for i in (-1, 0, 1)]
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     matrices = view_matrices(frame, [camera(64, 48, at) for at in spots])
     reports = []
-    second_layer(
+    estimate_second_layer(
         np.stack([world(at)[0] for at in spots]), matrices, world((0, 0), *reversed(frame.shape))[1], cut=3.0,
         progress=lambda *each: reports.append(each),
     )  # fmt: skip
@@ -347,7 +349,7 @@ def open_pixels(mesh, cameras):
 
 
 def test_the_backdrop_closes_every_view_and_stays_behind_the_layers():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = leaves(frame)
     cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
     cameras += [turned(camera(64, 48, (0.1, 0, 0)), 8), turned(camera(64, 48, (-0.1, 0, 0)), -8)]
@@ -365,7 +367,7 @@ def test_the_backdrop_closes_every_view_and_stays_behind_the_layers():
 
 
 def test_without_anything_open_there_is_no_backdrop():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = ramp(*frame.shape)
     near = [camera(64, 48, (0.01 * i, 0, 0)) for i in (-1, 0, 1)]
     one = relief_mesh(frame, d, everywhere(d), cut=3.0, tolerance=0.1)
@@ -375,7 +377,7 @@ def test_without_anything_open_there_is_no_backdrop():
 
 
 def test_the_backdrop_keeps_to_its_share_of_the_triangles():
-    frame = Canvas.around(camera(64, 48), 12, OFFSET, SCALE)
+    frame = ReferenceView.with_margin(camera(64, 48), 12, OFFSET, SCALE)
     d = leaves(frame)
     cameras = [camera(64, 48, (0.05 * i, 0.05 * j, 0)) for i in range(-2, 3) for j in range(-2, 3)]
     for triangles in (400, 2000):

@@ -8,14 +8,20 @@ from hypothesis import strategies as st
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
-from eigenfield.proxy.background import joined
-from eigenfield.proxy.topology import boundary_loops, compact, filled, manifold, without_islands
-from eigenfield.proxy.topology_kernels import least_area
+from eigenfield.proxy.background import join_meshes
+from eigenfield.proxy.topology import (
+    boundary_loops,
+    fill_holes,
+    make_manifold,
+    remove_islands,
+    remove_unused_vertices,
+)
+from eigenfield.proxy.topology_kernels import triangulate_least_area
 from support.surfaces import ball, square
 
 
 def holed(mesh, which):
-    return compact(Mesh(mesh.vertices, mesh.faces[~which]))
+    return remove_unused_vertices(Mesh(mesh.vertices, mesh.faces[~which]))
 
 
 def test_small_holes_are_filled_large_ones_stay():
@@ -25,7 +31,7 @@ def test_small_holes_are_filled_large_ones_stay():
     large = np.linalg.norm(middle - [-0.5, -0.5], axis=1) < 0.9
     mesh = holed(mesh, small | large)
     assert len(boundary_loops(mesh)) == 3
-    result = filled(mesh, 1.0)
+    result = fill_holes(mesh, 1.0)
     assert len(boundary_loops(result)) == 2
     missing = 16 - result.face_areas().sum()
     assert np.isclose(
@@ -36,7 +42,7 @@ def test_small_holes_are_filled_large_ones_stay():
 
 def test_an_outer_border_is_no_hole():
     mesh = square(0.1, 0.0, 6)
-    assert np.array_equal(filled(mesh, 10.0).faces, mesh.faces)
+    assert np.array_equal(fill_holes(mesh, 10.0).faces, mesh.faces)
 
 
 @settings(max_examples=40, deadline=None)
@@ -45,7 +51,7 @@ def test_least_area_triangulates_any_loop(count, seed):
     random = np.random.default_rng(seed)
     angle = np.sort(random.uniform(0, 2 * np.pi, count))
     loop = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
-    triangles = least_area(loop)
+    triangles = triangulate_least_area(loop)
     assert triangles.shape == (count - 2, 3) and set(triangles.ravel()) == set(range(count))
     x, y = loop[:, 0], loop[:, 1]
     polygon = abs((x * np.roll(y, -1) - y * np.roll(x, -1)).sum()) / 2
@@ -55,16 +61,16 @@ def test_least_area_triangulates_any_loop(count, seed):
 
 def test_least_area_spans_a_bent_loop_over_the_short_way():
     loop = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 1.0], [0, 1, 0]], float)
-    area = Mesh(loop.astype(np.float32), least_area(loop).astype(np.int32)).face_areas().sum()
+    area = Mesh(loop.astype(np.float32), triangulate_least_area(loop).astype(np.int32)).face_areas().sum()
     other = Mesh(loop.astype(np.float32), np.array([[1, 2, 3], [1, 3, 0]], np.int32)).face_areas().sum()
     one = Mesh(loop.astype(np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.int32)).face_areas().sum()
     assert np.isclose(area, min(one, other))
 
 
 def test_islands_go_by_their_share_of_the_area():
-    mesh = joined(square(1, 0.0), square(0.05, 3.0), square(0.4, 5.0))
-    assert set(np.unique(without_islands(mesh, 0.01).vertices[:, 2])) == {0.0, 5.0}
-    assert set(np.unique(without_islands(mesh, 0.5).vertices[:, 2])) == {0.0}
+    mesh = join_meshes(square(1, 0.0), square(0.05, 3.0), square(0.4, 5.0))
+    assert set(np.unique(remove_islands(mesh, 0.01).vertices[:, 2])) == {0.0, 5.0}
+    assert set(np.unique(remove_islands(mesh, 0.5).vertices[:, 2])) == {0.0}
 
 
 def test_no_edge_keeps_three_faces_and_no_vertex_two_fans():
@@ -82,7 +88,7 @@ def test_no_edge_keeps_three_faces_and_no_vertex_two_fans():
         ],
         np.int32,
     )
-    mesh = manifold(Mesh(vertices, faces))
+    mesh = make_manifold(Mesh(vertices, faces))
     assert len(mesh.faces) == 3
     _, number = face_edges(mesh.faces)
     assert np.bincount(number).max() == 2
@@ -92,6 +98,6 @@ def test_no_edge_keeps_three_faces_and_no_vertex_two_fans():
 
 def test_a_clean_mesh_stays_as_it_is():
     mesh = ball()
-    same = manifold(mesh)
+    same = make_manifold(mesh)
     assert np.array_equal(same.faces, mesh.faces) and np.array_equal(same.vertices, mesh.vertices)
     assert boundary_loops(mesh) == []

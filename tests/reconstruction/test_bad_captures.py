@@ -266,7 +266,7 @@ def report_of(photos, code):
 )
 def test_photographs_that_may_be_a_grid_are_told_of_it(tmp_path, number, code, hint):
     shots = tuple(Shot(f"{k}.png", tmp_path / f"{k}.png", 64, 48) for k in range(number))
-    error = sfm._failed(
+    error = sfm._failure_error(
         PhotoSet(tmp_path, shots, None, (), "folder"), report_of(PhotoSet(tmp_path, shots, None, (), "folder"), code)
     )
     assert isinstance(error, CaptureError)

@@ -6,7 +6,7 @@ import numpy as np
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.surface.trim import SurfaceError
-from eigenfield.reconstruction.report import report_of
+from eigenfield.reconstruction.report import measure_proxy
 from support.surfaces import looking, square
 
 
@@ -20,7 +20,7 @@ def test_a_report_tells_what_was_measured():
     ahead = looking(np.array([0, 0, -5.0]), (0, 0, 0), focal=120.0, width=120, height=120)  # sees 5 by 5
     aside = looking(np.array([1.25, 0, -5.0]), (1.25, 0, 0), focal=120.0, width=120, height=120)
     error = SurfaceError(0.01, 0.02, 0.0005, 0.5, 1.25)
-    report = report_of(with_uv(2.5, 0.5), [ahead, aside], error)
+    report = measure_proxy(with_uv(2.5, 0.5), [ahead, aside], error)
     assert report.triangles == 32
     assert np.allclose(report.coverage, [1, 0.75], atol=0.01)
     assert np.isclose(report.atlas.fill, 0.25, atol=0.002) and report.atlas.overlap == 0
@@ -33,5 +33,5 @@ def test_a_report_tells_what_was_measured():
 
 def test_full_coverage_and_no_simplification_are_told_shortly():
     camera = looking(np.array([0, 0, -5.0]), (0, 0, 0), width=40, height=40)
-    lines = report_of(with_uv(2.5, 1.0), [camera], None).lines(["one.png"])
+    lines = measure_proxy(with_uv(2.5, 1.0), [camera], None).lines(["one.png"])
     assert lines[0] == "  32 triangles, coverage 100.0%" and len(lines) == 2

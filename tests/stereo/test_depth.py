@@ -10,23 +10,24 @@ from hypothesis import strategies as st
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import set_threads
 from eigenfield.stereo import (
-    Canvas,
-    consistent,
+    ReferenceView,
+    count_consistent_views,
     depth_buffers,
     depth_range,
     detail_pictures,
     estimate_depth,
-    halve,
+    halve_pictures,
     halved_matrices,
     mean_texture,
-    pack,
+    pack_pictures,
+    plane_sweep,
     refine_depth,
-    semi_global,
+    semi_global_matching,
     smooth_depth,
-    sweep,
     view_matrices,
 )
-from eigenfield.stereo.consistency import between
+from eigenfield.stereo.consistency import transfer_matrix
+from eigenfield.stereo.views import unpack_pictures
 from support.planes import everywhere, paint, photograph
 
 SIDE = 96
@@ -66,7 +67,7 @@ def test_the_sweep_is_least_at_the_plane(label):
     matrices = grid_matrices(3)
     pictures = photograph([(label, 0, 0, paint(4), everywhere)], matrices, 48)
     labels = np.linspace(-2, 2, 41).astype(np.float32)
-    cost = sweep(pictures, matrices, (48, 48), labels, reference=pictures[4])
+    cost = plane_sweep(pictures, matrices, (48, 48), labels, reference=pictures[4])
     found = labels[cost[4:-4, 4:-4].argmin(axis=-1)]
     assert abs(np.median(found) - label) < 0.13  # labels are 0.1 apart: half of it, and what interpolation moves it
     assert (abs(found - label) < 0.25).mean() > 0.9
@@ -77,7 +78,7 @@ def test_without_a_reference_the_views_own_centre_does(slanted):
     matrices = grid_matrices()
     others = np.arange(len(matrices)) != len(matrices) // 2
     labels = np.linspace(-1, 2, 31).astype(np.float32)
-    cost = sweep(pictures[others], matrices[others], (SIDE, SIDE), labels)
+    cost = plane_sweep(pictures[others], matrices[others], (SIDE, SIDE), labels)
     found = labels[cost[8:-8, 8:-8].argmin(axis=-1)]
     assert (abs(found - truth[8:-8, 8:-8]) < 0.15).mean() > 0.8
 
@@ -88,13 +89,13 @@ def test_labels_outside_floor_and_ceiling_and_pixels_not_asked_for_are_never_tak
     todo = np.zeros((SIDE, SIDE), bool)
     todo[10:20, 30:50] = True
     floor, ceiling = np.full((SIDE, SIDE), -0.5, np.float32), np.full((SIDE, SIDE), 0.5, np.float32)
-    cost = sweep(
-        pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], todo=todo, floor=floor, ceiling=ceiling
+    cost = plane_sweep(
+        pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], mask=todo, floor=floor, ceiling=ceiling
     )
     assert (cost[~todo] == 255).all()
     allowed = (labels >= -0.5) & (labels <= 0.5)
     assert (cost[todo][:, ~allowed] == 255).all() and (cost[todo][:, allowed] < 255).all()
-    d, confidence = semi_global(cost, pictures[12].mean(axis=-1).astype(np.float32), labels)
+    d, confidence = semi_global_matching(cost, pictures[12].mean(axis=-1).astype(np.float32), labels)
     assert d[todo].min() > -0.55 and d[todo].max() < 0.55
     assert (confidence[~todo] == 0).all()
 
@@ -106,8 +107,10 @@ def test_the_best_half_of_the_views_decides_beside_an_occluder(two_layers):
     ring[26:70, 26:70] = True
     ring &= truth < 0
     ring[:, :] &= np.roll(truth > 0, 2, 1) | np.roll(truth > 0, -2, 1)
-    half = sweep(pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], best=0.4)
-    whole = sweep(pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], best=1.0)
+    half = plane_sweep(pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], half_plane_fraction=0.4)
+    whole = plane_sweep(
+        pictures, grid_matrices(), (SIDE, SIDE), labels, reference=pictures[12], half_plane_fraction=1.0
+    )
     assert half[ring][:, far].mean() < 0.5 * whole[ring][:, far].mean()
 
 
@@ -119,7 +122,7 @@ def test_semi_global_jumps_at_an_edge_of_the_guide_and_fills_what_says_nothing()
     cost[5:9, 3:7] = 40  # flat paint
     guide = np.zeros((20, 20), np.float32)
     guide[:, 10:] = 100
-    d, confidence = semi_global(cost, guide, labels)
+    d, confidence = semi_global_matching(cost, guide, labels)
     assert np.allclose(d[:, :10], 2, atol=0.3) and np.allclose(d[:, 10:], 7, atol=0.3)
     assert (confidence > 0).all()
 
@@ -128,9 +131,9 @@ def test_semi_global_is_the_same_when_memory_is_short(monkeypatch):
     cost = np.random.default_rng(0).integers(0, 255, (30, 40, 12), dtype=np.uint8)
     guide = np.random.default_rng(1).uniform(0, 255, (30, 40)).astype(np.float32)
     labels = np.arange(12, dtype=np.float32)
-    apart = semi_global(cost, guide, labels)
-    monkeypatch.setattr("eigenfield.stereo.semiglobal.PARALLEL_BYTES", 0)
-    together = semi_global(cost, guide, labels)
+    apart = semi_global_matching(cost, guide, labels)
+    monkeypatch.setattr("eigenfield.stereo.semiglobal.SGM_MAX_PARALLEL_BYTES", 0)
+    together = semi_global_matching(cost, guide, labels)
     assert np.array_equal(apart[0], together[0]) and np.array_equal(apart[1], together[1])
 
 
@@ -237,13 +240,13 @@ def test_estimate_finds_two_layers_with_a_sharp_outline(two_layers):
     assert depth.count.max() == 25 and depth.texture.shape == (SIDE, SIDE, 3)
 
 
-def test_estimate_with_turned_cameras_and_a_widened_canvas():
+def test_estimate_with_turned_cameras_and_a_widened_reference_view():
     cameras = turned_cameras()
-    canvas = Canvas.around(cameras[4], 8, offset=0.25, scale=0.02)
-    matrices = view_matrices(canvas, cameras)
+    reference = ReferenceView.with_margin(cameras[4], 8, offset=0.25, scale=0.02)
+    matrices = view_matrices(reference, cameras)
     layer = (0.5, 0.006, 0.004, paint(5), everywhere)
     pictures = photograph([layer], matrices, 80)
-    depth = estimate_depth(pictures, cameras, canvas, (-2.0, 3.0), rounds=2)
+    depth = estimate_depth(pictures, cameras, reference, (-2.0, 3.0), rounds=2)
     y, x = np.mgrid[0:96, 0:96]
     truth = 0.5 + 0.006 * x + 0.004 * y
     error = np.abs(depth.d - truth)
@@ -268,23 +271,25 @@ def turned_cameras() -> list[Camera]:
 
 def test_maps_of_one_plane_agree_and_a_false_map_is_not_confirmed():
     cameras = turned_cameras()[3:6]
-    canvases = [Canvas(camera, 0, 0.25, 0.02) for camera in cameras]
+    references = [ReferenceView(camera, 0, 0.25, 0.02) for camera in cameras]
     maps = []
-    for canvas in canvases:  # the world's plane Z = 4
+    for reference in references:  # the world's plane Z = 4
         y, x = np.mgrid[0:80, 0:80].astype(float)
-        rays = np.stack([x + 0.5, y + 0.5, np.ones_like(x)], -1) @ np.linalg.inv(canvas.camera.K).T @ canvas.camera.R
-        depth = (4 - canvas.camera.centre[2]) / rays[..., 2]
+        rays = (
+            np.stack([x + 0.5, y + 0.5, np.ones_like(x)], -1) @ np.linalg.inv(reference.camera.K).T @ reference.camera.R
+        )
+        depth = (4 - reference.camera.centre[2]) / rays[..., 2]
         maps.append(((1 / depth - 0.25) / 0.02).astype(np.float32))
-    counts = consistent(maps, canvases)
+    counts = count_consistent_views(maps, references)
     assert (counts[1] == 2).mean() > 0.6 and counts[0].max() == 2
     false = [maps[0], maps[1] + 3, maps[2]]
-    assert (consistent(false, canvases)[1] == 0).all()
-    nobody = consistent(maps, canvases, valid=[np.zeros((80, 80), bool)] * 3)
+    assert (count_consistent_views(false, references)[1] == 0).all()
+    nobody = count_consistent_views(maps, references, valid=[np.zeros((80, 80), bool)] * 3)
     assert all((count == 0).all() for count in nobody)
     point = np.array([30.0, 50.0, float(maps[0][50, 30]), 1.0])
-    there = between(canvases[0], canvases[2]) @ point
+    there = transfer_matrix(references[0], references[2]) @ point
     world = [c.points(np.array(p[0] / p[3]), np.array(p[1] / p[3]), np.array(p[2] / p[3])) for c, p in
-             ((canvases[0], point), (canvases[2], there))]  # fmt: skip
+             ((references[0], point), (references[2], there))]  # fmt: skip
     assert np.allclose(world[0], world[1], atol=1e-9)
 
 
@@ -319,9 +324,9 @@ def test_damaged_input_is_refused_and_points_behind_a_camera_are_not_seen(slante
     broken = matrices.copy()
     broken[3, 0, 0] = np.nan
     with pytest.raises(ValueError, match="finite"):
-        sweep(pictures, broken, (SIDE, SIDE), np.array([0, 1, 2], np.float32))
+        plane_sweep(pictures, broken, (SIDE, SIDE), np.array([0, 1, 2], np.float32))
     with pytest.raises(ValueError, match="uint8"):
-        pack(pictures.astype(np.float32))
+        pack_pictures(pictures.astype(np.float32))
     with pytest.raises(ValueError, match="empty range"):
         estimate_depth(pictures, matrices, (SIDE, SIDE), (1.0, 1.0))
     with pytest.raises(ValueError, match="empty range"):
@@ -337,7 +342,7 @@ def test_damaged_input_is_refused_and_points_behind_a_camera_are_not_seen(slante
 def test_halved_pictures_and_matrices_belong_together():
     matrices = grid_matrices(3)
     pictures = photograph([(1.0, 0, 0, paint(6, detail=6), everywhere)], matrices, 65)
-    small = halve(pictures)
+    small = halve_pictures(pictures)
     assert small.shape == (9, 33, 33)
     texture, count = mean_texture(small, halved_matrices(matrices), np.ones((33, 33), np.float32))
     reference, _ = mean_texture(small[4:5], halved_matrices(matrices)[4:5], np.ones((33, 33), np.float32))
@@ -353,7 +358,6 @@ def test_detail_is_blind_to_shading():
     shaded = plain + (0.3 * x)[..., None]
     as_bytes = lambda values: np.rint(np.clip(values, 0, 255)).astype(np.uint8)[None]  # noqa: E731
     before = np.abs(shaded - plain).mean()
-    first, second = (detail_pictures(as_bytes(p), rest=0).view(np.uint8).reshape(SIDE, SIDE, 4)[..., :3].astype(int)
-                     for p in (plain, shaded))  # fmt: skip
+    first, second = (unpack_pictures(detail_pictures(as_bytes(p), base_gain=0))[0].astype(int) for p in (plain, shaded))
     assert np.abs(first - second)[6:-6, 6:-6].mean() < 0.3 * before
     assert first.std() > 3

@@ -10,7 +10,7 @@ from eigenfield.runtime import parallel
 from eigenfield.runtime.jit import kernel
 from eigenfield.stereo.smooth import smooth_depth
 from eigenfield.stereo.smooth_kernels import exponential, fit_planes
-from eigenfield.stereo.sweep_kernels import _parts
+from eigenfield.stereo.sweep_kernels import _half_planes
 
 
 @kernel()
@@ -92,9 +92,9 @@ def test_a_plane_stays_and_threads_do_not_matter(noisy):
 
 def test_half_planes_that_hold_the_same_views_are_looked_at_once():
     best = np.float32(0.4)
-    assert _parts(np.array([2, 2, 2]), 8, best).tolist() == [[0, 4]]  # all views on one side
-    both = _parts(np.array([0, 4]), 8, best)
+    assert _half_planes(np.array([2, 2, 2]), 8, best).tolist() == [[0, 4]]  # all views on one side
+    both = _half_planes(np.array([0, 4]), 8, best)
     assert len(both) == 2 and (both[:, 1] == 4).all()
-    assert len(_parts(np.arange(8), 8, best)) == 8
-    assert len(_parts(np.array([-1, -1]), 8, best)) == 0
-    assert _parts(np.arange(8), 8, np.float32(1)).tolist() == [[0, 8]]
+    assert len(_half_planes(np.arange(8), 8, best)) == 8
+    assert len(_half_planes(np.array([-1, -1]), 8, best)) == 0
+    assert _half_planes(np.arange(8), 8, np.float32(1)).tolist() == [[0, 8]]

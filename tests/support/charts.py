@@ -8,9 +8,9 @@ from scipy.spatial.transform import Rotation
 
 from eigenfield.calibrate.charts import board as boards
 from eigenfield.calibrate.charts.board import Board
-from eigenfield.calibrate.charts.bundle import Sighting
-from eigenfield.calibrate.charts.corners import Corners
-from eigenfield.calibrate.charts.lens_models import matrix, project
+from eigenfield.calibrate.charts.bundle import BoardObservation
+from eigenfield.calibrate.charts.corners import DetectedCorners
+from eigenfield.calibrate.charts.lens_models import camera_matrix, project_points
 
 CHECKER = boards.checkerboard(9, 6, 25.0, "mm")
 CHARUCO = boards.charuco(5, 6, 30.0, 22.0, "DICT_4X4_50", "mm")
@@ -56,16 +56,16 @@ def board_poses(board: Board, count=10, seed=0, tilt=35.0, spread=60.0):
     return poses
 
 
-def sightings(board, cameras, poses, noise=0.2, seed=0, intrinsics=INTRINSICS):
+def observations(board, cameras, poses, noise=0.2, seed=0, intrinsics=INTRINSICS):
     """What every camera sees of every board, with Gaussian noise in pixels."""
     random = np.random.default_rng(seed)
     found = []
     for c, (R, t) in enumerate(cameras):
         row = intrinsics if intrinsics.ndim == 1 else intrinsics[c]
         for m, (board_R, board_t) in enumerate(poses):
-            at = project((board.points @ board_R.T + board_t) @ R.T + t, row)
+            at = project_points((board.points @ board_R.T + board_t) @ R.T + t, row)
             at = at + random.normal(0, noise, at.shape)
-            found.append(Sighting(c, m, Corners(np.arange(len(at)), at)))
+            found.append(BoardObservation(c, m, DetectedCorners(np.arange(len(at)), at)))
     return found
 
 
@@ -90,7 +90,7 @@ def photograph(board, camera, pose, *, inverted=False, mirrored=False, legacy=Fa
     to_board = np.array([[1, 0, -first], [0, 1, -first], [0, 0, dots / board.square]]) * board.square / dots
     plane = np.column_stack([(R @ board_R)[:, :2], R @ board_t + t])
     fine = 3
-    H = np.diag([fine, fine, 1.0]) @ matrix(INTRINSICS) @ plane @ to_board
+    H = np.diag([fine, fine, 1.0]) @ camera_matrix(INTRINSICS) @ plane @ to_board
     half = np.array([[1, 0, 0.5], [0, 1, 0.5], [0, 0, 1]])
     large = cv2.warpPerspective(
         sheet, np.linalg.inv(half) @ H @ half, (SIZE[0] * fine, SIZE[1] * fine), borderValue=60 if inverted else 180
@@ -98,7 +98,7 @@ def photograph(board, camera, pose, *, inverted=False, mirrored=False, legacy=Fa
     picture = cv2.resize(large, SIZE, interpolation=cv2.INTER_AREA).astype(float) * 0.8 + 20
     picture += np.random.default_rng(seed).normal(0, noise, picture.shape)
     grey = np.clip(np.rint(picture), 0, 255).astype(np.uint8)
-    at = project((board.points @ board_R.T + board_t) @ R.T + t, INTRINSICS)
+    at = project_points((board.points @ board_R.T + board_t) @ R.T + t, INTRINSICS)
     if mirrored:
         grey, at = np.ascontiguousarray(grey[:, ::-1]), np.stack([SIZE[0] - at[:, 0], at[:, 1]], axis=1)
     return grey, at

@@ -10,7 +10,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Photograph
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.background import joined
+from eigenfield.proxy.background import join_meshes
 from eigenfield.proxy.surface.fusion import DepthView
 
 
@@ -45,7 +45,7 @@ def ball(centre=(0, 0, 0), radius=1.0, level=4):
 
 def ball_before_wall():
     """A unit ball at the origin before a wall at z = 1.2."""
-    return joined(ball(level=5), square(4, 1.2))
+    return join_meshes(ball(level=5), square(4, 1.2))
 
 
 def nine_cameras():

@@ -20,7 +20,7 @@ import eigenfield as ef
 from eigenfield.cli import main
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import save
-from eigenfield.rendering import Shots
+from eigenfield.rendering import RenderJob
 from eigenfield.runtime.files import atomic_files
 from eigenfield.viewer import exports
 from support.scenes import tiny_scene
@@ -140,7 +140,7 @@ def test_a_full_disk_is_one_line_and_leaves_what_was(export, kind, monkeypatch):
 
 @pytest.mark.parametrize("at", [0, 1, 3])
 def test_interrupted_work_leaves_nothing(tmp_path, at):
-    shots = Shots(tiny_scene(cameras=9))
+    job = RenderJob(tiny_scene(cameras=9))
 
     def stop(stage, done, total):
         if done == min(at, total):
@@ -152,12 +152,12 @@ def test_interrupted_work_leaves_nothing(tmp_path, at):
 
     points = np.zeros((4, 2))
     work = [
-        lambda: exports.write_maps(shots.scene, tmp_path / "maps", progress=stop),
-        lambda: exports.write_obj_folder(shots.scene, tmp_path / "obj", progress=stop),
-        lambda: exports.write_colmap(shots, tmp_path / "colmap", progress=stop),
-        lambda: exports.write_quilt(shots, exports.quilt_of(shots.scene), tmp_path / "q.png", progress=stop),
-        lambda: write_flight(shots, points, tmp_path / "a.mp4", Fraction(30), progress=stop),
-        lambda: write_flight(shots, points, tmp_path / "a%d.png", Fraction(30), progress=stop),
+        lambda: exports.write_maps(job.scene, tmp_path / "maps", progress=stop),
+        lambda: exports.write_obj_folder(job.scene, tmp_path / "obj", progress=stop),
+        lambda: exports.write_colmap(job, tmp_path / "colmap", progress=stop),
+        lambda: exports.write_quilt(job, exports.quilt_of(job.scene), tmp_path / "q.png", progress=stop),
+        lambda: write_flight(job, points, tmp_path / "a.mp4", Fraction(30), progress=stop),
+        lambda: write_flight(job, points, tmp_path / "a%d.png", Fraction(30), progress=stop),
     ]
     for write in work:
         with pytest.raises(KeyboardInterrupt):
@@ -274,7 +274,7 @@ def test_hostile_cameras_are_written_inside(tmp_path):
     scene = replace(scene, rig=replace(scene.rig, names=names))
     (tmp_path / "in").mkdir()
     exports.write_maps(scene, tmp_path / "in" / "maps")
-    exports.write_colmap(Shots(scene), tmp_path / "in" / "colmap")
+    exports.write_colmap(RenderJob(scene), tmp_path / "in" / "colmap")
     assert {path.name for path in tmp_path.iterdir()} == {"in"}
     assert {path.name for path in (tmp_path / "in").iterdir()} == {"maps", "colmap"}
     listing = json.loads((tmp_path / "in" / "maps" / "eigenfield.json").read_text(encoding="utf-8"))

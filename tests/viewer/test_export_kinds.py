@@ -19,7 +19,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, save
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.proxy import read_mesh
-from eigenfield.rendering import Shots, draw_texture, renderer_of, view_weights
+from eigenfield.rendering import RenderJob, draw_texture, renderer_of, view_weights
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
@@ -145,7 +145,7 @@ def test_planes_become_eigen_textures_of_red_green_and_blue_beside_the_obj(fitte
 
 
 def test_a_fitted_scene_makes_a_colmap_model_of_its_colours(fitted, tmp_path):
-    exports.write_colmap(Shots(fitted), tmp_path / "model")
+    exports.write_colmap(RenderJob(fitted), tmp_path / "model")
     model = pycolmap.Reconstruction(tmp_path / "model" / "sparse" / "0")
     colours = np.array([point.color for point in model.points3D.values()])
     assert len(colours) > 100
@@ -169,13 +169,13 @@ def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):
 
 
 def test_a_quilt_begins_at_the_bottom_left_with_the_leftmost_view(scene, tmp_path):
-    shots = Shots(scene)
+    job = RenderJob(scene)
     quilt = exports.quilt_of(scene, (4, 3), (30, 40), 0.8)
-    path = exports.write_quilt(shots, quilt, tmp_path / "q.png")
+    path = exports.write_quilt(job, quilt, tmp_path / "q.png")
     assert path.name == "q_qs4x3a0.75.png"
     whole = pixels(path)
     assert whole.shape == (120, 120, 3)
-    views = quilt_views(shots, quilt)
+    views = quilt_views(job, quilt)
     places = scene.rig.view_plane.coordinates([camera.centre for camera, _ in views])
     np.testing.assert_allclose(places, np.column_stack([np.linspace(-0.8, 0.8, 12), np.zeros(12)]), atol=1e-9)
     for number, (camera, mix) in enumerate(views):
@@ -188,7 +188,7 @@ def test_a_quilt_begins_at_the_bottom_left_with_the_leftmost_view(scene, tmp_pat
 def test_a_quilt_converges_on_the_scene_and_moves_sideways_only(scene):
     """What is nearer than the plane of the display moves left as the eye moves right, what is farther to the right;
     nothing moves up or down."""
-    views = quilt_views(Shots(scene), exports.quilt_of(scene, (5, 1)))
+    views = quilt_views(RenderJob(scene), exports.quilt_of(scene, (5, 1)))
     axes = views[0][0].R
     middle = scene.proxy.mesh.vertices.astype(float).mean(axis=0)
     nearer, farther = middle - axes[2], middle + axes[2]
@@ -207,17 +207,17 @@ def test_quilts_fit_players_and_say_what_cannot_be(scene):
     quilt = exports.quilt_of(large)
     assert (quilt.columns, quilt.rows) == (8, 6) and 8 * quilt.width == 4096 and 6 * quilt.height <= 4096
     assert quilt.suffix == "_qs8x6a1.333"
-    same = quilt_views(Shots(scene), exports.quilt_of(scene, (2, 2), spread=0))
+    same = quilt_views(RenderJob(scene), exports.quilt_of(scene, (2, 2), spread=0))
     assert len({tuple(camera.centre) for camera, _ in same}) == 1
     tall = tiny_scene(cameras=3)  # a row of cameras, turned by a quarter: one above the other
     quarter = np.array([[0.0, 1, 0], [-1, 0, 0], [0, 0, 1]])
     turned = tuple(replace(c, R=quarter @ c.R, t=quarter @ c.t) for c in tall.rig.cameras)
     with pytest.raises(OptionError, match="side by side"):
-        quilt_views(Shots(replace(tall, rig=replace(tall.rig, cameras=turned))), exports.quilt_of(tall))
+        quilt_views(RenderJob(replace(tall, rig=replace(tall.rig, cameras=turned))), exports.quilt_of(tall))
 
 
 def test_a_colmap_folder_is_read_back_and_shows_what_is_drawn(scene, tmp_path):
-    exports.write_colmap(Shots(scene), tmp_path / "capture")
+    exports.write_colmap(RenderJob(scene), tmp_path / "capture")
     capture = ef.open_capture(tmp_path / "capture")
     assert capture.format == "colmap" and capture.problems == ()
     assert capture.names == tuple(f"{name}.png" for name in scene.rig.names)
@@ -231,7 +231,7 @@ def test_a_colmap_folder_is_read_back_and_shows_what_is_drawn(scene, tmp_path):
 
 
 def test_pycolmap_reads_the_model_and_its_points_lie_on_the_mesh(scene, tmp_path):
-    exports.write_colmap(Shots(scene), tmp_path / "capture")
+    exports.write_colmap(RenderJob(scene), tmp_path / "capture")
     model = pycolmap.Reconstruction(tmp_path / "capture" / "sparse" / "0")
     assert model.num_images() == 9 and model.num_points3D() > 5000
     for point in list(model.points3D.values())[:: len(model.points3D) // 50]:
@@ -246,15 +246,15 @@ def test_pycolmap_reads_the_model_and_its_points_lie_on_the_mesh(scene, tmp_path
 
 
 def test_other_sizes_viewpoints_and_backgrounds_of_a_colmap_folder(scene, tmp_path):
-    shots = Shots(scene, resolution=(30, 20), background=None)
-    exports.write_colmap(shots, tmp_path / "path", points=np.array([[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]]))
+    job = RenderJob(scene, resolution=(30, 20), background=None)
+    exports.write_colmap(job, tmp_path / "path", points=np.array([[0.0, 0.0], [0.4, -0.3], [-0.5, 0.5]]))
     capture = ef.open_capture(tmp_path / "path")
     assert capture.names == ("path_0000.png", "path_0001.png", "path_0002.png")
     assert (capture.cameras[0].width, capture.cameras[0].height) == (30, 20)
     with Image.open(tmp_path / "path" / "images" / "path_0000.png") as picture:
         assert picture.mode == "RGBA"
     skewed = tuple(replace(c, K=c.K + np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 0]])) for c in scene.rig.cameras)
-    exports.write_colmap(Shots(replace(scene, rig=replace(scene.rig, cameras=skewed))), tmp_path / "skew")
+    exports.write_colmap(RenderJob(replace(scene, rig=replace(scene.rig, cameras=skewed))), tmp_path / "skew")
     assert len(ef.open_capture(tmp_path / "skew")) == 9
 
 
@@ -262,7 +262,7 @@ def test_captured_cameras_have_their_own_exposure(scene, tmp_path):
     colours = np.tile(np.array([[1.0] * 3, [0.0] * 3], np.float32), (9, 1, 1))
     colours[0] = [[1.3, 1.2, 1.1], [0.02, 0, -0.02]]
     harmonised = replace(scene, appearance=replace(scene.appearance, colours=colours))
-    exports.write_colmap(Shots(harmonised), tmp_path / "capture")
+    exports.write_colmap(RenderJob(harmonised), tmp_path / "capture")
     expected = ef.render(harmonised, camera=scene.rig.names[0]).to_uint8()
     drawn = pixels(tmp_path / "capture" / "images" / f"{scene.rig.names[0]}.png")
     np.testing.assert_array_equal(np.round(drawn * 255), expected)
@@ -272,16 +272,16 @@ def test_grey_scenes_are_pictures_and_other_attributes_are_not(tmp_path):
     grey = tiny_scene(channels=1)
     exports.write_maps(grey, tmp_path / "maps")
     exports.write_obj_folder(grey, tmp_path / "obj")
-    exports.write_colmap(Shots(grey), tmp_path / "colmap")
-    exports.write_quilt(Shots(grey), exports.quilt_of(grey, (2, 2)), tmp_path / "q.png")
+    exports.write_colmap(RenderJob(grey), tmp_path / "colmap")
+    exports.write_quilt(RenderJob(grey), exports.quilt_of(grey, (2, 2)), tmp_path / "q.png")
     assert len(ef.open_capture(tmp_path / "colmap")) == 5
     other = tiny_scene(channels=6)
     for write in (
         lambda: exports.write_maps(other, tmp_path / "a"),
         lambda: exports.write_obj(other, tmp_path / "a.obj"),
         lambda: exports.write_obj_folder(other, tmp_path / "a"),
-        lambda: exports.write_colmap(Shots(other), tmp_path / "a"),
-        lambda: exports.write_quilt(Shots(other), exports.quilt_of(other), tmp_path / "a.png"),
+        lambda: exports.write_colmap(RenderJob(other), tmp_path / "a"),
+        lambda: exports.write_quilt(RenderJob(other), exports.quilt_of(other), tmp_path / "a.png"),
     ):
         with pytest.raises(OptionError, match="no picture"):
             write()

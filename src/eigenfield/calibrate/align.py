@@ -1,5 +1,4 @@
-"""Similarities between two sets of camera centres, errors of a calibration against the truth, and the gauge of a
-calibration that has no scale or axes of its own."""
+"""Similarity alignment of camera centres, the error of a calibration against ground truth, and a canonical gauge."""
 
 from __future__ import annotations
 
@@ -17,11 +16,21 @@ F64 = NDArray[np.float64]
 
 
 def align_similarity(source: ArrayLike, target: ArrayLike) -> tuple[float, F64, F64]:
-    """Scale s, rotation R (3, 3) and shift t (3,) that minimise sum |target - (s R source + t)|^2.
+    """The similarity that best maps one set of points onto another.
 
-    source, target: (n, 3), n >= 3. Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point
-    Patterns*, PAMI 1991. Points on a line leave the rotation about it open; then it is the smallest that fits.
-    Raises CaptureError (`align`) where the points are too few or all in one place.
+    It minimises sum |target - (s R source + t)|^2: Umeyama, *Least-Squares Estimation of Transformation Parameters
+    Between Two Point Patterns*, PAMI 1991. Points on a line leave the rotation about it open; then the smallest
+    rotation that fits is returned.
+
+    Args:
+        source: (n, 3) points, n >= 3.
+        target: (n, 3) the points they correspond to.
+
+    Returns:
+        Scale s, rotation R (3, 3) and shift t (3,).
+
+    Raises:
+        CaptureError: `align`: too few points, or all in one place.
     """
     x, y = np.asarray(source, np.float64), np.asarray(target, np.float64)
     if x.shape != y.shape or x.ndim != 2 or x.shape[1] != 3 or len(x) < 3:
@@ -41,10 +50,13 @@ def align_similarity(source: ArrayLike, target: ArrayLike) -> tuple[float, F64, 
 
 @dataclass(frozen=True, eq=False)
 class CalibrationError:
-    """How far cameras are from the true ones after a similarity fit of their centres.
+    """Errors of cameras against ground truth, after a similarity fit of their centres.
 
-    names: those in both. rotation: (n,) degrees. position: (n,) distance over the extent, the diagonal of the box
-    around the true centres. focal: (n,) estimated over true focal length, minus one.
+    Attributes:
+        names: The n cameras in both calibrations.
+        rotation: (n,) degrees.
+        position: (n,) distance over the diagonal of the box around the true centres.
+        focal: (n,) estimated over true focal length, minus one.
     """
 
     names: tuple[str, ...]
@@ -54,7 +66,15 @@ class CalibrationError:
 
 
 def calibration_error(estimated: LightField, truth: LightField) -> CalibrationError:
-    """Compare cameras by name; those in one light field alone are left out. Raises CaptureError (`align`)."""
+    """Compare cameras by name; cameras in only one light field are left out.
+
+    Args:
+        estimated: The calibration under test.
+        truth: Ground truth.
+
+    Raises:
+        CaptureError: `align`: fewer than three common cameras, or all in one place.
+    """
     true = dict(zip(truth.names, truth.cameras, strict=True))
     names = tuple(name for name in estimated.names if name in true)
     ours = [camera for name, camera in zip(estimated.names, estimated.cameras, strict=True) if name in true]
@@ -62,7 +82,7 @@ def calibration_error(estimated: LightField, truth: LightField) -> CalibrationEr
     centres = np.array([camera.centre for camera in theirs]).reshape(-1, 3)
     scale, R, t = align_similarity(np.array([camera.centre for camera in ours]).reshape(-1, 3), centres)
     extent = float(np.linalg.norm(np.ptp(centres, axis=0)))
-    moved = [moved_camera(camera, scale, R, t) for camera in ours]
+    moved = [transform_camera(camera, scale, R, t) for camera in ours]
     rotation = np.array([angle_between(a.R, b.R) for a, b in zip(moved, theirs, strict=True)])
     position = np.array([np.linalg.norm(a.centre - b.centre) for a, b in zip(moved, theirs, strict=True)]) / extent
     focal = np.array([a.K[0, 0] / b.K[0, 0] - 1 for a, b in zip(ours, theirs, strict=True)])
@@ -70,7 +90,12 @@ def calibration_error(estimated: LightField, truth: LightField) -> CalibrationEr
 
 
 def angle_between(first: F64, second: F64) -> float:
-    """Degrees of the rotation that leads from one to the other."""
+    """The angle in degrees of the rotation that takes one to the other.
+
+    Args:
+        first: (3, 3) rotation.
+        second: (3, 3) rotation.
+    """
     difference = first @ second.T
     # the sine from the antisymmetric part: the arc cosine of the trace loses half the digits near zero
     axis = np.array([
@@ -79,19 +104,32 @@ def angle_between(first: F64, second: F64) -> float:
     return float(np.degrees(np.arctan2(np.linalg.norm(axis), np.trace(difference) - 1)))
 
 
-def moved_camera(camera: Camera, scale: float, R: F64, t: F64) -> Camera:
-    """The camera in the world x' = scale R x + t: it sees the moved points where it saw the old."""
-    turned = camera.R @ R.T
+def transform_camera(camera: Camera, scale: float, R: F64, t: F64) -> Camera:
+    """The camera in the world x' = scale R x + t: it sees the transformed points where it saw the old ones.
+
+    Args:
+        camera: In the old world.
+        scale: Of the similarity.
+        R: (3, 3) rotation of the similarity.
+        t: (3,) shift of the similarity.
+    """
+    rotated = camera.R @ R.T
     centre = scale * (R @ camera.centre) + t
-    return Camera(camera.K, turned, -(turned @ centre), camera.width, camera.height)
+    return Camera(camera.K, rotated, -(rotated @ centre), camera.width, camera.height)
 
 
 def natural_gauge(cameras: Sequence[Camera]) -> tuple[float, F64, F64]:
-    """Scale, rotation and shift into a world that depends on the cameras alone.
+    """The similarity into a world that depends on the cameras alone.
 
-    The origin is the mean of their centres. The axes are the mean of theirs (x right, y down, z forward), the rotation
-    nearest to the sum of all: for a ring that looks inwards only the vertical is left of it, as one would wish.
-    The unit is the median distance from a camera to its nearest, not counting those that stand in its own place.
+    The origin is the mean of their centres. The axes are the rotation nearest to the sum of theirs (x right, y down,
+    z forward); of a ring that looks inwards only the vertical remains. The unit is the median distance from a camera to
+    its nearest neighbour, ignoring cameras in the same place.
+
+    Args:
+        cameras: At least one.
+
+    Returns:
+        Scale, rotation (3, 3) and shift (3,).
     """
     centres = np.array([camera.centre for camera in cameras])
     u, _, vt = np.linalg.svd(sum(camera.R for camera in cameras))

@@ -1,4 +1,4 @@
-"""Reading known intrinsics of photographs: any calibration that `capture` reads, an OpenCV file, or a text of K."""
+"""Known intrinsics of photographs: from any calibration that `capture` reads, an OpenCV file, or a text with K."""
 
 from __future__ import annotations
 
@@ -19,26 +19,32 @@ from eigenfield.capture.readers.opencv import read_opencv_intrinsics
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 
-Described = tuple[Intrinsics, Lens | None]
-MATRIX_LIMIT = 4096  # bytes of a text with nothing but a camera matrix
+LensEntry = tuple[Intrinsics, Lens | None]
+KNOWN_MAX_MATRIX_BYTES = 4096  # of a text with nothing but a camera matrix
 
 
 def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
-    """The intrinsics that `path` gives for each photograph, scaled where they are for another size of the same picture.
+    """The intrinsics that a file gives for each photograph, scaled if they are for another size of the same picture.
 
-    path: a calibration of any format with cameras (its poses are not used), an OpenCV file of intrinsics, or a text
-    with the nine numbers of K. Cameras are found by the photograph's name without extension (a video's or rig's
-    camera by its own); a single camera serves for all.
+    Cameras are matched by the photograph's name without extension; the cameras of videos and rigs by their own names. A
+    single camera serves for all photographs.
 
-    Raises CaptureError: as the readers do; `intrinsics-missing` where a photograph has none; `image-size`.
+    Args:
+        path: A calibration of any format with cameras (its poses are ignored), an OpenCV file of intrinsics, or a text
+            with the nine numbers of K.
+        photos: The photographs.
+
+    Raises:
+        CaptureError: As the readers do. `calibration-missing`: there is no such file. `intrinsics-missing`: a
+            photograph has none. `image-size`: they are for another picture.
     """
     if not path.exists():
         raise CaptureError("calibration-missing", "does not exist", path=path, remedy="check --intrinsics")
-    described = _plain_matrix(path) or _described(path, photos)
-    distinct = list({_key(entry): entry for entry in described.values()}.values())
+    entries = _read_plain_matrix(path) or _read_entries(path, photos)
+    distinct = list({_key(entry): entry for entry in entries.values()}.values())
     known = []
     for shot in photos.shots:
-        entry = described.get(_stem(shot.name)) or described.get(_stem(shot.path.name))
+        entry = entries.get(_stem(shot.name)) or entries.get(_stem(shot.path.name))
         if entry is None and len(distinct) == 1:
             entry = distinct[0]
         if entry is None:
@@ -48,7 +54,7 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
                 path=path,
                 remedy="name its cameras as the photographs, or give a file of one camera",
             )
-        known.append(_fitted(entry, shot, path))
+        known.append(_scale_to_photograph(entry, shot, path))
     return known
 
 
@@ -56,14 +62,14 @@ def _stem(name: str) -> str:
     return PurePosixPath(name.replace("\\", "/")).stem.casefold()
 
 
-def _key(entry: Described) -> str:
+def _key(entry: LensEntry) -> str:
     return repr(entry)
 
 
-def _plain_matrix(path: Path) -> Mapping[str, Described] | None:
+def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
     """K of a text file that holds nine numbers and nothing else."""
     try:
-        if not path.is_file() or path.stat().st_size > MATRIX_LIMIT:
+        if not path.is_file() or path.stat().st_size > KNOWN_MAX_MATRIX_BYTES:
             return None
         values = np.array([float(word) for word in path.read_text(encoding="utf-8").replace(",", " ").split()])
     except (OSError, ValueError):
@@ -75,7 +81,7 @@ def _plain_matrix(path: Path) -> Mapping[str, Described] | None:
     return {"": (Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2])), None)}
 
 
-def _described(path: Path, photos: PhotoSet) -> Mapping[str, Described]:
+def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:
     if path.is_file() and is_storage(path):
         return {name.casefold(): entry for name, entry in read_opencv_intrinsics(path).items()}
     formats = tuple(row for row in FORMATS if row.read_cameras is not None)
@@ -93,7 +99,7 @@ def _described(path: Path, photos: PhotoSet) -> Mapping[str, Described]:
     return {_stem(entry.file): (entry.intrinsics, entry.lens) for entry in read.entries}
 
 
-def _fitted(entry: Described, shot: Shot, path: Path) -> KnownLens:
+def _scale_to_photograph(entry: LensEntry, shot: Shot, path: Path) -> KnownLens:
     intrinsics, lens = entry
     size = intrinsics.width or shot.width, intrinsics.height or shot.height
     if size != (shot.width, shot.height) and not is_same_picture(*size, shot.width, shot.height):

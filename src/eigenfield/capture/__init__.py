@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 from eigenfield.capture.formats import FORMATS, Format
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.opening import open_any, open_capture, open_photographs
 from eigenfield.capture.photographs.lens import Lens
@@ -23,8 +23,8 @@ __all__ = [
     "FORMATS",
     "Capture",
     "Format",
+    "GridLayout",
     "Header",
-    "Layout",
     "Lens",
     "LightField",
     "PhotoSet",

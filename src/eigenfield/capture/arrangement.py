@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, printable
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import photographs_in
 from eigenfield.capture.messages import count, natural, some
 from eigenfield.core.errors import CaptureError
@@ -45,7 +45,7 @@ class Arrangement:
 
     format: str
     files: tuple[Path, ...]
-    layout: Layout | None = None
+    layout: GridLayout | None = None
     problems: tuple[str, ...] = ()
     others: tuple[Path, ...] = ()
     calibration: Calibration | None = None
@@ -102,7 +102,7 @@ def refuse_nothing(fitting: Sequence[object], folder: Path, what: str) -> None:
 
 def nodes(
     files: Sequence[Path], rows: Sequence[int], columns: Sequence[int], wanted: Wanted, folder: Path
-) -> tuple[Layout, list[str]]:
+) -> tuple[GridLayout, list[str]]:
     """The layout of photographs on nodes: X is the column, Y minus the row; and a line that names missing nodes.
 
     Raises CaptureError: `node-twice` (two photographs on one node), `grid-size` (not as `wanted.grid` says).
@@ -118,7 +118,7 @@ def nodes(
             )
         owner[node] = path
     r, c = np.array(rows, np.int64), np.array(columns, np.int64)
-    layout = Layout(r, c, np.stack([c, -r], axis=1).astype(np.float64))
+    layout = GridLayout(r, c, np.stack([c, -r], axis=1).astype(np.float64))
     if wanted.grid is not None and layout.shape != wanted.grid:
         raise CaptureError(
             "grid-size",
@@ -129,7 +129,7 @@ def nodes(
     return layout, missing_line(layout)
 
 
-def missing_line(layout: Layout) -> list[str]:
+def missing_line(layout: GridLayout) -> list[str]:
     missing = layout.missing
     if not missing:
         return []
@@ -137,6 +137,6 @@ def missing_line(layout: Layout) -> list[str]:
     return [f"{count(missing, 'node of the grid has', 'nodes of the grid have')} no photograph: {places}"]
 
 
-def measured(layout: Layout, x: Sequence[float], y: Sequence[float]) -> Layout:
+def measured(layout: GridLayout, x: Sequence[float], y: Sequence[float]) -> GridLayout:
     """The layout with measured positions, X to the right and Y up."""
     return replace(layout, positions=np.stack([x, y], axis=1).astype(np.float64), measured=True)

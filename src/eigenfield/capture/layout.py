@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class GridLayout:
     """Where the cameras of a planar array stand, as far as names and metadata tell; nothing here is estimated.
 
     rows, columns: (n,) int64, each shot's node of the grid, as named.
@@ -33,12 +33,12 @@ class Layout:
     exact: bool = False
     focal: float | None = None
 
-    def subset(self, indices: Sequence[int]) -> Layout:
+    def subset(self, indices: Sequence[int]) -> GridLayout:
         """The layout of some of the shots."""
         chosen = np.asarray(indices, np.int64)
         return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
 
-    def exchanged(self) -> Layout:
+    def exchanged(self) -> GridLayout:
         """The same grid with rows for columns."""
         return replace(self, rows=self.columns, columns=self.rows, positions=self.positions[:, ::-1].copy())
 

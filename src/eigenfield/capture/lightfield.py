@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Protocol
 
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.core.camera import Camera
@@ -74,7 +74,7 @@ class LightField:
     views: tuple[View, ...]
     problems: tuple[str, ...]
     format: str
-    layout: Layout | None = None
+    layout: GridLayout | None = None
 
     def __len__(self) -> int:
         return len(self.views)

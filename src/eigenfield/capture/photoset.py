@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, PhotographSource, View
 from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
 from eigenfield.capture.photographs.lens import Lens
@@ -52,7 +52,7 @@ class PhotoSet:
 
     root: Path
     shots: tuple[Shot, ...]
-    layout: Layout | None
+    layout: GridLayout | None
     problems: tuple[str, ...]
     format: str
 

@@ -113,7 +113,7 @@ def command(
 
     started = time.monotonic()
     from eigenfield.calibrate import read_known_lenses, structure_from_motion
-    from eigenfield.calibrate.motion.report import describe, in_words
+    from eigenfield.calibrate.motion.report import describe_motion, report_lines
     from eigenfield.capture import open_photographs
     from eigenfield.capture.writers.save import save_calibration
 
@@ -137,13 +137,13 @@ def command(
             seed=seed,
             progress=progress,
         )
-    report = describe(motion)
+    report = describe_motion(motion)
     text = json.dumps(report, indent=1, allow_nan=False) + "\n"
     save_calibration(motion.light_field, place, motion.points, overwrite=overwrite, more={REPORT: text.encode()})
     if as_json:
         echo_json(report)
     else:
-        click.echo("\n".join(in_words(report)))
+        click.echo("\n".join(report_lines(report)))
     note(f"{place} written, {time.monotonic() - started:.0f} s", quiet)
 
 

@@ -90,10 +90,10 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
     from dataclasses import replace
 
     from eigenfield.calibrate.charts.board import (
-        DICTIONARY,
+        BOARD_DEFAULT_DICTIONARY,
         charuco,
         checkerboard,
-        converted,
+        convert_length,
         parse_length,
         parse_size,
         read_board,
@@ -115,8 +115,8 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
     square, unit = parse_length(_needed(options, "square", "the side of a square: --square 54mm"))
     marker, other = parse_length(_needed(options, "marker", "the side of a marker: --marker 40.5mm"))
     return charuco(
-        columns, rows, square, converted(marker, other, unit), options.dictionary or DICTIONARY, unit,
-        inverted=options.inverted, legacy=options.legacy,
+        columns, rows, square, convert_length(marker, other, unit), options.dictionary or BOARD_DEFAULT_DICTIONARY,
+        unit, inverted=options.inverted, legacy=options.legacy,
     )  # fmt: skip
 
 

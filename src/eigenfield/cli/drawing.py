@@ -15,7 +15,7 @@ DEFAULT_FRAMES, DEFAULT_FPS = 120, "30"
 
 
 def picture_options(function: F) -> F:
-    """Add --resolution, --background, --weights, --filter, --textures, --samples, --renderer, as `Shots` takes them."""
+    """Add --resolution, --background, --weights, --filter, --textures, --renderer: those of `RenderJob`."""
     options = [
         click.option("--resolution", callback=_size, metavar="WxH", help="Size in pixels.  [default: the camera's]"),
         click.option("--background", callback=_colour, default="#000000", show_default=True, metavar="COLOUR",

@@ -169,14 +169,15 @@ def _reconstructed(
     """Cameras and proxy, estimated where they are not given. settings: the options of `reconstruct`."""
     from eigenfield.capture import open_any
     from eigenfield.encoding.views import check_selection
-    from eigenfield.reconstruction import DEFAULT_TRIANGLES, reconstruct
+    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
+    from eigenfield.reconstruction import reconstruct
 
     opened = open_any(capture, work=scratch / "frames", **place)
     tell(opened.problems, quiet)
     check_selection(opened, options)
     made = reconstruct(
         opened,
-        triangles=DEFAULT_TRIANGLES if options.triangles is None else options.triangles,
+        triangles=PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles,
         work=scratch,
         blind=options.hold_out if blind else None,
         progress=progress,

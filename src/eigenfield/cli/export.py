@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from eigenfield.core.progress import Progress
     from eigenfield.core.scene import Scene
-    from eigenfield.rendering import Shots
+    from eigenfield.rendering import RenderJob
 
 PICTURE = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 OPTIONS = {  # what each kind takes, beside the options of all
@@ -107,17 +107,17 @@ def command(
     given = {name for name in options if source(name) is ParameterSource.COMMANDLINE}
     _check(chosen, output, given, options)
     from eigenfield.gltf import load
-    from eigenfield.rendering import Shots, path_points
+    from eigenfield.rendering import RenderJob, path_points
 
     points = None
     if chosen in ("mp4", "png") or "path" in given:
         frames = DEFAULT_FRAMES if options["frames"] is None else options["frames"]
         points = path_points(options["path"] or PATH, frames)
     _refuse(chosen, output, points, overwrite)
-    shots = Shots(load(scene), *(options[name] for name in
+    job = RenderJob(load(scene), *(options[name] for name in
                   ("resolution", "background", "weights", "filter", "textures", "samples", "renderer")))  # fmt: skip
     with progress_bars(quiet) as progress:
-        made = _write(chosen, shots, points, output, options, overwrite, progress)
+        made = _write(chosen, job, points, output, options, overwrite, progress)
     note(f"wrote {made}", quiet)
 
 
@@ -139,21 +139,21 @@ def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwri
 
 
 def _write(
-    kind: str, shots: Shots, points: NDArray[np.float64] | None, output: Path, options: dict[str, Any],
+    kind: str, job: RenderJob, points: NDArray[np.float64] | None, output: Path, options: dict[str, Any],
     overwrite: bool, progress: Progress | None,
 ) -> str:  # fmt: skip
     """Make it; what was written, in words."""
     from eigenfield.rendering.flight import write_flight
     from eigenfield.viewer import exports
 
-    scene: Scene = shots.scene
+    scene: Scene = job.scene
     how: dict[str, Any] = {"overwrite": overwrite}
     if kind == "html":
         exports.write_page(scene, output, title=options["title"], metres_per_unit=options["metres_per_unit"], **how)
         return f"{output}: {output.stat().st_size / 1e6:.1f} MB"
     if kind in ("mp4", "png"):
         assert points is not None
-        write_flight(shots, points, output, options["fps"], progress=progress, **how)
+        write_flight(job, points, output, options["fps"], progress=progress, **how)
         return f"{output}: {len(points)} pictures"
     if _is_obj(output):
         exports.write_obj(scene, output, **how)
@@ -166,9 +166,9 @@ def _write(
         return f"{output}: {len(scene.rig.encoded)} texture maps"
     if kind == "quilt":
         quilt = exports.quilt_of(scene, options["quilt"], options["resolution"], options["spread"])
-        path = exports.write_quilt(shots, quilt, output, progress=progress, **how)
+        path = exports.write_quilt(job, quilt, output, progress=progress, **how)
         return f"{path}: {quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
-    exports.write_colmap(shots, output, points=points, residual=options["residual"], progress=progress, **how)
+    exports.write_colmap(job, output, points=points, residual=options["residual"], progress=progress, **how)
     return f"{output}: {len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
 
 

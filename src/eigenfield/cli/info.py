@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from eigenfield.gltf.layout import Layout
+    from eigenfield.gltf.layout import FileLayout
     from eigenfield.gltf.layout_planes import PlaneLayout
 
 AXES = (
@@ -47,7 +47,7 @@ def command(file: Path, as_json: bool, quiet: bool) -> None:
         click.echo(line)
 
 
-def _facts(layout: Layout, parts: dict[str, int]) -> dict[str, Any]:
+def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
     cameras, mesh, plane = layout.cameras, layout.mesh, layout.view_plane
     assert cameras is not None and mesh is not None and plane is not None and layout.reference is not None
     held_out = [name for name, held in zip(cameras.names, cameras.held_out, strict=True) if held]

@@ -13,7 +13,7 @@ from eigenfield.cli.common import capture_options, common_options, echo_json, no
 from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.capture import Layout, LightField, PhotoSet
+    from eigenfield.capture import GridLayout, LightField, PhotoSet
     from eigenfield.capture.survey import Array
     from eigenfield.core.errors import CaptureError
     from eigenfield.core.mesh import Mesh
@@ -170,7 +170,7 @@ def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> di
     }
 
 
-def _layout(layout: Layout) -> dict[str, Any]:
+def _layout(layout: GridLayout) -> dict[str, Any]:
     rows, columns = layout.shape
     return {
         "rows": rows,

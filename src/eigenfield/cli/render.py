@@ -65,7 +65,7 @@ def command(
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.encoding.residual import captured_pixels, difference_of
     from eigenfield.gltf import load
-    from eigenfield.rendering import Shots, camera_index, path_points, viewpoint, viewpoint_colour
+    from eigenfield.rendering import RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.flight import refuse_flight, write_flight
     from eigenfield.rendering.render_jobs import png
 
@@ -75,21 +75,21 @@ def command(
         refuse_existing(output, overwrite)
     else:
         refuse_flight(output, count, overwrite)
-    shots = Shots(load(scene), resolution, background, weights, filter, textures, samples, renderer)
+    job = RenderJob(load(scene), resolution, background, weights, filter, textures, samples, renderer)
     if residual:
-        index = shots.scene.rig.reference if camera is None else camera_index(shots.scene, camera)
-        data = png(captured_pixels(shots, index, difference_of(shots.scene, index)))
+        index = job.scene.rig.reference if camera is None else camera_index(job.scene, camera)
+        data = png(captured_pixels(job, index, difference_of(job.scene, index)))
         write_bytes(output, data, overwrite=overwrite)
         note(f"wrote {output}", quiet)
         return
     if points is None:
-        chosen = viewpoint(shots.scene, at=at, camera=camera, weights=weights)
-        colour = viewpoint_colour(shots.scene, at=at, camera=camera)
-        write_bytes(output, shots.png(*chosen, colour), overwrite=overwrite)
+        chosen = viewpoint(job.scene, at=at, camera=camera, weights=weights)
+        colour = viewpoint_colour(job.scene, at=at, camera=camera)
+        write_bytes(output, job.png(*chosen, colour), overwrite=overwrite)
         note(f"wrote {output}", quiet)
         return
     with progress_bars(quiet) as progress:
-        write_flight(shots, points, output, fps, overwrite=overwrite, progress=progress)
+        write_flight(job, points, output, fps, overwrite=overwrite, progress=progress)
     note(f"wrote {output}: {count} pictures", quiet)
 
 

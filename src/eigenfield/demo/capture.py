@@ -1,4 +1,4 @@
-"""Drawing the demo's capture: what a gantry camera would have photographed, without noise, geometry known exactly."""
+"""Drawing of the demo's capture: noise-free photographs of a gantry camera, with exactly known geometry."""
 
 from __future__ import annotations
 
@@ -15,28 +15,38 @@ from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
 from eigenfield.demo.cameras import array_cameras
-from eigenfield.demo.geometry import geometry
+from eigenfield.demo.geometry import build_geometry
 from eigenfield.demo.kernels import shade_view
-from eigenfield.demo.light import environment
-from eigenfield.demo.surface import baked_surface
+from eigenfield.demo.light import environment_map
+from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
 from eigenfield.runtime.files import mended
 from eigenfield.runtime.parallel import parallel_stream
 
-SAMPLES = 3  # by 3, a pixel
-EXPOSURE = 1.05
-DENSITY = 4  # side of the surfaces' atlas over that of the picture: over two texels a pixel
-DENSEST = 4096
+DEMO_SAMPLES_PER_SIDE = 3  # of a pixel
+DEMO_EXPOSURE = 1.05
+DEMO_TEXELS_PER_PIXEL = 4  # side of the atlas over side of the picture
+DEMO_MAX_ATLAS_TEXELS = 4096
 
 
 def draw_demo_capture(
     folder: Path, *, rows: int = 17, columns: int = 17, size: int = 512, progress: Progress | None = None
 ) -> None:
-    """Draw the array's views into `folder`: images/*.png, transforms.json (nerfstudio's form) and proxy.ply.
+    """Draw the array's views into a folder: images/*.png, transforms.json (nerfstudio's form) and proxy.ply.
 
-    The folder appears by rename when all of it is there. The same arguments give the same bytes, at any number of
-    threads. Raises OutputError `output-exists`, `no-folder`, `disk-full`, `not-writable`; OptionError `demo-size`.
+    The folder appears by rename when it is complete. The same arguments give the same bytes, at any number of threads.
+
+    Args:
+        folder: To be created.
+        rows: Of the array.
+        columns: Of the array.
+        size: Side of the pictures in pixels.
+        progress: Called for each view.
+
+    Raises:
+        OutputError: `output-exists`, `no-folder`, `disk-full` or `not-writable`.
+        OptionError: `demo-size`.
     """
     if rows < 1 or columns < 1 or rows * columns < 3 or size < 16:
         raise OptionError(
@@ -64,13 +74,13 @@ def draw_demo_capture(
 def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progress | None) -> None:
     import cv2
 
-    mesh = geometry().mesh
+    mesh = build_geometry().mesh
     write_ply(mesh, folder / "proxy.ply")
     cameras = array_cameras(rows, columns, size)
     names = [f"images/{index // columns:02d}_{index % columns:02d}.png" for index in range(len(cameras))]
     (folder / "images").mkdir()
     (folder / "transforms.json").write_text(json.dumps(_transforms(cameras, names), indent=1), encoding="utf-8")
-    surface, room = baked_surface(min(DENSITY * size, DENSEST)), environment()
+    surface, room = bake_surface(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS)), environment_map()
 
     def png(camera: Camera) -> bytes:
         picture = draw_view(mesh, camera, surface, room)
@@ -84,22 +94,28 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
 
 
 def draw_view(mesh: Mesh, camera: Camera, surface: NDArray[np.float32], room: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """(H, W, 3) sRGB: the scene as a camera sees it, SAMPLES x SAMPLES points a pixel averaged in linear light."""
+    """(H, W, 3) uint8 sRGB: the scene as a camera sees it, averaged over several points a pixel in linear light.
+
+    Args:
+        mesh: The demo's geometry.
+        camera: The camera.
+        surface: Of `bake_surface`.
+        room: Of `environment_map`.
+    """
     assert mesh.uv is not None
-    fine = camera.resized(SAMPLES * camera.width, SAMPLES * camera.height)
+    fine = camera.resized(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
     raster = rasterise_view(mesh, fine)
     rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
     picture = np.empty((camera.height, camera.width, 3), np.float32)
     texels = np.concatenate([mesh.uv * float(surface.shape[0]), np.ones((len(mesh.uv), 1))], axis=1)[mesh.faces]
     maps = np.einsum("fkt,fke->fte", texels, raster.edges)
-    shade_view(raster.face, maps, rays, surface, room, SAMPLES, picture)
-    return _developed(picture)
+    shade_view(raster.face, maps, rays, surface, room, DEMO_SAMPLES_PER_SIDE, picture)
+    return _tone_map(picture)
 
 
-def _developed(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Linear light to 8 bits: a shoulder for the highlights (x (1 + x / 9) / (1 + x), Reinhard et al. 2002, on the
-    upper part), then the sRGB curve."""
-    x = EXPOSURE * linear
+def _tone_map(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Linear light as 8-bit sRGB, with an exponential shoulder for the highlights."""
+    x = DEMO_EXPOSURE * linear
     high = np.maximum(x - 0.6, 0)
     x = np.minimum(x, np.float32(0.6)) + np.float32(0.4) * (1 - np.exp(-high / np.float32(0.4)))
     coded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(np.maximum(x, 1e-8), 1 / 2.4) - 0.055)

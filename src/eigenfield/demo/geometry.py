@@ -1,8 +1,8 @@
 """The demo's exact geometry: a lidded jar, two balls and a letter block on a floor before a wall, with an atlas.
 
-World axes: x right, y up, z towards the cameras; one unit is about 210 pixels. Surfaces that face away from all
-cameras are left out, as a scan would leave them. Charts are laid out at about one density as the middle camera sees
-them: floor and wall by its own projection, the round ones by maps that keep areas.
+World axes: x right, y up, z towards the cameras; one unit is about 210 pixels. Surfaces that face away from all cameras
+are left out, as in a scan. Charts are laid out at about one density as the middle camera sees them: floor and wall by
+its own projection, the round surfaces by equal-area maps.
 """
 
 from __future__ import annotations
@@ -15,32 +15,40 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.demo.cameras import FOCAL, HALF_ARRAY, array_camera, array_centre
+from eigenfield.demo.cameras import DEMO_FOCAL_WIDTHS, DEMO_HALF_ARRAY_UNITS, array_camera, array_centre
 
 Array = NDArray[np.float64]
 
-WALL_Z = -1.15
-MARGIN = 46  # pixels of floor and wall around the middle camera's frame
-FRAME = 512  # side of the frame in which charts are measured
-GAP = 10  # of those pixels between charts
-TURNED_AWAY = -0.22  # cosine to the nearest corner of the array below which a surface is never seen
-UV_STEP = 2.0**-16  # UVs are multiples of it: they pass through files to the bit
+WALL_Z_UNITS = -1.15
+CHART_MARGIN_PIXELS = 46  # of floor and wall around the middle camera's frame
+CHART_FRAME_PIXELS = 512  # side of the frame in which charts are measured
+CHART_GAP_PIXELS = 10  # between charts
+CULL_MIN_COSINE = -0.22  # to the nearest corner of the array: surfaces below are never seen
+DEMO_UV_STEP = 2.0**-16  # UVs are multiples of it, which files restore exactly
 
-BODY = np.array([(0.300, 0.0), (0.335, 0.035), (0.350, 0.075), (0.400, 0.23), (0.495, 0.44), (0.540, 0.62),
+BODY_PROFILE = np.array([(0.300, 0.0), (0.335, 0.035), (0.350, 0.075), (0.400, 0.23), (0.495, 0.44), (0.540, 0.62),
                  (0.520, 0.79), (0.430, 0.93), (0.310, 1.01), (0.275, 1.05), (0.272, 1.085)])  # fmt: skip
-LID = np.array([(0.346, 1.084), (0.354, 1.092), (0.358, 1.110), (0.345, 1.140), (0.255, 1.205), (0.130, 1.250),
+LID_PROFILE = np.array([(0.346, 1.084), (0.354, 1.092), (0.358, 1.110), (0.345, 1.140), (0.255, 1.205), (0.130, 1.250),
                 (0.062, 1.268), (0.055, 1.295), (0.088, 1.335), (0.080, 1.385), (0.001, 1.420)])  # fmt: skip
-ORANGE = (np.array([-0.735, 0.205, 0.42]), 0.205)
-MARBLE = (np.array([0.36, 0.125, 0.80]), 0.125)
-BLOCK_CENTRE, BLOCK_SIDE, BLOCK_TURN = np.array([0.80, 0.18, 0.28]), 0.36, np.radians(34)
+ORANGE_SPHERE = (np.array([-0.735, 0.205, 0.42]), 0.205)
+MARBLE_SPHERE = (np.array([0.36, 0.125, 0.80]), 0.125)
+BLOCK_CENTRE, BLOCK_SIDE_UNITS, BLOCK_ANGLE_RADIANS = np.array([0.80, 0.18, 0.28]), 0.36, np.radians(34)
 
-PARTS = ("floor", "wall", "body", "lid", "orange", "marble", "block")
+SURFACE_PARTS = ("floor", "wall", "body", "lid", "orange", "marble", "block")
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
-    """One surface, float64: vertices (n, 3), faces (m, 3), smooth normals (n, 3), chart coordinates (n, 2) in pixels
-    of the middle camera, and outward (n, 3), the normals without the relief."""
+class SurfacePart:
+    """One surface of the scene.
+
+    Attributes:
+        name: One of SURFACE_PARTS.
+        vertices: (n, 3) float64.
+        faces: (m, 3).
+        normals: (n, 3) smooth normals.
+        chart: (n, 2) chart coordinates in pixels of the middle camera.
+        outward: (n, 3) normals without the embossed relief.
+    """
 
     name: str
     vertices: Array
@@ -51,8 +59,14 @@ class Part:
 
 
 @dataclass(frozen=True, eq=False)
-class Geometry:
-    """The mesh, with what only the drawing needs: normals (n, 3) a vertex, and which of PARTS each face belongs to."""
+class DemoGeometry:
+    """The mesh, and what only the drawing needs.
+
+    Attributes:
+        mesh: With an atlas.
+        normals: (n, 3) smooth normals.
+        part: (m,) index into SURFACE_PARTS of each face.
+    """
 
     mesh: Mesh
     normals: Array
@@ -60,84 +74,104 @@ class Geometry:
 
 
 def demo_scene_geometry() -> Mesh:
-    """The exact proxy of the demo's capture, with a valid atlas of its own; float32 numbers that a PLY keeps."""
-    return geometry().mesh
+    """The exact proxy of the demo's capture, with a valid atlas; a PLY restores its float32 numbers exactly."""
+    return build_geometry().mesh
 
 
 @cache
-def geometry() -> Geometry:
-    """All parts in one mesh, charts packed into the unit square."""
-    parts = [*_background(), _turned("body", BODY, 66, 128), _turned("lid", LID, 34, 96)]
-    parts += [_ball("orange", *ORANGE, 22, 48), _ball("marble", *MARBLE, 18, 40), *_block()]
-    parts = [part for part in map(_facing, parts) if len(part.faces)]
+def build_geometry() -> DemoGeometry:
+    """All parts in one mesh, with charts packed into the unit square."""
+    parts = [
+        *_background(),
+        _surface_of_revolution("body", BODY_PROFILE, 66, 128),
+        _surface_of_revolution("lid", LID_PROFILE, 34, 96),
+    ]
+    parts += [_ball("orange", *ORANGE_SPHERE, 22, 48), _ball("marble", *MARBLE_SPHERE, 18, 40), *_block()]
+    parts = [part for part in map(_cull_back_faces, parts) if len(part.faces)]
     background, others = parts[:2], parts[2:]
     blocks = [np.concatenate([part.chart for part in background]), *(part.chart for part in others)]
     lows = [chart.min(axis=0) for chart in blocks]
-    corners, side = _packed([chart.max(axis=0) - low for chart, low in zip(blocks, lows, strict=True)])
+    corners, side = _pack_rectangles([chart.max(axis=0) - low for chart, low in zip(blocks, lows, strict=True)])
     shifts = [corner - low for corner, low in zip(corners, lows, strict=True)]
     charts = [part.chart + shift for part, shift in zip(parts, [shifts[0], *shifts], strict=True)]
-    uv = np.round(np.concatenate(charts) / side / UV_STEP) * UV_STEP
+    uv = np.round(np.concatenate(charts) / side / DEMO_UV_STEP) * DEMO_UV_STEP
     offsets = np.cumsum([0] + [len(part.vertices) for part in parts])
     mesh = Mesh(
         np.concatenate([part.vertices for part in parts]).astype(np.float32),
         np.concatenate([part.faces + offset for part, offset in zip(parts, offsets, strict=False)]).astype(np.int32),
         uv.astype(np.float32),
     )
-    label = np.concatenate([np.full(len(part.faces), PARTS.index(part.name)) for part in parts])
-    return Geometry(mesh, np.concatenate([part.normals for part in parts]), label)
+    label = np.concatenate([np.full(len(part.faces), SURFACE_PARTS.index(part.name)) for part in parts])
+    return DemoGeometry(mesh, np.concatenate([part.normals for part in parts]), label)
 
 
-def _background() -> list[Part]:
+def _background() -> list[SurfacePart]:
     """Floor and wall as a grid in the middle camera's frame; the crease between them is a line of it."""
-    camera = array_camera(0.0, 0.0, FRAME)
-    crease = camera.project([(0.0, 0.0, WALL_Z)])[0][0, 1]
-    columns = np.linspace(-MARGIN, FRAME + MARGIN, 40)
-    rows = {"wall": np.linspace(-MARGIN, crease, 20), "floor": np.linspace(crease, FRAME + MARGIN, 30)}
+    camera = array_camera(0.0, 0.0, CHART_FRAME_PIXELS)
+    crease = camera.project([(0.0, 0.0, WALL_Z_UNITS)])[0][0, 1]
+    columns = np.linspace(-CHART_MARGIN_PIXELS, CHART_FRAME_PIXELS + CHART_MARGIN_PIXELS, 40)
+    rows = {
+        "wall": np.linspace(-CHART_MARGIN_PIXELS, crease, 20),
+        "floor": np.linspace(crease, CHART_FRAME_PIXELS + CHART_MARGIN_PIXELS, 30),
+    }
     back = camera.R.T @ np.linalg.inv(camera.K)
     parts = []
     for name, lines in rows.items():
         pixels = np.stack(np.meshgrid(columns, lines), axis=-1).reshape(-1, 2)
         ray = np.column_stack([pixels, np.ones(len(pixels))]) @ back.T
-        axis, level = (2, WALL_Z) if name == "wall" else (1, 0.0)
+        axis, level = (2, WALL_Z_UNITS) if name == "wall" else (1, 0.0)
         points = camera.centre + ray * ((level - camera.centre[axis]) / ray[:, axis])[:, None]
         points[:, axis] = level
         normal = np.zeros(3)
         normal[axis] = 1.0
         faces = _grid(len(lines), len(columns))
         normals = np.tile(normal, (len(points), 1))
-        parts.append(Part(name, points, faces, normals, pixels, normals))
+        parts.append(SurfacePart(name, points, faces, normals, pixels, normals))
     return parts[::-1]
 
 
-def _turned(name: str, profile: Array, rows: int, columns: int) -> Part:
-    """A profile (k, 2) of radius and height turned about the y axis, embossed; laid out by the sinusoidal map
-    (angle x radius, arc length), which keeps areas."""
+def _surface_of_revolution(name: str, profile: Array, rows: int, columns: int) -> SurfacePart:
+    """A profile (k, 2) of radius and height rotated about the y axis, embossed.
+
+    The chart is the sinusoidal map (angle x radius, arc length), which preserves areas.
+    """
     length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(profile, axis=0), axis=1))])
     curve = PchipInterpolator(length, profile)
     s = np.linspace(0, length[-1], rows + 1)
     radius, height = curve(s).T
     angle = np.linspace(-np.pi, np.pi, columns + 1)
-    turn, arc = np.meshgrid(angle, s)
-    across, up = np.broadcast_to(radius[:, None], turn.shape), np.broadcast_to(height[:, None], turn.shape)
-    points = np.stack([across * np.sin(turn), up, across * np.cos(turn)], axis=-1)
+    angles, arc = np.meshgrid(angle, s)
+    across, up = np.broadcast_to(radius[:, None], angles.shape), np.broadcast_to(height[:, None], angles.shape)
+    points = np.stack([across * np.sin(angles), up, across * np.cos(angles)], axis=-1)
     slope = curve.derivative()(s)
-    flat = np.stack([slope[:, 1], -slope[:, 0]], axis=1)
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
+    slope_normal = np.stack([slope[:, 1], -slope[:, 0]], axis=1)
+    slope_normal /= np.linalg.norm(slope_normal, axis=1, keepdims=True)
     outward = np.stack(
-        [flat[:, :1] * np.sin(turn), np.broadcast_to(flat[:, 1:], turn.shape), flat[:, :1] * np.cos(turn)], axis=-1
+        [
+            slope_normal[:, :1] * np.sin(angles),
+            np.broadcast_to(slope_normal[:, 1:], angles.shape),
+            slope_normal[:, :1] * np.cos(angles),
+        ],
+        axis=-1,
     )
-    points = points + emboss(name, turn, arc / length[-1])[..., None] * outward
+    points = points + emboss_height(name, angles, arc / length[-1])[..., None] * outward
     faces = _grid(rows + 1, columns + 1)[:, ::-1]
     vertices = points.reshape(-1, 3)
-    normals = _smooth(vertices, faces).reshape(points.shape)
+    normals = _vertex_normals(vertices, faces).reshape(points.shape)
     normals[:, 0] = normals[:, -1] = (normals[:, 0] + normals[:, -1]) / 2  # the seam at the back
     depth = np.linalg.norm(array_centre() - vertices.mean(axis=0))
-    chart = np.stack([turn * across, -arc], axis=-1).reshape(-1, 2) * FOCAL * FRAME / depth
-    return Part(name, vertices, faces, normals.reshape(-1, 3), chart, outward.reshape(-1, 3))
+    chart = np.stack([angles * across, -arc], axis=-1).reshape(-1, 2) * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / depth
+    return SurfacePart(name, vertices, faces, normals.reshape(-1, 3), chart, outward.reshape(-1, 3))
 
 
-def emboss(name: str, angle: Array, along: Array) -> Array:
-    """Height of the jar's relief over its profile: flutes low on the body, lobes on its belly, petals on the lid."""
+def emboss_height(name: str, angle: Array, along: Array) -> Array:
+    """Height of the jar's relief over its profile: flutes and lobes on the body, petals on the lid.
+
+    Args:
+        name: "body" or "lid".
+        angle: About the axis, radians.
+        along: Position along the profile, 0..1.
+    """
     if name == "lid":
         return np.asarray(0.007 * np.cos(12 * angle) * np.exp(-(((along - 0.38) / 0.13) ** 2)))
     flutes = 0.010 * np.cos(24 * angle) * np.exp(-(((along - 0.17) / 0.075) ** 4))
@@ -147,48 +181,50 @@ def emboss(name: str, angle: Array, along: Array) -> Array:
     return np.asarray(flutes + belly + rings)
 
 
-def _ball(name: str, centre: Array, radius: float, rings: int, sectors: int) -> Part:
-    """A sphere about the axis to the middle camera, in Lambert's azimuthal map (radius 2 sin(angle / 2)), which keeps
-    areas; the far side is left out."""
+def _ball(name: str, centre: Array, radius: float, rings: int, sectors: int) -> SurfacePart:
+    """A sphere about the axis to the middle camera; the far side is left out.
+
+    The chart is Lambert's azimuthal map (radius 2 sin(angle / 2)), which preserves areas.
+    """
     axis = array_centre() - centre
     depth = float(np.linalg.norm(axis))
     axis /= depth
     right = np.array([axis[2], 0.0, -axis[0]]) / np.hypot(axis[0], axis[2])
     up = np.cross(axis, right)
-    polar, turn = np.meshgrid(
+    polar, angles = np.meshgrid(
         np.linspace(0, np.radians(104), rings + 1), np.linspace(0, 2 * np.pi, sectors + 1), indexing="ij"
     )
-    turn[:, -1] = 0.0
+    angles[:, -1] = 0.0
     normals = (
         np.cos(polar)[..., None] * axis
-        + (np.sin(polar) * np.cos(turn))[..., None] * right
-        + (np.sin(polar) * np.sin(turn))[..., None] * up
+        + (np.sin(polar) * np.cos(angles))[..., None] * right
+        + (np.sin(polar) * np.sin(angles))[..., None] * up
     ).reshape(-1, 3)
-    reach = 2 * np.sin(polar / 2) * radius * FOCAL * FRAME / depth
-    chart = np.stack([reach * np.cos(turn), -reach * np.sin(turn)], axis=-1).reshape(-1, 2)
+    chart_radius = 2 * np.sin(polar / 2) * radius * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / depth
+    chart = np.stack([chart_radius * np.cos(angles), -chart_radius * np.sin(angles)], axis=-1).reshape(-1, 2)
     faces = _grid(rings + 1, sectors + 1)
-    joined = np.arange(len(normals)).reshape(rings + 1, sectors + 1)
-    joined[:, -1] = joined[:, 0]
-    joined[0] = joined[0, 0]
-    faces = joined.reshape(-1)[faces]
+    merged = np.arange(len(normals)).reshape(rings + 1, sectors + 1)
+    merged[:, -1] = merged[:, 0]
+    merged[0] = merged[0, 0]
+    faces = merged.reshape(-1)[faces]
     whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-    return Part(name, centre + radius * normals, faces[whole], normals, chart, normals)
+    return SurfacePart(name, centre + radius * normals, faces[whole], normals, chart, normals)
 
 
-def _block() -> list[Part]:
-    """The six sides of the letter block, a chart each."""
-    c, s = np.cos(BLOCK_TURN), np.sin(BLOCK_TURN)
+def _block() -> list[SurfacePart]:
+    """The visible sides of the letter block, one chart each."""
+    c, s = np.cos(BLOCK_ANGLE_RADIANS), np.sin(BLOCK_ANGLE_RADIANS)
     frame = np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])  # rows: the block's axes in the world
-    scale = BLOCK_SIDE * FOCAL * FRAME / np.linalg.norm(array_centre() - BLOCK_CENTRE)
+    scale = BLOCK_SIDE_UNITS * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / np.linalg.norm(array_centre() - BLOCK_CENTRE)
     grid = np.stack(np.meshgrid(np.linspace(-0.5, 0.5, 9), np.linspace(-0.5, 0.5, 9)), axis=-1).reshape(-1, 2)
     parts = []
-    for axis, sign in ((2, 1), (0, -1), (0, 1), (1, 1)):  # those that can be seen from above and before
+    for axis, sign in ((2, 1), (0, -1), (0, 1), (1, 1)):  # those that are visible from above and in front
         out = sign * frame[axis]
         up = frame[1] if axis != 1 else -frame[2]
         right = np.cross(up, out)
-        points = BLOCK_CENTRE + BLOCK_SIDE * (out / 2 + grid[:, :1] * right + grid[:, 1:] * up)
+        points = BLOCK_CENTRE + BLOCK_SIDE_UNITS * (out / 2 + grid[:, :1] * right + grid[:, 1:] * up)
         normals = np.tile(out, (len(points), 1))
-        parts.append(Part("block", points, _grid(9, 9), normals, grid * (scale, -scale), normals))
+        parts.append(SurfacePart("block", points, _grid(9, 9), normals, grid * (scale, -scale), normals))
     return parts
 
 
@@ -200,18 +236,20 @@ def _grid(rows: int, columns: int) -> NDArray[np.int64]:
     return np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
-def _smooth(vertices: Array, faces: NDArray[np.int64]) -> Array:
+def _vertex_normals(vertices: Array, faces: NDArray[np.int64]) -> Array:
     p = vertices[faces]
-    flat = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    slope_normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
     normals = np.zeros_like(vertices)
     for k in range(3):
-        np.add.at(normals, faces[:, k], flat)
+        np.add.at(normals, faces[:, k], slope_normal)
     return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))
 
 
-def _facing(part: Part) -> Part:
-    """Without the triangles that turn their back on all four corners of the array, and their vertices. Judged without
-    the relief, so that charts are not frayed; the rest wound counter-clockwise as seen from outside."""
+def _cull_back_faces(part: SurfacePart) -> SurfacePart:
+    """The part without triangles that face away from all four corners of the array, and without their vertices.
+
+    The relief is ignored, so that charts have smooth borders. The rest is wound counter-clockwise as seen from outside.
+    """
     p, normals = part.vertices[part.faces], part.normals[part.faces].sum(axis=1)
     inward = (np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]) * normals).sum(axis=1) < 0
     faces = np.where(inward[:, None], part.faces[:, ::-1], part.faces)
@@ -219,39 +257,39 @@ def _facing(part: Part) -> Part:
     seen = np.zeros(len(faces), bool)
     for x in (-1, 1):
         for y in (-1, 1):
-            ray = array_camera(x * HALF_ARRAY, y * HALF_ARRAY, FRAME).centre - middle
+            ray = array_camera(x * DEMO_HALF_ARRAY_UNITS, y * DEMO_HALF_ARRAY_UNITS, CHART_FRAME_PIXELS).centre - middle
             ray /= np.linalg.norm(ray, axis=1, keepdims=True)
-            seen |= (ray * outward).sum(axis=1) > TURNED_AWAY
+            seen |= (ray * outward).sum(axis=1) > CULL_MIN_COSINE
     used, index = np.unique(faces[seen], return_inverse=True)
-    return Part(
+    return SurfacePart(
         part.name, part.vertices[used], index.reshape(-1, 3), part.normals[used], part.chart[used], part.outward[used]
     )
 
 
-def _packed(sizes: list[Array]) -> tuple[list[Array], float]:
-    """Corners of rectangles in the smallest square (in steps of 4) into which first fit, largest first, brings them."""
+def _pack_rectangles(sizes: list[Array]) -> tuple[list[Array], float]:
+    """Corners of rectangles in the smallest square (in steps of 4) that holds them by first fit, largest first."""
     order = sorted(range(len(sizes)), key=lambda i: -float(sizes[i].prod()))
-    side = 4 * np.ceil(max(size.max() for size in sizes) / 4) + GAP
+    side = 4 * np.ceil(max(size.max() for size in sizes) / 4) + CHART_GAP_PIXELS
     while True:
-        corners = _fitted([sizes[i] + GAP for i in order], side)
+        corners = _first_fit([sizes[i] + CHART_GAP_PIXELS for i in order], side)
         if corners is not None:
             placed = dict(zip(order, corners, strict=True))
-            return [placed[i] + GAP / 2 for i in range(len(sizes))], float(side)
+            return [placed[i] + CHART_GAP_PIXELS / 2 for i in range(len(sizes))], float(side)
         side += 4
 
 
-def _fitted(sizes: list[Array], side: float) -> list[Array] | None:
+def _first_fit(sizes: list[Array], side: float) -> list[Array] | None:
     placed: list[tuple[Array, Array]] = []
     for size in sizes:
         xs = sorted({0.0, *(low[0] + s[0] for low, s in placed)})
         ys = sorted({0.0, *(low[1] + s[1] for low, s in placed)})
-        spot = next((np.array([x, y]) for y in ys for x in xs if _free(np.array([x, y]), size, placed, side)), None)
+        spot = next((np.array([x, y]) for y in ys for x in xs if _is_free(np.array([x, y]), size, placed, side)), None)
         if spot is None:
             return None
         placed.append((spot, size))
     return [low for low, _ in placed]
 
 
-def _free(low: Array, size: Array, placed: list[tuple[Array, Array]], side: float) -> bool:
+def _is_free(low: Array, size: Array, placed: list[tuple[Array, Array]], side: float) -> bool:
     inside = bool((low + size <= side).all())
     return inside and not any(((low < other + s) & (other < low + size)).all() for other, s in placed)

@@ -1,4 +1,4 @@
-"""Noise, and the shading of one view."""
+"""Inner loops of the demo: noise, and the shading of one view."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel(inline=True)
-def _lattice(x: int, y: int, z: int, seed: int) -> float:
-    """A number in [-1, 1) that belongs to an integer point: multiply-and-shift hashing on 32 bits."""
+def _hash_noise(x: int, y: int, z: int, seed: int) -> float:
+    """A number in [-1, 1) for an integer point: multiply-and-shift hashing on 32 bits."""
     h = (x * 374761393 + y * 668265263 + z * 1274126177 + seed * 974634777) & 0xFFFFFFFF
     h = ((h ^ (h >> 13)) * 1103515245) & 0xFFFFFFFF
     h = ((h ^ (h >> 16)) * 747796405) & 0xFFFFFFFF
@@ -19,7 +19,12 @@ def _lattice(x: int, y: int, z: int, seed: int) -> float:
 
 @kernel()
 def value_noise(x: float, y: float, z: float, seed: int) -> float:
-    """Value noise in [-1, 1]: lattice values, blended by 6 t^5 - 15 t^4 + 10 t^3 (Perlin, 2002)."""
+    """Value noise in [-1, 1]: lattice values, blended by 6 t^5 - 15 t^4 + 10 t^3 (Perlin, 2002).
+
+    Args:
+        x, y, z: The point.
+        seed: Of the lattice.
+    """
     i, j, k = int(np.floor(x)), int(np.floor(y)), int(np.floor(z))
     a, b, c = x - i, y - j, z - k
     a = a * a * a * (a * (a * 6.0 - 15.0) + 10.0)
@@ -30,8 +35,8 @@ def value_noise(x: float, y: float, z: float, seed: int) -> float:
         wk = c if dk == 1 else 1.0 - c
         for dj in range(2):
             wj = b if dj == 1 else 1.0 - b
-            low = _lattice(i, j + dj, k + dk, seed)
-            high = _lattice(i + 1, j + dj, k + dk, seed)
+            low = _hash_noise(i, j + dj, k + dk, seed)
+            high = _hash_noise(i + 1, j + dj, k + dk, seed)
             total += wk * wj * (low + a * (high - low))
     return total
 
@@ -40,7 +45,16 @@ def value_noise(x: float, y: float, z: float, seed: int) -> float:
 def fractal_noise(
     points: NDArray[np.float64], frequency: float, octaves: int, gain: float, seed: int, out: NDArray[np.float64]
 ) -> None:
-    """points (n, 3); out (n,): the sum over octaves o of gain^o noise(2^o frequency p), over the sum of gain^o."""
+    """The sum over octaves o of gain^o noise(2^o frequency p), over the sum of gain^o.
+
+    Args:
+        points: (n, 3).
+        frequency: Of the first octave.
+        octaves: How many.
+        gain: Amplitude of each octave relative to the one before.
+        seed: Of the first octave.
+        out: (n,), written.
+    """
     for n in range(points.shape[0]):
         total, weight, scale, mass = 0.0, 1.0, frequency, 0.0
         for octave in range(octaves):
@@ -63,16 +77,19 @@ def shade_view(
     samples: int,
     picture: NDArray[np.float32],
 ) -> None:
-    """One view, linear light, averaged over samples x samples points a pixel.
-
-    face (s H, s W): from the rasteriser at s times the size. maps (m, 3, 3): from its pixels (x, y, 1) to homogeneous
-    texels, a triangle each.
-    rays (3, 3): column-wise world direction of (x, y, 1). surface (h, w, 8): what leaves the surface diffusely (3),
-    world normal (3), reflectance at normal incidence, roughness 0..1. environment (2, e, e, 3): radiance over the
-    octahedron, smooth and rough. picture (H, W, 3) out.
+    """Shade one view in linear light, averaged over samples x samples points a pixel.
 
     Reflection: r = d - 2 (d.n) n; Schlick's F = F0 + (F90 - F0)(1 - cos)^5 with F90 = min(1, 12 F0), so that a
-    reflectance of 0 means none.
+    reflectance of 0 gives none.
+
+    Args:
+        face: (s H, s W) from the rasteriser at s times the size.
+        maps: (m, 3, 3) from its pixels (x, y, 1) to homogeneous texels, one for each triangle.
+        rays: (3, 3) world direction of (x, y, 1), by columns.
+        surface: (h, w, 8) diffuse radiance (3), world normal (3), reflectance at normal incidence, roughness 0..1.
+        environment: (2, e, e, 3) radiance over the octahedron, smooth and rough.
+        samples: s.
+        picture: (H, W, 3), written.
     """
     height, width = surface.shape[0], surface.shape[1]
     side = environment.shape[1]

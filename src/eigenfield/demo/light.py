@@ -1,7 +1,7 @@
-"""The demo's light: a room with two windows and lamps, for the highlights and for the diffuse part, with soft shadows.
+"""The demo's light: a room with two windows and lamps, for the highlights and for soft diffuse shading.
 
-Radiance on a direction d is a sum of soft boxes round their axes over a dim room. A gloss reflects it as an octahedral
-picture that is smooth on the scale of the lobe.
+The radiance in a direction is a sum of soft boxes over a dim room. A glossy surface reflects it as an octahedral
+picture, blurred to the width of the reflection lobe.
 """
 
 from __future__ import annotations
@@ -13,12 +13,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-OCTAHEDRON = 256  # side of the pictures of the environment
+LIGHT_OCTAHEDRON_TEXELS = 256  # side of the environment's pictures
 
 
-class Light(NamedTuple):
-    """A soft box: direction, half-widths in degrees (to the side, upwards), radiance, and the irradiance that a
-    surface facing it gets (both RGB)."""
+class SoftBox(NamedTuple):
+    """A rectangular light with soft edges.
+
+    Attributes:
+        direction: From the scene.
+        half: Half-widths in degrees, sideways and upwards.
+        radiance: RGB.
+        irradiance: RGB on a surface that faces it.
+    """
 
     direction: tuple[float, float, float]
     half: tuple[float, float]
@@ -26,34 +32,52 @@ class Light(NamedTuple):
     irradiance: tuple[float, float, float]
 
 
-LIGHTS = (
-    Light((-0.62, 0.62, 0.52), (5.0, 8.0), (38.0, 35.0, 31.0), (1.02, 0.92, 0.76)),  # the key: a window on the left
-    Light((-0.38, 0.70, 0.62), (5.0, 8.0), (30.0, 28.0, 25.0), (0.42, 0.38, 0.32)),  # its other half
-    Light((0.86, 0.34, 0.38), (4.0, 13.0), (9.0, 11.0, 14.0), (0.15, 0.20, 0.28)),  # a door on the right
-    Light((0.30, 0.45, 0.84), (3.5, 3.5), (20.0, 14.5, 9.0), (0.0, 0.0, 0.0)),  # a lamp behind the cameras
-    Light((0.10, 0.20, -0.97), (16.0, 6.0), (1.2, 1.15, 1.1), (0.0, 0.0, 0.0)),  # the wall's sheen at grazing angles
+SOFT_BOXES = (
+    SoftBox((-0.62, 0.62, 0.52), (5.0, 8.0), (38.0, 35.0, 31.0), (1.02, 0.92, 0.76)),  # the key: a window on the left
+    SoftBox((-0.38, 0.70, 0.62), (5.0, 8.0), (30.0, 28.0, 25.0), (0.42, 0.38, 0.32)),  # its other half
+    SoftBox((0.86, 0.34, 0.38), (4.0, 13.0), (9.0, 11.0, 14.0), (0.15, 0.20, 0.28)),  # a door on the right
+    SoftBox((0.30, 0.45, 0.84), (3.5, 3.5), (20.0, 14.5, 9.0), (0.0, 0.0, 0.0)),  # a lamp behind the cameras
+    SoftBox((0.10, 0.20, -0.97), (16.0, 6.0), (1.2, 1.15, 1.1), (0.0, 0.0, 0.0)),  # the wall's sheen at grazing angles
 )
-KEYS = 2  # the first lights are seen through a window frame, whose shadow lies over the scene
-FRAME_CENTRE, FRAME_HALF, FRAME_BLUR = (0.42, 0.62), (1.15, 1.02), 0.13
-FRAME_BARS, BAR_HALF = (-0.74, 0.58), 0.035
-FRAME_SHADE = 0.25  # of the key is left outside the frame
-SHADOW_SOFTNESS = 0.16  # tangent of the key's half width
-OCCLUDERS = (  # spheres (centre, radius) in place of the objects
+LIGHT_KEY_COUNT = 2  # these first lights shine through a window frame, which casts a shadow on the scene
+WINDOW_CENTRE_UNITS, WINDOW_HALF_SIZE_UNITS, WINDOW_BLUR_UNITS = (0.42, 0.62), (1.15, 1.02), 0.13
+WINDOW_BAR_OFFSETS_UNITS, WINDOW_BAR_HALF_WIDTH_UNITS = (-0.74, 0.58), 0.035
+WINDOW_SHADE_FRACTION = 0.25  # of the key light, outside the frame
+SHADOW_SOFTNESS_TANGENT = 0.16  # of the key light's half-width
+SHADOW_SPHERES = (  # spheres (centre, radius) that stand for the objects
     ((0.0, 0.16, 0.0), 0.34), ((0.0, 0.45, 0.0), 0.47), ((0.0, 0.68, 0.0), 0.51), ((0.0, 0.95, 0.0), 0.36),
     ((0.0, 1.12, 0.0), 0.31), ((0.0, 1.35, 0.0), 0.085), ((-0.735, 0.205, 0.42), 0.205), ((0.36, 0.125, 0.80), 0.125),
     ((0.80, 0.14, 0.28), 0.19), ((0.80, 0.26, 0.28), 0.18), ((0.88, 0.13, 0.17), 0.14), ((0.72, 0.13, 0.39), 0.14),
 )  # fmt: skip
-OWNERS = ("body", "body", "body", "body", "lid", "lid", "orange", "marble", "block", "block", "block", "block")
+SHADOW_SPHERE_PARTS = (
+    "body",
+    "body",
+    "body",
+    "body",
+    "lid",
+    "lid",
+    "orange",
+    "marble",
+    "block",
+    "block",
+    "block",
+    "block",
+)
 
 
 def radiance(directions: Array, softness: float) -> Array:
-    """(n, 3) unit directions to (n, 3) RGB: edges of lights and of the room blurred by `softness` degrees."""
+    """(n, 3) RGB radiance, with the edges of lights and of the room blurred.
+
+    Args:
+        directions: (n, 3) unit vectors.
+        softness: Degrees.
+    """
     _, y, z = directions.T
     level = 1 / (1 + np.exp(-y / np.sin(np.radians(softness + 6))))
     floor, room = np.array([0.10, 0.075, 0.055]), np.array([0.30, 0.29, 0.28])
     total = floor + (room * (0.55 + 0.45 * y[:, None]) - floor) * level[:, None]
     total += 0.10 * np.maximum(z, 0)[:, None] * (1.0, 0.96, 0.9)
-    for light in LIGHTS:
+    for light in SOFT_BOXES:
         axis = _unit(np.array(light.direction))
         side = _unit(np.cross((0.0, 1.0, 0.0), axis))
         up = np.cross(axis, side)
@@ -62,82 +86,101 @@ def radiance(directions: Array, softness: float) -> Array:
         above = np.degrees(np.arctan2(directions @ up, np.maximum(ahead, 1e-6)))
         area = light.half[0] * light.half[1]
         wide = [half + softness / 2 for half in light.half]
-        inside = _box(across, wide[0], softness / 2) * _box(above, wide[1], softness / 2) * (ahead > 0)
+        inside = (
+            _soft_interval(across, wide[0], softness / 2) * _soft_interval(above, wide[1], softness / 2) * (ahead > 0)
+        )
         total += inside[:, None] * np.array(light.radiance) * area / (wide[0] * wide[1])
     return np.asarray(total)
 
 
-def _box(angle: Array, half: float, softness: float) -> Array:
+def _soft_interval(angle: Array, half: float, softness: float) -> Array:
     """1 within `half` of 0, falling to 0 over about `softness` on each side."""
     return np.asarray(1 / (1 + np.exp(np.clip((np.abs(angle) - half) / (softness / 2), -50, 50))))
 
 
-def environment() -> NDArray[np.float32]:
-    """(2, e, e, 3): the room over the octahedron, through a gloss of about 4 degrees and one of about 22."""
-    t = np.linspace(-1, 1, OCTAHEDRON)
+def environment_map() -> NDArray[np.float32]:
+    """(2, e, e, 3): the room over the octahedron, through a lobe of about 4 degrees and one of about 22."""
+    t = np.linspace(-1, 1, LIGHT_OCTAHEDRON_TEXELS)
     z, x = np.meshgrid(t, t, indexing="ij")
     y = 1 - np.abs(x) - np.abs(z)
     folded_x = np.where(y < 0, (1 - np.abs(z)) * np.where(x >= 0, 1, -1), x)
     folded_z = np.where(y < 0, (1 - np.abs(x)) * np.where(z >= 0, 1, -1), z)
     directions = np.stack([folded_x, y, folded_z], axis=-1).reshape(-1, 3)
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
-    layers = [radiance(directions, softness).reshape(OCTAHEDRON, OCTAHEDRON, 3) for softness in (4.0, 22.0)]
+    layers = [
+        radiance(directions, softness).reshape(LIGHT_OCTAHEDRON_TEXELS, LIGHT_OCTAHEDRON_TEXELS, 3)
+        for softness in (4.0, 22.0)
+    ]
     return np.stack(layers).astype(np.float32)
 
 
 def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]:
-    """(n, 3) RGB that falls on a surface of part `owner`, and (n,) how open it is to the room, 0..1."""
-    opened = np.ones(len(points))
-    lit = [np.ones(len(points)) for _ in LIGHTS]
-    for (centre, radius), name in zip(OCCLUDERS, OWNERS, strict=True):
+    """Light on a surface.
+
+    Args:
+        points: (n, 3).
+        normals: (n, 3).
+        owner: The surface's part, which casts no shadow on itself.
+
+    Returns:
+        (n, 3) RGB irradiance, and (n,) ambient visibility, 0..1.
+    """
+    ambient = np.ones(len(points))
+    visible = [np.ones(len(points)) for _ in SOFT_BOXES]
+    for (centre, radius), name in zip(SHADOW_SPHERES, SHADOW_SPHERE_PARTS, strict=True):
         if name == owner or (name, owner) == ("body", "lid"):
             continue
         offset = np.array(centre) - points
-        square = dot(offset, offset)
-        toward = dot(offset, normals) / np.sqrt(square)
-        opened *= 1 - 0.62 * np.clip(toward * 0.8 + 0.2, 0, 1) * np.minimum(radius**2 / square, 1)
-        for light, share in zip(LIGHTS, lit, strict=True):
+        square = dot_rows(offset, offset)
+        toward = dot_rows(offset, normals) / np.sqrt(square)
+        ambient *= 1 - 0.62 * np.clip(toward * 0.8 + 0.2, 0, 1) * np.minimum(radius**2 / square, 1)
+        for light, fraction in zip(SOFT_BOXES, visible, strict=True):
             if sum(light.irradiance) > 0:
-                share *= _shade(offset, square, _unit(np.array(light.direction)), radius)
-    total = np.array([0.235, 0.245, 0.27]) * (0.72 + 0.28 * normals[:, 1:2]) * opened[:, None]
-    total = total + np.array([0.08, 0.06, 0.045]) * (0.5 - 0.5 * normals[:, 1:2]) * opened[:, None]
-    for k, (light, share) in enumerate(zip(LIGHTS, lit, strict=True)):
+                fraction *= _sphere_shadow(offset, square, _unit(np.array(light.direction)), radius)
+    total = np.array([0.235, 0.245, 0.27]) * (0.72 + 0.28 * normals[:, 1:2]) * ambient[:, None]
+    total = total + np.array([0.08, 0.06, 0.045]) * (0.5 - 0.5 * normals[:, 1:2]) * ambient[:, None]
+    for k, (light, fraction) in enumerate(zip(SOFT_BOXES, visible, strict=True)):
         if sum(light.irradiance) == 0:
             continue
-        if k < KEYS:
-            share *= _window(points)
+        if k < LIGHT_KEY_COUNT:
+            fraction *= _window_shadow(points)
         facing = np.maximum(normals @ _unit(np.array(light.direction)), 0)
-        total = total + (facing * share)[:, None] * np.array(light.irradiance)
-    return total, opened
+        total = total + (facing * fraction)[:, None] * np.array(light.irradiance)
+    return total, ambient
 
 
-def _window(points: Array) -> Array:
-    """What the frame of the window leaves of the key: two panes with blurred edges, seen along the key's direction."""
-    key = _unit(np.array(LIGHTS[0].direction))
+def _window_shadow(points: Array) -> Array:
+    """The fraction of the key light that the window frame lets through: two panes with blurred edges."""
+    key = _unit(np.array(SOFT_BOXES[0].direction))
     side = _unit(np.cross((0.0, 1.0, 0.0), key))
-    a, b = points @ side - FRAME_CENTRE[0], points @ np.cross(key, side) - FRAME_CENTRE[1]
-    panes = _step(FRAME_HALF[0] - np.abs(a)) * _step(FRAME_HALF[1] - np.abs(b))
-    for bar in FRAME_BARS:
-        panes *= 1 - _step(BAR_HALF - np.abs(a - bar))
-    return np.asarray(FRAME_SHADE + (1 - FRAME_SHADE) * panes)
+    a, b = points @ side - WINDOW_CENTRE_UNITS[0], points @ np.cross(key, side) - WINDOW_CENTRE_UNITS[1]
+    panes = _smooth_step(WINDOW_HALF_SIZE_UNITS[0] - np.abs(a)) * _smooth_step(WINDOW_HALF_SIZE_UNITS[1] - np.abs(b))
+    for bar in WINDOW_BAR_OFFSETS_UNITS:
+        panes *= 1 - _smooth_step(WINDOW_BAR_HALF_WIDTH_UNITS - np.abs(a - bar))
+    return np.asarray(WINDOW_SHADE_FRACTION + (1 - WINDOW_SHADE_FRACTION) * panes)
 
 
-def _step(distance: Array) -> Array:
-    t = np.clip(0.5 + distance / FRAME_BLUR, 0, 1)
+def _smooth_step(distance: Array) -> Array:
+    t = np.clip(0.5 + distance / WINDOW_BLUR_UNITS, 0, 1)
     return np.asarray(t * t * (3 - 2 * t))
 
 
-def _shade(offset: Array, square: Array, direction: Array, radius: float) -> Array:
-    """What a sphere at `offset` leaves of a light of some width: smooth in the clearance over the distance."""
+def _sphere_shadow(offset: Array, square: Array, direction: Array, radius: float) -> Array:
+    """The fraction of a soft light that a sphere at `offset` lets through: smooth in clearance over distance."""
     along = offset @ direction
     miss = np.sqrt(np.maximum(square - along**2, 0))
     clearance = (miss - radius) / np.maximum(along, 1e-3)
-    share = np.clip(0.5 + clearance / (2 * SHADOW_SOFTNESS), 0, 1)
-    return np.where(along > 0, share * share * (3 - 2 * share), 1.0)
+    fraction = np.clip(0.5 + clearance / (2 * SHADOW_SOFTNESS_TANGENT), 0, 1)
+    return np.where(along > 0, fraction * fraction * (3 - 2 * fraction), 1.0)
 
 
-def dot(a: Array, b: Array) -> Array:
-    """(n,) of two (n, 3): by columns, several times as fast as a sum over an axis of three."""
+def dot_rows(a: Array, b: Array) -> Array:
+    """(n,) inner products of rows; by columns, several times as fast as a sum over an axis of three.
+
+    Args:
+        a: (n, 3).
+        b: (n, 3).
+    """
     return np.asarray(a[:, 0] * b[:, 0] + a[:, 1] * b[:, 1] + a[:, 2] * b[:, 2])
 
 

@@ -1,6 +1,6 @@
-"""What the demo's surfaces look like: pigments, relief too fine for the mesh, gloss, and the light they get.
+"""The demo's surfaces: pigments, relief too fine for the mesh, gloss, and the light on them.
 
-All of it is worked out once, at the texels of a fine atlas; a view then only looks up and adds the reflections.
+Everything is computed once, at the texels of a fine atlas. A view only looks it up and adds the reflections.
 """
 
 from __future__ import annotations
@@ -13,48 +13,58 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
 from eigenfield.demo.geometry import (
+    BLOCK_ANGLE_RADIANS,
     BLOCK_CENTRE,
-    BLOCK_SIDE,
-    BLOCK_TURN,
-    MARBLE,
-    ORANGE,
-    PARTS,
+    BLOCK_SIDE_UNITS,
+    MARBLE_SPHERE,
+    ORANGE_SPHERE,
+    SURFACE_PARTS,
     Array,
-    geometry,
+    build_geometry,
 )
 from eigenfield.demo.kernels import fractal_noise
 from eigenfield.demo.lettering import BLOCK_LETTERS, POSTER, letter_mask, poster_mask
-from eigenfield.demo.light import dot, irradiance
+from eigenfield.demo.light import dot_rows, irradiance
 from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.raster import rasterise_atlas
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-PIECE = 1 << 15  # texels a thread works on at a time
-STEP = 0.003  # over which the slope of a relief is taken
+DEMO_TEXELS_PER_TASK = 1 << 15  # texels a task
+BUMP_STEP_UNITS = 0.003  # of the differences that give a bump's slope
 
 
 class Finish(NamedTuple):
-    """Pigment (n, 3) in linear light, reflectance at normal incidence (n,), roughness (n,)."""
+    """The material of points.
+
+    Attributes:
+        pigment: (n, 3) linear RGB.
+        reflectance: (n,) at normal incidence.
+        roughness: (n,).
+    """
 
     pigment: Array
     reflectance: Array
     roughness: Array
 
 
-def baked_surface(side: int) -> NDArray[np.float32]:
-    """(side, side, 8): see `kernels.shade_view`; charts are continued into the gutters."""
-    scene = geometry()
+def bake_surface(side: int) -> NDArray[np.float32]:
+    """(side, side, 8) float32: see `shade_view`; charts are extended into the gutters.
+
+    Args:
+        side: Texels.
+    """
+    scene = build_geometry()
     raster = rasterise_atlas(scene.mesh, side, side)
     texel = np.flatnonzero(raster.face >= 0)
     surface = np.zeros((side * side, 8), np.float32)
     face = raster.face.reshape(-1)[texel]
     order = np.argsort(scene.part[face], kind="stable")
     texel, face = texel[order], face[order]
-    bounds = np.searchsorted(scene.part[face], np.arange(len(PARTS) + 1))
+    bounds = np.searchsorted(scene.part[face], np.arange(len(SURFACE_PARTS) + 1))
     jobs = [
         (name, bounds[k] + start, bounds[k] + stop)
-        for k, name in enumerate(PARTS)
-        for start, stop in pieces(int(bounds[k + 1] - bounds[k]), PIECE)
+        for k, name in enumerate(SURFACE_PARTS)
+        for start, stop in pieces(int(bounds[k + 1] - bounds[k]), DEMO_TEXELS_PER_TASK)
     ]
     corners, normals = scene.mesh.vertices.astype(np.float64)[scene.mesh.faces], scene.normals[scene.mesh.faces]
 
@@ -66,70 +76,101 @@ def baked_surface(side: int) -> NDArray[np.float32]:
         weight = np.einsum("nke,ne->nk", raster.edges[f], position)
         point = np.einsum("nk,nkx->nx", weight, corners[f])
         normal = np.einsum("nk,nkx->nx", weight, normals[f])
-        normal /= np.sqrt(dot(normal, normal))[:, None]
-        surface[texel[start:stop]] = _shaded(name, point, normal)
+        normal /= np.sqrt(dot_rows(normal, normal))[:, None]
+        surface[texel[start:stop]] = _shade_texels(name, point, normal)
 
     parallel_map(work, jobs)
-    return _continued(surface.reshape(side, side, 8), raster.face >= 0)
+    return _dilate_charts(surface.reshape(side, side, 8), raster.face >= 0)
 
 
-def _shaded(name: str, point: Array, normal: Array) -> NDArray[np.float32]:
-    finish = FINISHES[name](point, normal)
-    turned = normal
-    if name in BUMPS:
-        height = BUMPS[name]
+def _shade_texels(name: str, point: Array, normal: Array) -> NDArray[np.float32]:
+    finish = SURFACE_FINISHES[name](point, normal)
+    bumped = normal
+    if name in BUMP_HEIGHTS:
+        height = BUMP_HEIGHTS[name]
         here = height(point)
-        slope = np.stack([(height(point + STEP * axis) - here) / STEP for axis in np.eye(3)], axis=1)
-        turned = normal - slope + dot(slope, normal)[:, None] * normal
-        turned /= np.sqrt(dot(turned, turned))[:, None]
-    light, opened = irradiance(point, turned, name)
-    return np.column_stack([finish.pigment * light, turned, finish.reflectance * opened**1.5, finish.roughness]).astype(
-        np.float32
-    )
+        slope = np.stack(
+            [(height(point + BUMP_STEP_UNITS * axis) - here) / BUMP_STEP_UNITS for axis in np.eye(3)], axis=1
+        )
+        bumped = normal - slope + dot_rows(slope, normal)[:, None] * normal
+        bumped /= np.sqrt(dot_rows(bumped, bumped))[:, None]
+    light, ambient = irradiance(point, bumped, name)
+    return np.column_stack(
+        [finish.pigment * light, bumped, finish.reflectance * ambient**1.5, finish.roughness]
+    ).astype(np.float32)
 
 
-def _continued(surface: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Gutters take the value of the nearest texel inside."""
+def _dilate_charts(surface: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Gutters take the value of the nearest texel inside a chart."""
     rows, columns = distance_transform_edt(~inside, return_distances=False, return_indices=True)
     return np.ascontiguousarray(surface[rows, columns])
 
 
 def noise(points: Array, frequency: float, octaves: int, seed: int, gain: float = 0.5) -> Array:
-    """(n,) fractal value noise in -1..1."""
+    """(n,) fractal value noise in -1..1.
+
+    Args:
+        points: (n, 3).
+        frequency: Of the first octave.
+        octaves: How many.
+        seed: Of the first octave.
+        gain: Amplitude of each octave relative to the one before.
+    """
     out = np.empty(len(points))
     fractal_noise(np.ascontiguousarray(points), frequency, octaves, gain, seed, out)
     return out
 
 
 def edge(distance: Array, width: float) -> Array:
-    """1 where distance is negative, 0 where it is positive, smooth over `width`."""
+    """1 where distance is negative, 0 where it is positive, with a smooth step.
+
+    Args:
+        distance: Signed.
+        width: Of the step.
+    """
     t = np.clip(0.5 - distance / width, 0, 1)
     return np.asarray(t * t * (3 - 2 * t))
 
 
-def colour(code: str) -> Array:
-    """(3,) linear RGB of a hexadecimal sRGB colour."""
+def linear_colour(code: str) -> Array:
+    """(3,) linear RGB of a hexadecimal sRGB colour.
+
+    Args:
+        code: Six digits.
+    """
     value = np.array([int(code[k : k + 2], 16) for k in (0, 2, 4)]) / 255
     return linear_of_srgb(value)
 
 
 def mix(a: Array, b: Array, share: Array) -> Array:
-    """a where share is 0, b where it is 1; (n, 3)."""
+    """(n, 3) linear interpolation.
+
+    Args:
+        a: Where `share` is 0.
+        b: Where `share` is 1.
+        share: (n,).
+    """
     return np.asarray(a + (b - a) * share[:, None])
 
 
-def full(n: int, value: float) -> Array:
+def constant(n: int, value: float) -> Array:
+    """(n,) equal values.
+
+    Args:
+        n: How many.
+        value: The value.
+    """
     return np.full(n, value)
 
 
-TILE = 0.37
-FINE = 0.006  # width of an edge of paint, a little over a pixel
+FLOOR_TILE_UNITS = 0.37
+PAINT_EDGE_UNITS = 0.006  # width of a paint edge, a little over a pixel
 
 
 def _floor(point: Array, normal: Array) -> Finish:
     """Cement tiles: a quatrefoil and a star in turn, ruled with fine lines, in a pale joint."""
     n = len(point)
-    x, z = (point[:, 0] + 0.11) / TILE, (point[:, 2] - 0.05) / TILE
+    x, z = (point[:, 0] + 0.11) / FLOOR_TILE_UNITS, (point[:, 2] - 0.05) / FLOOR_TILE_UNITS
     i, j = np.floor(x), np.floor(z)
     a, b = x - i - 0.5, z - j - 0.5
     even = (i + j) % 2 == 0
@@ -139,23 +180,25 @@ def _floor(point: Array, normal: Array) -> Finish:
     shape = np.where(even, petals, star)
     ring = np.abs(np.hypot(a, b) - 0.085) - 0.022
     corner = np.hypot(0.5 - np.abs(a), 0.5 - np.abs(b))
-    width = FINE / TILE
-    ground = np.where(even[:, None], colour("E5D9C0"), colour("8FA3A0"))
-    figure = np.where(even[:, None], colour("9E3F2B"), colour("EBE2CE"))
+    width = PAINT_EDGE_UNITS / FLOOR_TILE_UNITS
+    ground = np.where(even[:, None], linear_colour("E5D9C0"), linear_colour("8FA3A0"))
+    figure = np.where(even[:, None], linear_colour("9E3F2B"), linear_colour("EBE2CE"))
     pigment = mix(ground, figure, edge(shape, width))
-    pigment = mix(pigment, colour("2E3E4E"), edge(np.abs(shape + 0.035) - 0.009, width))
-    pigment = mix(pigment, colour("D9A441"), edge(ring, width))
-    pigment = mix(pigment, colour("2E3E4E"), edge(np.abs(corner - 0.17) - 0.012, width) + edge(corner - 0.10, width))
-    pigment = mix(pigment, colour("C9B48A"), edge(np.abs(corner - 0.055) - 0.012, width))
+    pigment = mix(pigment, linear_colour("2E3E4E"), edge(np.abs(shape + 0.035) - 0.009, width))
+    pigment = mix(pigment, linear_colour("D9A441"), edge(ring, width))
+    pigment = mix(
+        pigment, linear_colour("2E3E4E"), edge(np.abs(corner - 0.17) - 0.012, width) + edge(corner - 0.10, width)
+    )
+    pigment = mix(pigment, linear_colour("C9B48A"), edge(np.abs(corner - 0.055) - 0.012, width))
     grain = noise(point, 55.0, 3, 11, 0.7)
     cloud = noise(point, 5.0, 4, 12)
     pigment = pigment * (1 + 0.13 * grain + 0.14 * cloud)[:, None]
     joint = 0.5 - np.maximum(np.abs(a), np.abs(b)) - 0.012
     chip = joint - 0.010 * np.maximum(noise(point, 30.0, 2, 13), 0)
     inside = edge(chip, width)
-    pigment = mix(pigment, colour("6E675C") * (1 + 0.3 * grain)[:, None], inside)
+    pigment = mix(pigment, linear_colour("6E675C") * (1 + 0.3 * grain)[:, None], inside)
     rough = np.clip(0.72 + 0.2 * cloud + 0.3 * inside, 0, 1)
-    return Finish(pigment, full(n, 0.045) * (1 - 0.8 * inside), rough)
+    return Finish(pigment, constant(n, 0.045) * (1 - 0.8 * inside), rough)
 
 
 def _wall(point: Array, normal: Array) -> Finish:
@@ -165,7 +208,7 @@ def _wall(point: Array, normal: Array) -> Finish:
     cloud = noise(point, 2.2, 5, 21, 0.6)
     grain = noise(point * (1, 1, 0), 60.0, 3, 22, 0.8)
     trowel = noise(point * (1.0, 3.2, 0), 11.0, 4, 23, 0.6)
-    pigment = mix(colour("3E6B66"), colour("6F9A8C"), np.clip(0.5 + 0.75 * cloud + 0.22 * trowel, 0, 1))
+    pigment = mix(linear_colour("3E6B66"), linear_colour("6F9A8C"), np.clip(0.5 + 0.75 * cloud + 0.22 * trowel, 0, 1))
     pigment = pigment * (1 + 0.16 * grain)[:, None]
     board = np.floor(x / 0.16)
     groove = np.abs(x / 0.16 - board - 0.5) - 0.5
@@ -173,21 +216,21 @@ def _wall(point: Array, normal: Array) -> Finish:
     figure = np.sin(
         26 * (x * 2.2 + 0.35 * noise(np.stack([x * 3, y * 0.9, board * 5.3], axis=1), 1.0, 2, 25)) + 9 * board
     )
-    wood = mix(colour("7A4A26"), colour("B98147"), np.clip(0.5 + 0.4 * fibre + 0.28 * figure, 0, 1))
-    wood = mix(wood, colour("2A1A10"), edge(np.abs(groove) - 0.03, 0.05))
-    below = edge(y - 0.20, FINE)
-    rail = edge(np.abs(y - 0.213) - 0.017, FINE)
-    pigment = mix(mix(pigment, wood, below), colour("D8C9A8") * (1 + 0.1 * grain)[:, None], rail)
+    wood = mix(linear_colour("7A4A26"), linear_colour("B98147"), np.clip(0.5 + 0.4 * fibre + 0.28 * figure, 0, 1))
+    wood = mix(wood, linear_colour("2A1A10"), edge(np.abs(groove) - 0.03, 0.05))
+    below = edge(y - 0.20, PAINT_EDGE_UNITS)
+    rail = edge(np.abs(y - 0.213) - 0.017, PAINT_EDGE_UNITS)
+    pigment = mix(mix(pigment, wood, below), linear_colour("D8C9A8") * (1 + 0.1 * grain)[:, None], rail)
     u, v = (x - POSTER.left) / POSTER.width, (POSTER.top - y) / POSTER.height
     off = np.maximum(np.abs(u - 0.5) - 0.5, (np.abs(v - 0.5) - 0.5) * POSTER.height / POSTER.width) * POSTER.width
-    sheet = edge(off, FINE)
+    sheet = edge(off, PAINT_EDGE_UNITS)
     ink, red = poster_mask(u, v)
     fibres = noise(point, 120.0, 2, 26)
-    paper = mix(colour("F0E6D0") * (1 + 0.035 * fibres + 0.05 * cloud)[:, None], colour("1B1B20"), ink)
-    paper = mix(paper, colour("B5301F"), red)
+    paper = mix(linear_colour("F0E6D0") * (1 + 0.035 * fibres + 0.05 * cloud)[:, None], linear_colour("1B1B20"), ink)
+    paper = mix(paper, linear_colour("B5301F"), red)
     shadow = 1 - 0.45 * np.exp(-np.maximum(_outside(x - 0.012, y + 0.016), 0) / 0.016)
     pigment = mix(pigment * shadow[:, None], paper, sheet)
-    return Finish(pigment, full(n, 0.025), full(n, 1.0))
+    return Finish(pigment, constant(n, 0.025), constant(n, 1.0))
 
 
 def _outside(x: Array, y: Array) -> Array:
@@ -204,14 +247,14 @@ def _body(point: Array, normal: Array) -> Finish:
     around = angle / (2 * np.pi)
     cobalt = np.zeros(n)
     for level, half in ((0.272, 0.006), (0.300, 0.003), (0.855, 0.006), (0.880, 0.003), (0.985, 0.004), (0.06, 0.006)):
-        cobalt = np.maximum(cobalt, edge(np.abs(y - level) - half, FINE))
+        cobalt = np.maximum(cobalt, edge(np.abs(y - level) - half, PAINT_EDGE_UNITS))
     waves = _waves(around * 40, (y - 0.79) / 0.036)
     cobalt = np.maximum(cobalt, waves * ((y > 0.885) & (y < 0.98)) * 0.95)
     key = np.abs(((around * 48) % 1) - 0.5) - 0.27 + 0.18 * np.sign(np.sin(np.pi * (y - 1.0) / 0.018))
     cobalt = np.maximum(cobalt, edge(key, 0.1) * ((y > 1.0) & (y < 1.045)))
     cobalt = np.maximum(cobalt, _rosettes(around, y))
     flute = np.cos(24 * angle)
-    leaf = edge(np.abs(y - 0.165) - 0.075 * np.sqrt(np.maximum(flute, 0)), FINE)
+    leaf = edge(np.abs(y - 0.165) - 0.075 * np.sqrt(np.maximum(flute, 0)), PAINT_EDGE_UNITS)
     vein = edge(np.abs(((around * 24 + 0.5) % 1) - 0.5) - 0.03, 0.03) + edge(
         np.abs(np.sin(y * 260 + 3 * flute)) - 0.25, 0.3
     )
@@ -219,10 +262,10 @@ def _body(point: Array, normal: Array) -> Finish:
     brush = noise(point, 26.0, 4, 31, 0.7)
     flow = noise(point, 4.0, 3, 32)
     wash = np.clip(cobalt * (0.84 + 0.28 * brush + 0.14 * flow), 0, 1)
-    glaze = colour("D3D3CF") * (1 + 0.04 * flow + 0.03 * brush)[:, None]
-    ink = mix(colour("3F66B4"), colour("10246B"), np.clip(wash * 1.1 - 0.2 + 0.2 * flow, 0, 1))
+    glaze = linear_colour("D3D3CF") * (1 + 0.04 * flow + 0.03 * brush)[:, None]
+    ink = mix(linear_colour("3F66B4"), linear_colour("10246B"), np.clip(wash * 1.1 - 0.2 + 0.2 * flow, 0, 1))
     pigment = mix(glaze, ink, np.clip(wash * 1.25, 0, 1))
-    return Finish(pigment, full(n, 0.07), np.clip(0.04 + 0.10 * cobalt, 0, 1))
+    return Finish(pigment, constant(n, 0.07), np.clip(0.04 + 0.10 * cobalt, 0, 1))
 
 
 def _waves(u: Array, v: Array) -> Array:
@@ -248,14 +291,16 @@ def _rosettes(around: Array, y: Array) -> Array:
         r, t = np.hypot(a, b), np.arctan2(b, a)
         petals = r - 0.052 * (0.72 + 0.28 * np.abs(np.cos(4 * t)))
         veins = edge(np.abs(np.sin(16 * t)) - 0.30, 0.4) * (r > 0.022)
-        flower = edge(petals, FINE) * (1 - 0.6 * veins) * (1 - edge(np.abs(r - 0.021) - 0.004, FINE))
-        out = np.maximum(out, flower * (1 - edge(r - 0.007, FINE)))
+        flower = (
+            edge(petals, PAINT_EDGE_UNITS) * (1 - 0.6 * veins) * (1 - edge(np.abs(r - 0.021) - 0.004, PAINT_EDGE_UNITS))
+        )
+        out = np.maximum(out, flower * (1 - edge(r - 0.007, PAINT_EDGE_UNITS)))
         out = np.maximum(out, 0.85 * edge(np.abs(r - 0.066) - 0.0022, 0.004))
         c = ((column - shift) % 1 - 0.5) * 0.42
         curl = np.abs(np.hypot(c, b) - 0.018 - 0.010 * (np.arctan2(b, c) / np.pi)) - 0.0035
         out = np.maximum(out, 0.9 * edge(curl, 0.005) * (np.hypot(c, b) < 0.034))
         leaf = np.hypot(np.abs(c) - 0.058, b * 2.6) - 0.024
-        out = np.maximum(out, 0.75 * edge(leaf, FINE) * (1 - 0.6 * edge(np.abs(b) - 0.002, 0.004)))
+        out = np.maximum(out, 0.75 * edge(leaf, PAINT_EDGE_UNITS) * (1 - 0.6 * edge(np.abs(b) - 0.002, 0.004)))
     return out
 
 
@@ -264,65 +309,69 @@ def _lid(point: Array, normal: Array) -> Finish:
     angle, y = np.arctan2(point[:, 0], point[:, 2]), point[:, 1]
     r = np.hypot(point[:, 0], point[:, 2])
     petal = np.cos(12 * angle)
-    body = edge(np.abs(r - 0.215) - 0.105 * np.sqrt(np.maximum(petal * 0.9 + 0.1, 0)), FINE)
+    body = edge(np.abs(r - 0.215) - 0.105 * np.sqrt(np.maximum(petal * 0.9 + 0.1, 0)), PAINT_EDGE_UNITS)
     veins = edge(np.abs(np.sin(r * 170 + 5 * petal)) - 0.28, 0.35)
-    cobalt = np.maximum(body * (0.95 - 0.6 * veins), edge(np.abs(r - 0.332) - 0.004, FINE))
+    cobalt = np.maximum(body * (0.95 - 0.6 * veins), edge(np.abs(r - 0.332) - 0.004, PAINT_EDGE_UNITS))
     dots = np.hypot((((angle / (2 * np.pi)) * 48) % 1 - 0.5) * 0.042, y - 1.122) - 0.009
-    cobalt = np.maximum(cobalt * (y > 1.135), edge(dots, FINE))
+    cobalt = np.maximum(cobalt * (y > 1.135), edge(dots, PAINT_EDGE_UNITS))
     brush, flow = noise(point, 30.0, 4, 41, 0.7), noise(point, 5.0, 3, 42)
     wash = np.clip(cobalt * (0.85 + 0.3 * brush), 0, 1)
-    ink = mix(colour("3F66B4"), colour("10246B"), np.clip(wash - 0.1 + 0.2 * flow, 0, 1))
-    pigment = mix(colour("D3D3CF") * (1 + 0.04 * flow + 0.03 * brush)[:, None], ink, np.clip(1.2 * wash, 0, 1))
-    gilt = np.maximum(edge(1.256 - y, FINE), edge(np.abs(y - 1.099) - 0.006, 0.004)) * np.clip(0.97 + 0.1 * brush, 0, 1)
-    pigment = mix(pigment, colour("A8741F"), gilt)
+    ink = mix(linear_colour("3F66B4"), linear_colour("10246B"), np.clip(wash - 0.1 + 0.2 * flow, 0, 1))
+    pigment = mix(linear_colour("D3D3CF") * (1 + 0.04 * flow + 0.03 * brush)[:, None], ink, np.clip(1.2 * wash, 0, 1))
+    gilt = np.maximum(edge(1.256 - y, PAINT_EDGE_UNITS), edge(np.abs(y - 1.099) - 0.006, 0.004)) * np.clip(
+        0.97 + 0.1 * brush, 0, 1
+    )
+    pigment = mix(pigment, linear_colour("A8741F"), gilt)
     return Finish(pigment, 0.07 + 0.25 * gilt, np.clip(0.04 + 0.15 * gilt, 0, 1))
 
 
 def _orange(point: Array, normal: Array) -> Finish:
     """A waxed orange: pores, and a green blush where its stalk was."""
     n = len(point)
-    local = (point - ORANGE[0]) / ORANGE[1]
+    local = (point - ORANGE_SPHERE[0]) / ORANGE_SPHERE[1]
     pits = edge(0.30 - noise(local, 19.0, 1, 51), 0.5)
     cloud = noise(local, 2.6, 4, 52)
-    pigment = mix(colour("D9680E"), colour("F2A01E"), np.clip(0.5 + 0.7 * cloud, 0, 1))
-    pigment = mix(pigment, colour("B84E06"), 0.45 * pits)
+    pigment = mix(linear_colour("D9680E"), linear_colour("F2A01E"), np.clip(0.5 + 0.7 * cloud, 0, 1))
+    pigment = mix(pigment, linear_colour("B84E06"), 0.45 * pits)
     pole = np.linalg.norm(local - np.array([0.35, 0.80, 0.49]), axis=1)
-    pigment = mix(pigment, colour("7F8C2A"), 0.7 * edge(pole - 0.20 - 0.1 * cloud, 0.30))
+    pigment = mix(pigment, linear_colour("7F8C2A"), 0.7 * edge(pole - 0.20 - 0.1 * cloud, 0.30))
     pigment = mix(
         pigment,
-        colour("3F4A1A"),
+        linear_colour("3F4A1A"),
         edge(pole - 0.075 + 0.02 * np.cos(5 * np.arctan2(local[:, 0] - 0.35, local[:, 2] - 0.49)), 0.03),
     )
-    return Finish(pigment, full(n, 0.045), full(n, 0.3))
+    return Finish(pigment, constant(n, 0.045), constant(n, 0.3))
 
 
 def _marble(point: Array, normal: Array) -> Finish:
     """A lacquered ball: bands of red and cream under a clear coat, with gold specks."""
     n = len(point)
-    local = (point - MARBLE[0]) / MARBLE[1]
+    local = (point - MARBLE_SPHERE[0]) / MARBLE_SPHERE[1]
     tilted = local @ np.array([0.35, 0.85, -0.40])
     swirl = tilted * 5.5 + 0.9 * noise(local, 1.6, 3, 61)
     band = np.abs((swirl % 1) - 0.5) - 0.25
-    pigment = mix(colour("7E0F16"), colour("F1DFBE"), edge(band, 0.05))
-    pigment = mix(pigment, colour("17181C"), edge(np.abs(band) - 0.035, 0.03))
-    pigment = mix(pigment, colour("C8921E"), edge(0.55 - noise(local, 9.0, 1, 62), 0.08))
-    return Finish(pigment, full(n, 0.07), full(n, 0.0))
+    pigment = mix(linear_colour("7E0F16"), linear_colour("F1DFBE"), edge(band, 0.05))
+    pigment = mix(pigment, linear_colour("17181C"), edge(np.abs(band) - 0.035, 0.03))
+    pigment = mix(pigment, linear_colour("C8921E"), edge(0.55 - noise(local, 9.0, 1, 62), 0.08))
+    return Finish(pigment, constant(n, 0.07), constant(n, 0.0))
 
 
 def _block(point: Array, normal: Array) -> Finish:
     """A wooden block: a letter in a frame on each side, and long grain."""
     n = len(point)
-    c, s = np.cos(BLOCK_TURN), np.sin(BLOCK_TURN)
+    c, s = np.cos(BLOCK_ANGLE_RADIANS), np.sin(BLOCK_ANGLE_RADIANS)
     frame = np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])
-    local, facing = (point - BLOCK_CENTRE) @ frame.T / BLOCK_SIDE, normal @ frame.T
+    local, facing = (point - BLOCK_CENTRE) @ frame.T / BLOCK_SIDE_UNITS, normal @ frame.T
     ring = np.sin(60 * np.hypot(local[:, 1] + 0.9, local[:, 2] - 1.3) + 4 * noise(local, 2.0, 3, 71))
     fibre = noise(local * (6, 60, 60), 1.0, 3, 72)
-    pigment = mix(colour("C08F55"), colour("E6C48F"), np.clip(0.5 + 0.3 * ring + 0.3 * fibre, 0, 1))
+    pigment = mix(linear_colour("C08F55"), linear_colour("E6C48F"), np.clip(0.5 + 0.3 * ring + 0.3 * fibre, 0, 1))
     side = np.abs(facing).argmax(axis=1)
     a = np.where(side == 0, -np.sign(facing[:, 0]) * local[:, 2], local[:, 0])
     b = np.where(side == 1, -local[:, 2], local[:, 1])
     paint = np.where(
-        (side == 0)[:, None], colour("23508C"), np.where((side == 1)[:, None], colour("2E6B3A"), colour("A62B21"))
+        (side == 0)[:, None],
+        linear_colour("23508C"),
+        np.where((side == 1)[:, None], linear_colour("2E6B3A"), linear_colour("A62B21")),
     )
     border = np.maximum(np.abs(a), np.abs(b))
     worn = np.clip(1.0 - 0.9 * np.maximum(noise(local, 12.0, 3, 73) - 0.18, 0), 0, 1)
@@ -331,19 +380,19 @@ def _block(point: Array, normal: Array) -> Finish:
         marks = np.maximum(marks, np.where(side == k, letter_mask(letter, a + 0.5, 0.5 - b), 0.0))
     pigment = mix(pigment, paint * (1 + 0.15 * fibre)[:, None], marks * worn)
     pigment = pigment * (1 - 0.35 * edge(0.485 - border, 0.02))[:, None]
-    return Finish(pigment, full(n, 0.04), full(n, 0.8))
+    return Finish(pigment, constant(n, 0.04), constant(n, 0.8))
 
 
-FINISHES: dict[str, Callable[[Array, Array], Finish]] = {
+SURFACE_FINISHES: dict[str, Callable[[Array, Array], Finish]] = {
     "floor": _floor, "wall": _wall, "body": _body, "lid": _lid, "orange": _orange, "marble": _marble, "block": _block,
 }  # fmt: skip
-BUMPS: dict[str, Callable[[Array], Array]] = {  # heights, whose slope turns the normal
+BUMP_HEIGHTS: dict[str, Callable[[Array], Array]] = {  # heights, whose slope perturbs the normal
     "floor": lambda p: 0.0035 * noise(p, 9.0, 3, 14),
     "wall": lambda p: (
         0.005 * noise(p * (1.0, 3.2, 0), 11.0, 3, 23, 0.6) * (p[:, 1] > 0.23) * (_outside(p[:, 0], p[:, 1]) > 0)
     ),
     "body": lambda p: 0.0022 * noise(p, 7.0, 2, 35) + 0.0005 * noise(p, 42.0, 2, 36),
     "lid": lambda p: 0.0020 * noise(p, 8.0, 2, 43) + 0.0005 * noise(p, 46.0, 2, 44),
-    "orange": lambda p: -0.005 * edge(0.30 - noise((p - ORANGE[0]) / ORANGE[1], 19.0, 1, 51), 0.6),
+    "orange": lambda p: -0.005 * edge(0.30 - noise((p - ORANGE_SPHERE[0]) / ORANGE_SPHERE[1], 19.0, 1, 51), 0.6),
     "block": lambda p: 0.0015 * noise(p, 40.0, 2, 74),
 }

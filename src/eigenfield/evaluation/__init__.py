@@ -1,16 +1,16 @@
-"""How good a scene is: PSNR and SSIM in UV and image space, FLIP, bytes by part, plots (docs/measures.md)."""
+"""Quality of a scene: PSNR and SSIM in UV and image space, FLIP, bytes by part, plots (docs/measures.md)."""
 
-from eigenfield.evaluation.exclusion import Circle, read_circles
-from eigenfield.evaluation.report import SCHEMA, evaluate, stored_scores
+from eigenfield.evaluation.exclusion import ExcludedCircle, read_circles
+from eigenfield.evaluation.report import EVALUATION_SCHEMA, evaluate, stored_scores
 from eigenfield.evaluation.session import match_photographs, with_scene_cameras
-from eigenfield.evaluation.uv import reconstructions
+from eigenfield.evaluation.uv import reconstruct_maps
 from eigenfield.imaging.flip import flip, flip_map
 from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, ssim
 
 __all__ = [
+    "EVALUATION_SCHEMA",
     "PSNR_CAP",
-    "SCHEMA",
-    "Circle",
+    "ExcludedCircle",
     "evaluate",
     "flip",
     "flip_map",
@@ -18,7 +18,7 @@ __all__ = [
     "psnr",
     "psnr_luma",
     "read_circles",
-    "reconstructions",
+    "reconstruct_maps",
     "ssim",
     "stored_scores",
     "with_scene_cameras",

@@ -1,4 +1,4 @@
-"""Circles that are left out of a second set of figures: a glass ball, a mirror, anything the surface cannot carry."""
+"""Circles excluded from a second set of scores: a glass ball, a mirror, anything that the surface cannot represent."""
 
 from __future__ import annotations
 
@@ -16,24 +16,42 @@ from eigenfield.core.errors import OptionError
 
 
 @dataclass(frozen=True)
-class Circle:
-    """Centre and radius in pixels; the centre of the top-left pixel is (0.5, 0.5)."""
+class ExcludedCircle:
+    """A circle in pixels; the centre of the top-left pixel is (0.5, 0.5).
+
+    Attributes:
+        cx: Centre.
+        cy: Centre.
+        r: Radius.
+    """
 
     cx: float
     cy: float
     r: float
 
     def outside(self, width: int, height: int) -> NDArray[np.bool_]:
-        """(H, W) bool: pixels whose centre is not within the circle."""
+        """(H, W) bool: pixels whose centre is not within the circle.
+
+        Args:
+            width: Of the picture.
+            height: Of the picture.
+        """
         x, y = np.arange(width) + (0.5 - self.cx), np.arange(height) + (0.5 - self.cy)
         return np.asarray(y[:, None] ** 2 + x**2 > self.r**2)
 
 
-def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str, Circle]:
-    """The circle of each camera in `names` from a JSON file {"circles": {photograph: {"cx", "cy", "r"}}}.
+def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str, ExcludedCircle]:
+    """The circle of each camera, from a JSON file {"circles": {photograph: {"cx", "cy", "r"}}}.
 
-    A photograph is matched by its name, or else by its file name alone where that is unique. Cameras without a circle
-    are absent from the result. Raises OptionError `circles-unreadable`, `circles-malformed`, `circles-unmatched`.
+    A photograph is matched by its name, or else by its file name alone if that is unique. Cameras without a circle are
+    absent from the result.
+
+    Args:
+        path: The file.
+        names: Of the cameras.
+
+    Raises:
+        OptionError: `circles-unreadable`, `circles-malformed` or `circles-unmatched`.
     """
     try:
         document = json.loads(Path(path).read_text("utf-8"))
@@ -48,8 +66,8 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
     entries = document.get("circles") if isinstance(document, dict) else None
     if not isinstance(entries, dict):
         raise OptionError("circles-malformed", 'has no "circles" object', path=path, remedy="key circles by photograph")
-    circles = {str(key).replace("\\", "/"): _circle(key, entry, path) for key, entry in entries.items()}
-    found = _matched(circles, names)
+    circles = {str(key).replace("\\", "/"): _parse_circle(key, entry, path) for key, entry in entries.items()}
+    found = _match_circles(circles, names)
     if not found:
         raise OptionError(
             "circles-unmatched",
@@ -60,7 +78,7 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
     return found
 
 
-def _circle(key: str, entry: object, path: str | os.PathLike[str]) -> Circle:
+def _parse_circle(key: str, entry: object, path: str | os.PathLike[str]) -> ExcludedCircle:
     values = [entry.get(field) for field in ("cx", "cy", "r")] if isinstance(entry, dict) else []
     numbers = [float(v) for v in values if isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)]
     if len(numbers) != 3 or numbers[2] < 0:
@@ -70,11 +88,11 @@ def _circle(key: str, entry: object, path: str | os.PathLike[str]) -> Circle:
             path=path,
             remedy="mend its entry",
         )
-    return Circle(*numbers)
+    return ExcludedCircle(*numbers)
 
 
-def _matched(circles: Mapping[str, Circle], names: Sequence[str]) -> dict[str, Circle]:
-    by_file: dict[str, list[Circle]] = {}
+def _match_circles(circles: Mapping[str, ExcludedCircle], names: Sequence[str]) -> dict[str, ExcludedCircle]:
+    by_file: dict[str, list[ExcludedCircle]] = {}
     for key, circle in circles.items():
         by_file.setdefault(PurePosixPath(key).name, []).append(circle)
     ours = [PurePosixPath(name).name for name in names]

@@ -1,4 +1,4 @@
-"""Equation 8 on a whole atlas, a few eigen textures at a time."""
+"""The inner loop of equation 8 on a whole atlas."""
 
 from __future__ import annotations
 
@@ -9,8 +9,13 @@ from eigenfield.runtime.jit import kernel
 def add_textures(total, stored, factor, offset):  # type: ignore[no-untyped-def]
     """total[i] += Σ_j factor[j, k] stored[j, i] - offset[k] with k = i modulo the period, for flat pictures.
 
-    total (n,) float32, stored (m, n) any number, factor (m, period) and offset (period,) float32. The period is a
-    multiple of the channels: a long one lets the inner loop run over many texels at once.
+    The period is a multiple of the channels: a long one lets the inner loop run over many texels at once.
+
+    Args:
+        total: (n,) float32, added to.
+        stored: (m, n) of any type.
+        factor: (m, period) float32.
+        offset: (period,) float32.
     """
     size, period = total.shape[0], offset.shape[0]
     for start in range(0, size, period):

@@ -1,4 +1,4 @@
-"""The figures as pictures: matplotlib's Agg canvas without pyplot, so that nothing global is touched."""
+"""The scores as plots, drawn on matplotlib's Agg canvas without pyplot, so that no global state is touched."""
 
 from __future__ import annotations
 
@@ -24,37 +24,56 @@ from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.runtime.files import mended, write_bytes
 
-Row = tuple[str, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]  # title, photograph, drawn, error
+ContactSheetRow = tuple[
+    str, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]
+]  # title, photograph, drawn, error
 
-CURVE, CAMERAS, BYTES, SHEET = "uv-curve.png", "cameras.png", "bytes.png", "contact-sheet.png"
-DPI = 150
-BLUE, ORANGE, GREY = "#2f6db3", "#d9822b", "#5f6670"
-PARTS = (  # of a file: key, what it says on the plot, colour
+PLOT_CURVE_FILE, PLOT_CAMERAS_FILE, PLOT_BYTES_FILE, PLOT_CONTACT_SHEET_FILE = (
+    "uv-curve.png",
+    "cameras.png",
+    "bytes.png",
+    "contact-sheet.png",
+)
+PLOT_DPI = 150
+PLOT_BLUE, PLOT_ORANGE, PLOT_GREY = "#2f6db3", "#d9822b", "#5f6670"
+PLOT_PARTS = (  # of a file: key, label, colour
     ("textures", "eigen textures", "#2f6db3"),
     ("mean", "mean texture", "#5fa8a0"),
     ("mesh", "mesh", "#d9822b"),
     ("weights", "weights", "#b5485d"),
     ("other", "other", "#9aa1a9"),
 )
-NAME_LENGTH = 32  # longer names lose their beginning
-ERROR_GAIN = 5  # the contact sheet shows errors this many times as large
+PLOT_MAX_NAME_CHARACTERS = 32  # longer names lose their beginning
+PLOT_ERROR_GAIN = 5  # of the errors in the contact sheet
 
 
-def plot_names(figures: Mapping[str, Any]) -> list[str]:
-    """The files that `write_plots` makes of these figures."""
-    names = [CAMERAS, SHEET]
-    if figures.get("bytes") is not None:
-        names.insert(0, BYTES)
-    if figures.get("curve") and figures["uv"] is not None:
-        names.insert(0, CURVE)
+def plot_names(scores: Mapping[str, Any]) -> list[str]:
+    """The files that `write_plots` writes.
+
+    Args:
+        scores: Of `evaluate`.
+    """
+    names = [PLOT_CAMERAS_FILE, PLOT_CONTACT_SHEET_FILE]
+    if scores.get("bytes") is not None:
+        names.insert(0, PLOT_BYTES_FILE)
+    if scores.get("curve") and scores["uv"] is not None:
+        names.insert(0, PLOT_CURVE_FILE)
     return names
 
 
 def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
-    """Before any work: raise OutputError if a plot in `folder` would be replaced, or `folder` is a file."""
+    """Check before any work that no plot would be replaced.
+
+    Args:
+        folder: Of the plots.
+        overwrite: Allow it.
+
+    Raises:
+        OutputError: `output-exists`, or `not-a-folder`.
+    """
     if folder.exists() and not folder.is_dir():
         raise OutputError("not-a-folder", "is a file", path=folder, remedy="name a folder for --plots")
-    for name in (CURVE, CAMERAS, BYTES, SHEET):
+    for name in (PLOT_CURVE_FILE, PLOT_CAMERAS_FILE, PLOT_BYTES_FILE, PLOT_CONTACT_SHEET_FILE):
         if (folder / name).exists() and not overwrite:
             raise OutputError(
                 "output-exists", "exists already", path=folder / name, remedy="use --overwrite or another folder"
@@ -62,46 +81,61 @@ def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
 
 
 def write_plots(
-    figures: Mapping[str, Any],
+    scores: Mapping[str, Any],
     scene: Scene,
     capture: LightField,
     folder: str | os.PathLike[str],
     *,
     overwrite: bool = False,
 ) -> list[Path]:
-    """Write the plots of `evaluate`'s figures into a folder that is made if need be; returns their paths.
+    """Write the plots of `evaluate`'s scores.
 
-    Raises OutputError when a plot exists already and `overwrite` is not set.
+    Args:
+        scores: Of `evaluate`.
+        scene: The scene.
+        capture: Its photographs.
+        folder: Created if need be.
+        overwrite: Replace existing plots.
+
+    Returns:
+        Their paths.
+
+    Raises:
+        OutputError: `output-exists`, or the folder cannot be written.
     """
     folder = Path(folder)
     session = start_session(
-        scene, capture, textures=figures["textures"], filter=figures["filter"], weights=figures["weights"]
+        scene, capture, textures=scores["textures"], filter=scores["filter"], weights=scores["weights"]
     )
     refuse_existing_plots(folder, overwrite)
     with mended(folder):
         folder.mkdir(parents=True, exist_ok=True)
     written = []
-    for name in plot_names(figures):
-        if name == CURVE:
-            figure = curve_figure(figures)
-        elif name == BYTES:
-            figure = bytes_figure(figures["bytes"], figures.get("ratio"))
-        elif name == CAMERAS:
-            figure = cameras_figure(figures["cameras"], _coordinates(figures["cameras"], session))
+    for name in plot_names(scores):
+        if name == PLOT_CURVE_FILE:
+            figure = curve_figure(scores)
+        elif name == PLOT_BYTES_FILE:
+            figure = bytes_figure(scores["bytes"], scores.get("ratio"))
+        elif name == PLOT_CAMERAS_FILE:
+            figure = cameras_figure(scores["cameras"], _coordinates(scores["cameras"], session))
         else:
-            figure = sheet_figure(_sheet(figures["cameras"], session))
+            figure = contact_sheet_figure(_contact_sheet_rows(scores["cameras"], session))
         write_bytes(folder / name, _png(figure), overwrite=overwrite)
         written.append(folder / name)
     return written
 
 
-def curve_figure(figures: Mapping[str, Any]) -> Figure:
-    """SSIM and PSNR in UV space against the number of eigen textures (the paper's figure 5)."""
-    points = figures["curve"]
+def curve_figure(scores: Mapping[str, Any]) -> Figure:
+    """SSIM and PSNR in UV space against the number of eigen textures (figure 5 of the paper).
+
+    Args:
+        scores: Of `evaluate`, with a curve.
+    """
+    points = scores["curve"]
     count = [point["textures"] for point in points]
     figure = _figure(9, 4.2)
     for at, (key, label, colour) in enumerate(
-        (("uv_ssim", "SSIM {:.4f}", BLUE), ("uv_psnr", "PSNR {:.2f} dB", ORANGE)), 1
+        (("uv_ssim", "SSIM {:.4f}", PLOT_BLUE), ("uv_psnr", "PSNR {:.2f} dB", PLOT_ORANGE)), 1
     ):
         axes = figure.add_subplot(1, 2, at)
         values = [point[key] for point in points]
@@ -110,12 +144,17 @@ def curve_figure(figures: Mapping[str, Any]) -> Figure:
         axes.set_title(f"{label.format(values[-1])} with all {count[-1]}", fontsize=11, loc="left")
         axes.set_ylabel(f"{label.split()[0]} of the texture maps, mean over {points[-1]['cameras']} cameras")
         axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-        _quiet(axes)
+        _style_axes(axes)
     return figure
 
 
 def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np.float64]) -> Figure:
-    """PSNR of each re-drawn photograph where its camera stands on the view plane."""
+    """PSNR of each re-drawn photograph at its camera's position on the view plane.
+
+    Args:
+        cameras: Their scores.
+        coordinates: (n, 2) positions on the view plane.
+    """
     measured = [
         (camera, place) for camera, place in zip(cameras, coordinates, strict=True) if camera["psnr"] is not None
     ]
@@ -147,28 +186,33 @@ def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np
         axes.scatter(
             place[0], place[1], s=2.6 * size, marker="o", facecolors="none", edgecolors="#c2352b", linewidths=1.8
         )
-        told = f"worst, ringed: {_short(worst['name'])}, {worst['psnr']:.2f} dB"
+        text = f"worst, ringed: {_shorten(worst['name'])}, {worst['psnr']:.2f} dB"
         axes.annotate(
-            told, (1, -0.11), xycoords="axes fraction", ha="right", va="top", color="#c2352b", parse_math=False
+            text, (1, -0.11), xycoords="axes fraction", ha="right", va="top", color="#c2352b", parse_math=False
         )
         legend = axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2, frameon=False)
         for handle in legend.legend_handles:
-            if isinstance(handle, PathCollection):  # a colour of its own would be that of one camera
+            if isinstance(handle, PathCollection):  # otherwise it has the colour of one camera
                 handle.set_array(None)
                 handle.set_facecolor("#9aa1a9")
     axes.set_xlabel("X on the view plane (right)")
     axes.set_ylabel("Y on the view plane (up)")
     axes.margins(0.08)
     axes.set_aspect("equal" if np.ptp(coordinates[:, 1]) > 0 else "auto")
-    _quiet(axes)
+    _style_axes(axes)
     return figure
 
 
 def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | None) -> Figure:
-    """The file's bytes by part."""
+    """The file's bytes by part.
+
+    Args:
+        sizes: Of `evaluate`.
+        ratio: Of `evaluate`.
+    """
     figure = _figure(8.2, 3.6)
     axes = figure.add_subplot()
-    shown = [(label, sizes[key], colour) for key, label, colour in PARTS]
+    shown = [(label, sizes[key], colour) for key, label, colour in PLOT_PARTS]
     total = max(sizes["total"], 1)
     axes.barh([label for label, _, _ in shown], [size / 1e3 for _, size, _ in shown], color=[c for _, _, c in shown])
     axes.invert_yaxis()
@@ -179,30 +223,36 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
             textcoords="offset points",
             xytext=(5, 0),
             va="center",
-            color=GREY,
+            color=PLOT_GREY,
         )
     axes.set_xlim(0, 1.28 * max(size for _, size, _ in shown) / 1e3 or 1)
     axes.set_xlabel("kB (1000 bytes)")
     known = {"photographs": "photographs", "texture_maps_png": "texture maps as PNG", "raw": "raw pixels"}
     times = [(ratio[key], label) for key, label in known.items()] if ratio else []
-    told = [f"{label} {value:.{1 if value < 20 else 0}f}" for value, label in times if value is not None]
-    smaller = f"\ntimes smaller than: {', '.join(told)}" if told else ""
+    text = [f"{label} {value:.{1 if value < 20 else 0}f}" for value, label in times if value is not None]
+    smaller = f"\ntimes smaller than: {', '.join(text)}" if text else ""
     axes.set_title(f"{sizes['total'] / 1e6:.2f} MB{smaller}", fontsize=10.5, loc="left")
-    _quiet(axes)
+    _style_axes(axes)
     axes.grid(False, axis="y")
     return figure
 
 
-def sheet_figure(
-    rows: Sequence[Row],
+def contact_sheet_figure(
+    rows: Sequence[ContactSheetRow],
 ) -> Figure:
-    """Photograph, drawn picture and error side by side; a title for each row."""
+    """Photograph, drawn picture and error side by side; a title for each row.
+
+    Args:
+        rows: The rows.
+    """
     height, width = rows[0][1].shape[:2] if rows else (1, 1)
     inches = 3.6
     figure = _figure(3 * inches + 0.3, len(rows) * (inches * height / width + 0.45) + 0.2)
     axes = figure.subplots(len(rows), 3, squeeze=False) if rows else np.empty((0, 3))
     for line, (title, *pictures) in zip(axes, rows, strict=True):
-        for place, picture, label in zip(line, pictures, ("photograph", "drawn", f"error × {ERROR_GAIN}"), strict=True):
+        for place, picture, label in zip(
+            line, pictures, ("photograph", "drawn", f"error × {PLOT_ERROR_GAIN}"), strict=True
+        ):
             place.imshow(to_codes(np.asarray(picture)), interpolation="antialiased")
             place.set_axis_off()
             place.set_title(
@@ -211,8 +261,8 @@ def sheet_figure(
     return figure
 
 
-def _sheet(cameras: Sequence[Mapping[str, Any]], session: Session) -> list[Row]:
-    """Rows of the contact sheet: the cameras with the highest, the median and the lowest PSNR, drawn again."""
+def _contact_sheet_rows(cameras: Sequence[Mapping[str, Any]], session: Session) -> list[ContactSheetRow]:
+    """The cameras with the highest, the median and the lowest PSNR, drawn again."""
     order = sorted((camera for camera in cameras if camera["psnr"] is not None), key=lambda camera: -camera["psnr"])
     chosen = {"best": 0, "median": len(order) // 2, "worst": len(order) - 1} if order else {}
     rows = []
@@ -221,8 +271,10 @@ def _sheet(cameras: Sequence[Mapping[str, Any]], session: Session) -> list[Row]:
         index = session.scene.rig.names.index(camera["name"])
         photograph = session.photograph(index).pixels
         drawn, surface = session.draw(index)
-        error = np.abs(drawn - photograph) * ERROR_GAIN * surface[..., None]
-        about = f"{kind}{', held out' if camera['held_out'] else ''} {camera['psnr']:.2f} dB, {_short(camera['name'])}"
+        error = np.abs(drawn - photograph) * PLOT_ERROR_GAIN * surface[..., None]
+        about = (
+            f"{kind}{', held out' if camera['held_out'] else ''} {camera['psnr']:.2f} dB, {_shorten(camera['name'])}"
+        )
         rows.append((about, photograph, drawn, error.astype(np.float32)))
     return rows
 
@@ -234,25 +286,25 @@ def _coordinates(cameras: Sequence[Mapping[str, Any]], session: Session) -> NDAr
 
 
 def _figure(width: float, height: float) -> Figure:
-    figure = Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+    figure = Figure(figsize=(width, height), dpi=PLOT_DPI, layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
 
-def _quiet(axes: Axes) -> None:
-    """Fewer lines: no frame at the top and right, a pale grid behind."""
+def _style_axes(axes: Axes) -> None:
+    """No frame at the top and right, and a pale grid behind."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(True, color="#e4e7ea", linewidth=0.8)
     axes.set_axisbelow(True)
 
 
-def _short(name: str) -> str:
-    return name if len(name) <= NAME_LENGTH else f"…{name[1 - NAME_LENGTH :]}"
+def _shorten(name: str) -> str:
+    return name if len(name) <= PLOT_MAX_NAME_CHARACTERS else f"…{name[1 - PLOT_MAX_NAME_CHARACTERS :]}"
 
 
 def _png(figure: Figure) -> bytes:
     data = io.BytesIO()
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph .* missing")  # names in scripts that the font has not
+        warnings.filterwarnings("ignore", "Glyph .* missing")  # names in scripts that the font lacks
         figure.savefig(data, format="png", metadata={"Software": None})
     return data.getvalue()

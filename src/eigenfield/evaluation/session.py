@@ -1,4 +1,4 @@
-"""A scene beside its photographs: what is measured of one camera."""
+"""A scene beside its photographs: the scores of one camera."""
 
 from __future__ import annotations
 
@@ -15,40 +15,56 @@ from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected import FILTERS, METHODS, Atlas, align_map, harmonised, make_atlas, texture_map
 from eigenfield.encoding.residual import captured_samples, corrected
-from eigenfield.evaluation.exclusion import Circle
-from eigenfield.evaluation.image import Figures, measure_outside, measure_picture
-from eigenfield.evaluation.uv import MapFigures, measure_map
+from eigenfield.evaluation.exclusion import ExcludedCircle
+from eigenfield.evaluation.image import ImageScores, measure_outside, measure_picture
+from eigenfield.evaluation.uv import MapScores, measure_map
 from eigenfield.rendering import Picture, Renderer, camera_colour, camera_weights
 
 log = logging.getLogger("eigenfield.evaluation")
 
-LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
-PNG_MAPS = CURVES = ("all", "sample", "none")
-SAMPLE = 16  # cameras that `sample` takes
-SAME_CAMERA = 0.5  # pixels by which two calibrations may differ without a warning
+EVALUATION_LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
+PNG_MAP_CHOICES = CURVE_CHOICES = ("all", "sample", "none")
+EVALUATION_SAMPLE_CAMERAS = 16  # of "sample"
+EVALUATION_MAX_CALIBRATION_PIXELS = 0.5  # two calibrations may differ by this much without a warning
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
-    """What one camera gave. outside, texture: None where not asked for, or held out. residual: figures, and those
-    outside, of the picture with its residual; None where it has none."""
+class CameraScores:
+    """The scores of one camera.
 
-    image: Figures
-    outside: Figures | None
-    texture: MapFigures | None
-    residual: tuple[Figures, Figures | None] | None
+    Attributes:
+        image: Of the drawn picture.
+        outside: Of the picture outside its circle; None without circles.
+        texture: Of the texture map; None if it is not measured, or the camera is held out.
+        residual: Of the picture with its residual, and outside its circle; None without a residual.
+    """
+
+    image: ImageScores
+    outside: ImageScores | None
+    texture: MapScores | None
+    residual: tuple[ImageScores, ImageScores | None] | None
 
 
 @dataclass(frozen=True, eq=False)
 class Session:
     """A scene beside its photographs, ready to be measured; shared by all threads.
 
-    photographs: index of a scene's camera to the index of its view in the capture.
-    counts: numbers of eigen textures for the UV measure, rising; the last is the one that pictures are drawn with.
-    curved: indices of the cameras that are measured with all of `counts`, the others with the last alone.
-    reference: the texture map and visibility that maps are aligned to, None without alignment.
-    packed: indices of cameras whose filled maps are written as PNG.
-    flip: pictures are measured with FLIP too.
+    Attributes:
+        scene: The scene.
+        capture: Its photographs.
+        photographs: From the index of a scene's camera to the index of its view in the capture.
+        renderer: Of the scene.
+        counts: Numbers of eigen textures for the UV scores, increasing; pictures are drawn with the last.
+        curved: Indices of the cameras that are measured with all of `counts`; others are with the last only.
+        filter: "bicubic" or "bilinear", for drawing.
+        weights: Kind of view weights of held-out cameras.
+        resampling: Filter of the texture maps.
+        align: Alignment of the texture maps, if any.
+        atlas: Of the texture maps; None if none are measured.
+        reference: The texture map and visibility that maps are aligned to; None without alignment.
+        circles: Excluded circles by camera, if any.
+        packed: Indices of cameras whose filled maps are packed as PNG.
+        flip: Whether FLIP is measured.
     """
 
     scene: Scene
@@ -63,12 +79,19 @@ class Session:
     align: str | None
     atlas: Atlas | None
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
-    circles: Mapping[str, Circle] | None
+    circles: Mapping[str, ExcludedCircle] | None
     packed: frozenset[int]
     flip: bool
 
     def photograph(self, index: int) -> Photograph:
-        """Camera `index`'s photograph; raises CaptureError `photograph-size` when it is not the camera's size."""
+        """A camera's photograph.
+
+        Args:
+            index: Of the camera.
+
+        Raises:
+            CaptureError: `photograph-size`: it does not have the camera's size.
+        """
         view, camera = self.capture.views[self.photographs[index]], self.scene.rig.cameras[index]
         picture = self.capture.photograph(self.photographs[index])
         height, width = picture.pixels.shape[:2]
@@ -82,13 +105,23 @@ class Session:
         return picture
 
     def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """The picture drawn from camera `index`, (H, W, 3), and (H, W) the pixels that the proxy covers."""
+        """The picture drawn from a camera, (H, W, 3), and (H, W) the pixels that the proxy covers.
+
+        Args:
+            index: Of the camera.
+        """
         picture = self.picture(index)
         return picture.image, picture.covered
 
     def picture(self, index: int, samples: int | None = None) -> Picture:
-        """As it is drawn from camera `index`. A harmonised scene gives an encoded camera its own exposure; a held-out
-        one has none that may be known."""
+        """The picture drawn from a camera.
+
+        A harmonised scene gives an encoded camera its own exposure; that of a held-out camera is unknown.
+
+        Args:
+            index: Of the camera.
+            samples: Samples a pixel. Default: the renderer's.
+        """
         row = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         return self.renderer.draw(
@@ -101,7 +134,12 @@ class Session:
         )
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """Camera `index`'s texture map as `encode` made it: (n, 3) values and (n,) visibility."""
+        """A camera's texture map as `encode` made it: (n, 3) values and (n,) visibility.
+
+        Args:
+            index: Of the camera.
+            photograph: Its photograph.
+        """
         assert self.atlas is not None
         values, seen = texture_map(
             self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.resampling
@@ -115,21 +153,28 @@ class Session:
 
     @property
     def measures_residual(self) -> bool:
-        """Whether captured views are measured with their residual too: it is what the whole scene, drawn as it is
-        meant to be, leaves of them."""
+        """Whether captured views are measured with their residual too.
+
+        The residual is the difference to the whole scene, drawn with all textures and the bicubic filter.
+        """
         whole = self.counts[-1] == self.scene.appearance.textures and self.filter == "bicubic"
         return whole and self.scene.residual is not None
 
-    def measure(self, index: int, difference: NDArray[np.float32] | None = None) -> Measured:
-        """All figures of one camera. difference: (H, W, 3), its residual."""
+    def measure(self, index: int, difference: NDArray[np.float32] | None = None) -> CameraScores:
+        """All scores of one camera.
+
+        Args:
+            index: Of the camera.
+            difference: (H, W, 3) its residual, if any.
+        """
         photograph = self.photograph(index)
         drawn = self.picture(index)
-        figures, outside = self._figures(index, drawn, photograph)
+        scores, outside = self._scores_of(index, drawn, photograph)
         residual = None
         if difference is not None:
             samples = captured_samples(self.scene, index)
             belongs = drawn if samples is None else self.picture(index, samples)
-            residual = self._figures(index, corrected(belongs, difference), photograph)
+            residual = self._scores_of(index, corrected(belongs, difference), photograph)
         texture = None
         if self.atlas is not None and not self.scene.rig.held_out[index]:
             values, seen = self.texture(index, photograph)
@@ -138,15 +183,15 @@ class Session:
             texture = measure_map(
                 self.scene.appearance.planes[0], row, self.atlas, values, seen, counts, index in self.packed
             )
-        return Measured(figures, outside, texture, residual)
+        return CameraScores(scores, outside, texture, residual)
 
-    def _figures(self, index: int, drawn: Picture, photograph: Photograph) -> tuple[Figures, Figures | None]:
-        """Of the whole picture, and of what lies outside its circle where there are circles."""
+    def _scores_of(self, index: int, drawn: Picture, photograph: Photograph) -> tuple[ImageScores, ImageScores | None]:
+        """Of the whole picture, and of the part outside its circle if there are circles."""
         given = drawn.image, drawn.covered, photograph.pixels, photograph.mask
-        figures = measure_picture(*given, self.flip)
+        scores = measure_picture(*given, self.flip)
         if self.circles is None:
-            return figures, None
-        return figures, measure_outside(*given, self.circles.get(self.scene.rig.names[index]), self.flip)
+            return scores, None
+        return scores, measure_outside(*given, self.circles.get(self.scene.rig.names[index]), self.flip)
 
 
 def start_session(
@@ -157,15 +202,35 @@ def start_session(
     textures: int | None = None,
     filter: str = "bicubic",
     weights: str = "delaunay",
-    circles: Mapping[str, Circle] | None = None,
+    circles: Mapping[str, ExcludedCircle] | None = None,
     png_maps: str = "none",
     flip: bool = False,
 ) -> Session:
-    """Check that scene and photographs belong together, and prepare what all cameras share. See `evaluate`."""
-    if png_maps not in PNG_MAPS:
-        raise OptionError("png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAPS)}")
-    if curve not in CURVES:
-        raise OptionError("curve", f"no cameras of a curve are called {curve}", remedy=f"use {', '.join(CURVES)}")
+    """Check that scene and photographs belong together, and prepare what all cameras share.
+
+    Args:
+        scene: See `evaluate`.
+        capture: See `evaluate`.
+        curve: See `evaluate`.
+        textures: See `evaluate`.
+        filter: See `evaluate`.
+        weights: See `evaluate`.
+        circles: See `evaluate`.
+        png_maps: See `evaluate`.
+        flip: See `evaluate`.
+
+    Raises:
+        CaptureError: As `evaluate`.
+        OptionError: As `evaluate`.
+    """
+    if png_maps not in PNG_MAP_CHOICES:
+        raise OptionError(
+            "png-maps", f"no way to count maps is called {png_maps}", remedy=f"use {', '.join(PNG_MAP_CHOICES)}"
+        )
+    if curve not in CURVE_CHOICES:
+        raise OptionError(
+            "curve", f"no cameras of a curve are called {curve}", remedy=f"use {', '.join(CURVE_CHOICES)}"
+        )
     if scene.appearance.channels != 3:
         raise OptionError(
             "not-photographs",
@@ -173,7 +238,7 @@ def start_session(
             remedy="evaluate those that are",
         )
     photographs = match_photographs(scene, capture)
-    resampling, align = _recorded(scene)
+    resampling, align = _recorded_settings(scene)
     maps = (
         len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None and "fitted" not in scene.settings
     )  # a fit makes none
@@ -190,8 +255,8 @@ def start_session(
         )
         encoded = []
     height, width = scene.appearance.atlas
-    some = {"all": encoded, "sample": evenly(encoded, SAMPLE), "none": []}
-    count = _count(scene, textures)
+    some = {"all": encoded, "sample": sample_evenly(encoded, EVALUATION_SAMPLE_CAMERAS), "none": []}
+    count = _texture_count(scene, textures)
     session = Session(
         scene=scene,
         capture=capture,
@@ -216,10 +281,15 @@ def start_session(
 
 
 def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
-    """A light field as it is; photographs without a calibration with the cameras and lenses that the scene keeps for
-    their names.
+    """A light field unchanged, or photographs without a calibration with the scene's cameras and lenses, by name.
 
-    Raises CaptureError `no-photographs` where no name fits.
+    Args:
+        scene: The scene.
+        photographs: With or without cameras.
+
+    Raises:
+        CaptureError: `no-photographs`: no name fits.
+        OptionError: `settings-unknown`.
     """
     if photographs.light_field is not None:
         return photographs
@@ -241,7 +311,7 @@ def _recorded_lenses(scene: Scene) -> list[Lens | None]:
         lenses = [
             None if lens is None else Lens(lens[0], tuple(float(value) for value in lens[1])) for lens in recorded
         ]
-        known = all(lens is None or lens.model in LENS_MODELS for lens in lenses)
+        known = all(lens is None or lens.model in EVALUATION_LENS_MODELS for lens in lenses)
     except (TypeError, ValueError, IndexError, KeyError) as error:  # a file may hold anything here
         raise OptionError(
             "settings-unknown", "the scene's record of its lenses cannot be read", remedy="name the --calibration"
@@ -264,14 +334,22 @@ def _no_photographs(scene: Scene, root: Path, names: Sequence[str]) -> CaptureEr
 
 
 def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
-    """Scene camera to view of the capture, by name; CaptureError `no-photographs` where no name fits."""
+    """The view of the capture for each scene camera, by name.
+
+    Args:
+        scene: The scene.
+        capture: Its photographs.
+
+    Raises:
+        CaptureError: `no-photographs`: no name fits.
+    """
     views = {view.name: index for index, view in enumerate(capture.views)}
     photographs = {index: views[name] for index, name in enumerate(scene.rig.names) if name in views}
     if not photographs:
         raise _no_photographs(scene, capture.root, capture.names)
     for index, view in photographs.items():
         K, other = scene.rig.cameras[index].K, capture.views[view].camera.K
-        if np.abs(K - other).max() > SAME_CAMERA:
+        if np.abs(K - other).max() > EVALUATION_MAX_CALIBRATION_PIXELS:
             log.warning(
                 "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
                 scene.rig.names[index],
@@ -280,8 +358,8 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     return photographs
 
 
-def _recorded(scene: Scene) -> tuple[str, str | None]:
-    """The resampling filter and the alignment that the maps were made with, from the scene's settings."""
+def _recorded_settings(scene: Scene) -> tuple[str, str | None]:
+    """The resampling filter and the alignment of the texture maps, from the scene's settings."""
     resampling, align = scene.settings.get("resampling", "bicubic"), scene.settings.get("align")
     if resampling not in list(FILTERS) or align not in [None, *METHODS]:  # a file may hold anything here
         raise OptionError(
@@ -292,7 +370,7 @@ def _recorded(scene: Scene) -> tuple[str, str | None]:
     return resampling, align
 
 
-def _count(scene: Scene, textures: int | None) -> int:
+def _texture_count(scene: Scene, textures: int | None) -> int:
     if textures is None:
         return scene.appearance.textures
     if not 0 <= textures <= scene.appearance.textures:
@@ -304,8 +382,13 @@ def _count(scene: Scene, textures: int | None) -> int:
     return textures
 
 
-def evenly(indices: Sequence[int], count: int) -> list[int]:
-    """`count` of the indices, evenly spread; all of them where there are no more."""
+def sample_evenly(indices: Sequence[int], count: int) -> list[int]:
+    """Some of the indices, evenly spread.
+
+    Args:
+        indices: All indices.
+        count: How many at most.
+    """
     if len(indices) <= count:
         return list(indices)
     return [indices[i] for i in np.rint(np.linspace(0, len(indices) - 1, count)).astype(int)]

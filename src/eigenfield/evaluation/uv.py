@@ -1,4 +1,4 @@
-"""The paper's measure: each camera's texture map against the one put together from the eigen textures."""
+"""The paper's scores: each camera's texture map against its reconstruction from the eigen textures."""
 
 from __future__ import annotations
 
@@ -14,23 +14,36 @@ from eigenfield.encoding.projected import Atlas
 from eigenfield.encoding.projected import measure_map as measure_pictures
 from eigenfield.evaluation.kernels import add_textures
 
-STRIDE = 512  # texels that the kernel sums at a time
+UV_STRIDE_TEXELS = 512  # that the kernel sums at a time
 
 
 @dataclass(frozen=True)
-class MapFigures:
-    """What one camera's texture map gave; an SSIM and a PSNR (dB) for each number of textures asked for, None where
-    the camera sees no texel. png: bytes of the filled map, None when not asked for."""
+class MapScores:
+    """The scores of one camera's texture map.
+
+    Attributes:
+        ssim: For each number of textures; None if the camera sees no texel.
+        psnr: dB, likewise.
+        png: Bytes of the filled map as PNG; None if it was not packed.
+    """
 
     ssim: tuple[float | None, ...]
     psnr: tuple[float | None, ...]
     png: int | None
 
 
-def reconstructions(plane: Plane, row: int, counts: Sequence[int]) -> Iterator[NDArray[np.float32]]:
-    """Equation 8 with the weights of encoded camera `row`, cut to each of `counts` (rising): (H, W, C) pictures.
+def reconstruct_maps(plane: Plane, row: int, counts: Sequence[int]) -> Iterator[NDArray[np.float32]]:
+    """Equation 8 with the weights of one encoded camera, cut to each number of textures.
 
-    Each picture is the one before it with more textures added, in the same memory.
+    Each picture is the one before with more textures added, in the same memory.
+
+    Args:
+        plane: Of the scene.
+        row: Of the camera's weights.
+        counts: Numbers of textures, increasing.
+
+    Returns:
+        (H, W, C) pictures, one a count.
     """
     total = np.array(plane.mean, np.float32)
     done = 0
@@ -44,8 +57,8 @@ def reconstructions(plane: Plane, row: int, counts: Sequence[int]) -> Iterator[N
                 add_textures(
                     total.reshape(-1),
                     basis.textures[begin:end].reshape(end - begin, -1),
-                    np.tile(factor, STRIDE),
-                    np.tile(offset, STRIDE),
+                    np.tile(factor, UV_STRIDE_TEXELS),
+                    np.tile(offset, UV_STRIDE_TEXELS),
                 )
             first += basis.count
         done = count
@@ -60,20 +73,35 @@ def measure_map(
     seen: NDArray[np.uint8],
     counts: Sequence[int],
     png: bool = False,
-) -> MapFigures:
-    """SSIM and PSNR of encoded camera `row` over the texels that it sees, on the atlas' grid.
+) -> MapScores:
+    """SSIM and PSNR of one encoded camera over the texels that it sees, on the atlas's grid.
 
-    values (n, C), seen (n,): the camera's texture map at the chart texels. Texels that it does not see come from the
-    file's mean (equation 2), in both pictures.
+    Texels that it does not see come from the file's mean (equation 2), in both pictures.
+
+    Args:
+        plane: Of the scene.
+        row: Of the camera's weights.
+        atlas: The chart texels.
+        values: (n, C) the camera's texture map at the chart texels.
+        seen: (n,) its visibility.
+        counts: Numbers of textures, increasing.
+        png: Pack the filled map as PNG.
     """
-    filled, scores = measure_pictures(reconstructions(plane, row, counts), plane.mean, atlas, values, seen)
+    filled, scores = measure_pictures(reconstruct_maps(plane, row, counts), plane.mean, atlas, values, seen)
     structure, error = zip(*scores, strict=True)
-    return MapFigures(structure, error, png_size(atlas, filled) if png else None)
+    return MapScores(structure, error, png_size(atlas, filled) if png else None)
 
 
 def png_size(atlas: Atlas, filled: NDArray[np.uint8]) -> int:
-    """Bytes of a filled (H, W, C) map as PNG: libpng's default compression (6, filtered), black outside the charts,
-    which is what PNG packs best. Channels beyond three are counted as pictures of their own."""
+    """Bytes of a filled map as PNG.
+
+    It uses libpng's default compression (6, filtered), and black outside the charts, which PNG packs best. Channels
+    beyond three are counted as separate pictures.
+
+    Args:
+        atlas: The chart texels.
+        filled: (H, W, C) uint8.
+    """
     charts = np.zeros_like(filled)
     flat, source = charts.reshape(-1, filled.shape[2]), filled.reshape(-1, filled.shape[2])
     flat[atlas.texel] = source[atlas.texel]

@@ -12,7 +12,7 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, front, json_bytes, parse_glb, read_file
 from eigenfield.gltf.document import Document
-from eigenfield.gltf.layout import Layout, find_extension
+from eigenfield.gltf.layout import FileLayout, find_extension
 from eigenfield.gltf.read import naming, open_layout, read_scene
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
@@ -22,7 +22,7 @@ from eigenfield.runtime.files import atomic_writer
 PARTS = ("mean", "textures", "weights", "mesh", "residual")  # what `parts` counts apart
 
 
-def describe(path: str | os.PathLike[str]) -> tuple[Layout, dict[str, int]]:
+def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
     """The checked layout of a file and its bytes by part (see `parts`). Raises FormatError."""
     with naming(path):
         document, layout = open_layout(Path(path))

@@ -25,7 +25,7 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
 @dataclass(frozen=True, eq=False)
-class View:
+class BufferView:
     """A buffer view: where it lies in the binary chunk, and its stride (0: packed)."""
 
     index: int
@@ -84,7 +84,7 @@ class Document:
                     "view-overlap", f"shares bytes with buffer view {before.index}", where=f"/bufferViews/{after.index}"
                 )
 
-    def view(self, reference: Value) -> View:
+    def view(self, reference: Value) -> BufferView:
         """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`, `truncated`."""
         view = self._view(self._index(reference))
         if view.offset + view.length > len(self.glb.binary):
@@ -103,7 +103,7 @@ class Document:
         view = self._view(index)
         return view.offset, view.offset + view.length
 
-    def _view(self, index: int) -> View:
+    def _view(self, index: int) -> BufferView:
         entry = self.root["bufferViews"].at(index)
         if entry["buffer"].integer(0, 2**31) != 0:
             entry.fail("view-range", "lies in a buffer that does not exist")
@@ -112,7 +112,7 @@ class Document:
         stride = entry["byteStride"].integer(4, 252) if entry.has("byteStride") else 0
         if offset + length > self._length:
             entry.fail("view-range", f"ends at byte {offset + length} of {self._length}")
-        return View(index, offset, length, stride)
+        return BufferView(index, offset, length, stride)
 
     def data(self, reference: Value) -> memoryview:
         """The bytes of the buffer view whose index `reference` holds. FormatError as `view`."""

@@ -43,7 +43,7 @@ _KEYS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Layout:
+class FileLayout:
     """A whole file; a part that could not be read is None (only while validating). mesh_payload: its stream, None where
     it is plain."""
 
@@ -68,7 +68,7 @@ class Layout:
         return sum(plane.lost for plane in self.planes or ())
 
 
-def read_layout(document: Document, findings: Findings) -> Layout | None:
+def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
     extension = None
     with findings.part():
@@ -131,7 +131,7 @@ def read_layout(document: Document, findings: Findings) -> Layout | None:
         scores = extension["scores"].mapping() if extension.has("scores") else {}
     with findings.part():
         generator = extension["generator"].text() if extension.has("generator") else ""
-    return Layout(
+    return FileLayout(
         version, mesh, mesh_payload, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings,
         scores, generator, times,
     )  # fmt: skip

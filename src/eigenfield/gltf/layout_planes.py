@@ -24,7 +24,7 @@ MOST_BITS = max(codec.bits for codec in PICTURES.values())
 
 
 @dataclass(frozen=True, eq=False)
-class Picture:
+class PictureLayout:
     """Codes in the file.
 
     Attributes:
@@ -45,7 +45,7 @@ class Picture:
     affine: Affine | None
     where: str
     count: int = 1
-    precision: Picture | None = None
+    precision: PictureLayout | None = None
 
     @property
     def mime(self) -> str:
@@ -77,7 +77,7 @@ class BasisLayout:
     lost: textures behind the end of a file that is cut off."""
 
     size: tuple[int, int]
-    textures: tuple[Picture, ...]
+    textures: tuple[PictureLayout, ...]
     weights: NDArray[np.float32]
     grid: tuple[int, int] | None = None
     corner: tuple[int, int] = (0, 0)
@@ -93,7 +93,7 @@ class BasisLayout:
 class PlaneLayout:
     """lost: textures of all bases, also of those of which nothing is left, behind the end of the file."""
 
-    mean: Picture
+    mean: PictureLayout
     bases: tuple[BasisLayout, ...]
     lost: int = 0
 
@@ -143,19 +143,19 @@ def _read_plane(document: Document, entry: Value, index: int, rows: int, finding
     return PlaneLayout(mean, kept, sum(basis.lost for basis in bases))
 
 
-def read_image(document: Document, channels: int) -> Picture:
+def read_image(document: Document, channels: int) -> PictureLayout:
     """`images[0]` as a picture of `channels`; its size is what its header says."""
     image = document.root["images"].at(0)
     if not image.has("bufferView"):
         image.fail("plane-mean", "the picture lies in another file")
     data, codec = document.data(image["bufferView"]), _codec_of(image, 8)
     width, height = stacking.dimensions(data, codec, image.where)
-    return Picture(data, codec, width, height, channels, None, image.where)
+    return PictureLayout(data, codec, width, height, channels, None, image.where)
 
 
 def _read_basis(document: Document, entry: Value, channels: int, rows: int, findings: Findings) -> BasisLayout:
     size = _size(entry["size"], channels)
-    textures: list[Picture] = []
+    textures: list[PictureLayout] = []
     total, lost = 0, 0
     common = entry["picture"].mapping() if entry.has("picture") else {}
     for own in entry["textures"].items(limits.MAX_COMPONENTS):
@@ -223,7 +223,9 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
     return width, height
 
 
-def _picture(document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int) -> Picture:
+def _picture(
+    document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int
+) -> PictureLayout:
     data, bits = document.data(entry["bufferView"]), entry["bits"].integer(8, MOST_BITS) if entry.has("bits") else 8
     usual = _codec_of(entry, bits)
     codec = codec_named(entry, place) or usual
@@ -235,7 +237,7 @@ def _picture(document: Document, entry: Value, place: str, size: tuple[int, int]
     if place != "mean" or PICTURES[codec].bits != 8 or entry.has("scale") or entry.has("zero"):
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
     stacking.check_picture(data, codec, *size, channels, entry.where, count)
-    return Picture(data, codec, *size, channels, affine, entry.where, count)
+    return PictureLayout(data, codec, *size, channels, affine, entry.where, count)
 
 
 def _codec_of(entry: Value, bits: int) -> str:
@@ -249,7 +251,7 @@ def _codec_of(entry: Value, bits: int) -> str:
     return found
 
 
-def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
+def _precision(document: Document, entry: Value, mean: PictureLayout) -> PictureLayout:
     if mean.bits == 8:
         entry.fail("picture-type", "only pictures of 10 bits have a precision")
     width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
@@ -257,7 +259,7 @@ def _precision(document: Document, entry: Value, mean: Picture) -> Picture:
     if codec_named(entry, "precision") != codec:
         entry["codec"].fail("codec-unknown", f"a precision is a {codec}, not {quoted(entry['codec'].value)}")
     stacking.check_picture(data, codec, width, height, 1, entry.where)
-    return Picture(data, codec, width, height, 1, None, entry.where)
+    return PictureLayout(data, codec, width, height, 1, None, entry.where)
 
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:

@@ -33,9 +33,9 @@ from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
-from eigenfield.gltf.layout import Layout, read_layout
+from eigenfield.gltf.layout import FileLayout, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
-from eigenfield.gltf.layout_planes import BasisLayout, Picture, PlaneLayout, read_image
+from eigenfield.gltf.layout_planes import BasisLayout, PictureLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
 from eigenfield.gltf.streams import streams
 from eigenfield.runtime.parallel import parallel_map
@@ -57,12 +57,12 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
         ) from error
 
 
-def open_layout(path: Path) -> tuple[Document, Layout]:
+def open_layout(path: Path) -> tuple[Document, FileLayout]:
     """Container and checked layout, pictures not decoded. Raises FormatError."""
     return _layout_of(read_file(path))
 
 
-def _layout_of(data: bytes) -> tuple[Document, Layout]:
+def _layout_of(data: bytes) -> tuple[Document, FileLayout]:
     document = Document(parse_glb(data))
     layout = read_layout(document, Findings(strict=True))
     assert layout is not None
@@ -107,7 +107,7 @@ def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
     return _scene(layout, planes, _preview(document, layout))
 
 
-def _preview(document: Document, layout: Layout) -> Payload | None:
+def _preview(document: Document, layout: FileLayout) -> Payload | None:
     """The picture for other viewers; None where it is a mean itself, or is none that they show."""
     with contextlib.suppress(FormatError):
         image = read_image(document, 3)
@@ -116,7 +116,7 @@ def _preview(document: Document, layout: Layout) -> Payload | None:
     return None
 
 
-def _scene(layout: Layout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
+def _scene(layout: FileLayout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
     assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
     payloads = Payloads.joined(plane.payloads for plane in planes)
@@ -201,7 +201,7 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
     return findings.found
 
 
-def _check_pictures(layout: Layout, findings: Findings) -> None:
+def _check_pictures(layout: FileLayout, findings: Findings) -> None:
     for plane in layout.planes or ():
         for picture in [plane.mean, *(texture for basis in plane.bases for texture in basis.textures)]:
             with findings.part():
@@ -210,7 +210,7 @@ def _check_pictures(layout: Layout, findings: Findings) -> None:
                     picture.precision.decode()
 
 
-def _check_residual(layout: Layout, findings: Findings) -> None:
+def _check_residual(layout: FileLayout, findings: Findings) -> None:
     if layout.residual is not None:
         with findings.part():
             for _ in residual_frames(layout.residual):
@@ -234,7 +234,7 @@ def _check_preview(document: Document, findings: Findings) -> None:
             findings.note("warning", "preview-material", source.where, "the proxy's material does not show images[0]")
 
 
-def _decode_any(image: Picture) -> None:
+def _decode_any(image: PictureLayout) -> None:
     try:
         image.decode()
     except FormatError as error:
@@ -243,7 +243,7 @@ def _decode_any(image: Picture) -> None:
         replace(image, channels=1).decode()  # grey is as good for a preview
 
 
-def _check_bounds(document: Document, layout: Layout, findings: Findings) -> None:
+def _check_bounds(document: Document, layout: FileLayout, findings: Findings) -> None:
     """glTF wants the bounds of POSITION to be exact: viewers place their camera by them."""
     if layout.mesh is None:
         return

@@ -1,27 +1,28 @@
-"""The proxy mesh (the paper's section 3.1): read, or made from depth; its atlas."""
+"""The proxy mesh (section 3.1 of the paper): read from a file or reconstructed from depth, with an atlas."""
 
 from eigenfield.proxy.atlas.layout import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
-from eigenfield.proxy.atlas.unwrap import DEFAULT_TRIANGLES, simplified, unwrapped, welded
+from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES, simplify_mesh, unwrap_mesh, weld_vertices
 from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.meshes.prepare import check_seen, prepare_proxy
 from eigenfield.proxy.meshes.read import read_mesh
 from eigenfield.proxy.meshes.write import check_mesh_name, write_mesh, write_ply
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive, parse_primitive
 from eigenfield.proxy.primitives.sphere_fit import find_view, fit_sphere, parse_region
-from eigenfield.proxy.relief.layers import second_layer
+from eigenfield.proxy.relief.layers import estimate_second_layer
 from eigenfield.proxy.relief.make import relief_mesh
-from eigenfield.proxy.surface.multiview import Surface, surface_from_views
+from eigenfield.proxy.surface.multiview import ReconstructedSurface, surface_from_views
 
 __all__ = [
-    "DEFAULT_TRIANGLES",
+    "PROXY_DEFAULT_TRIANGLES",
     "AtlasStatistics",
     "Primitive",
-    "Surface",
+    "ReconstructedSurface",
     "atlas_fault",
     "atlas_statistics",
     "chart_labels",
     "check_mesh_name",
     "check_seen",
+    "estimate_second_layer",
     "fill_background",
     "find_view",
     "fit_sphere",
@@ -31,11 +32,10 @@ __all__ = [
     "prepare_proxy",
     "read_mesh",
     "relief_mesh",
-    "second_layer",
-    "simplified",
+    "simplify_mesh",
     "surface_from_views",
-    "unwrapped",
-    "welded",
+    "unwrap_mesh",
+    "weld_vertices",
     "write_mesh",
     "write_ply",
 ]

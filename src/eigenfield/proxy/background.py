@@ -1,14 +1,14 @@
-"""A far surface behind everything, so that every ray of every camera ends somewhere.
+"""A far surface behind everything, so that every ray of every camera hits something.
 
-Both kinds are a relief over directions from a centre: vertex = centre + direction / w, with one inverse distance w a
-direction. For cameras that look one way it is a sheet over the plane of a virtual camera in the array's middle; for
-cameras that look at each other's places, a dome about them. In each direction b_i is the farthest of what was
-reconstructed, and a morphological opening takes out what stands before it and is small: the sheet goes on behind it. w
-is the thin plate under tension, with c_i the share of samples,
+Both kinds are height fields over directions from a centre: vertex = centre + direction / w, with one inverse distance w
+a direction. Cameras that look in one direction get a sheet over the plane of a virtual camera in the array's middle.
+Cameras that look at each other's places get a dome around them. In each direction b_i is the farthest of what was
+reconstructed. A morphological opening removes small objects before it, and the sheet continues behind them. w is the
+thin plate under tension, with c_i the fraction of samples, that minimises
 
-    sum_i c_i (w_i - b_i)^2 + STIFFNESS sum_i (L w)_i^2 + TENSION w . L w,
+    sum_i c_i (w_i - b_i)^2 + stiffness sum_i (L w)_i^2 + tension w . L w.
 
-so a plane, affine in w, is continued for a while beyond what was seen of it, and nothing runs away.
+A plane is affine in w and therefore continues for a while beyond its visible part, and nothing diverges.
 """
 
 from __future__ import annotations
@@ -28,33 +28,64 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.surface.trim import surface_samples
-from eigenfield.proxy.topology import compact
+from eigenfield.proxy.topology import remove_unused_vertices
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 
-CELLS = 56  # of the sheet along its longer side
-WIDEST = 70.0  # degrees from the middle axis that a sheet reaches; cameras that look farther aside get a dome
-BEYOND = 0.08  # of the sheet's size, added on every side
-BEHIND = 0.01  # relative: the sheet is that much farther than what it hides
-STIFFNESS = 30.0  # against one direction that is full of samples: bends are a few directions wide
-TENSION = 0.5
-OPENING = 8  # directions: what is less than twice as wide counts as standing before the background
-SAMPLES = 200_000
-FARTHEST = 0.1  # quantile of inverse distance in a cell that counts as its background
-LIMIT = 0.5  # of the scene's smallest inverse distance (1st percentile): the background is no farther
-DOME_LEVEL = 4  # subdivisions of an icosahedron: 2562 directions
-CLEARANCE = 1.3  # times the distance of a camera from the dome's centre
-LOOK = 256  # longer side of the pictures in which is looked what of the background is seen
-ROUNDS = 6  # of pulling the sheet behind what still sticks through it
+
+@dataclass(frozen=True)
+class BackgroundTuning:
+    """Constants of `fill_background`.
+
+    Attributes:
+        sheet_cells: Cells of the sheet along its longer side.
+        sheet_max_angle_degrees: Angle from the middle axis that a sheet reaches; cameras that look farther aside get a
+            dome.
+        sheet_border_sizes: Added on every side, in units of the sheet's size.
+        behind_fraction: Relative distance of the background behind what it hides.
+        stiffness: Weight of curvature against one direction that is full of samples: bends are a few directions wide.
+        tension: Weight of slope.
+        opening_directions: Radius of the morphological opening: what is less than twice as wide stands before the
+            background.
+        surface_samples: Samples of the surface.
+        far_quantile: Quantile of inverse distance in a cell that counts as its background.
+        min_inverse_ratio: Smallest inverse distance, in units of the scene's smallest (1st percentile).
+        dome_subdivisions: Subdivisions of an icosahedron; 4 give 2562 directions.
+        dome_clearance_ratio: Least distance of the dome, in units of the farthest camera's distance from its centre.
+        visibility_pixels: Longer side of the pictures in which visible faces are determined.
+        push_rounds: Rounds that push the background behind what it still hides.
+    """
+
+    sheet_cells: int = 56
+    sheet_max_angle_degrees: float = 70.0
+    sheet_border_sizes: float = 0.08
+    behind_fraction: float = 0.01
+    stiffness: float = 30.0
+    tension: float = 0.5
+    opening_directions: int = 8
+    surface_samples: int = 200_000
+    far_quantile: float = 0.1
+    min_inverse_ratio: float = 0.5
+    dome_subdivisions: int = 4
+    dome_clearance_ratio: float = 1.3
+    visibility_pixels: int = 256
+    push_rounds: int = 6
+
+
+BACKGROUND_TUNING = BackgroundTuning()
 
 
 @dataclass(frozen=True, eq=False)
 class Directions:
-    """A fan of directions from a centre, joined by triangles that face the centre.
+    """Directions from a centre, joined by triangles that face the centre.
 
-    centre: (3,). vectors: (n, 3), not of unit length in a sheet: their component along the axis is 1, so that w is
-    inverse depth. faces: (m, 3). axis: (3, 3) rotation to the middle camera for a sheet; None: a dome.
+    Attributes:
+        centre: (3,).
+        vectors: (n, 3). In a sheet their component along the axis is 1, so that w is inverse depth; in a dome they have
+            unit length.
+        faces: (m, 3).
+        axis: (3, 3) rotation to the middle camera for a sheet; None: a dome.
     """
 
     centre: NDArray[np.float64]
@@ -62,8 +93,15 @@ class Directions:
     faces: NDArray[np.int32]
     axis: NDArray[np.float64] | None
 
-    def of(self, positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(n, 2 or 3) keys in which directions are near each other, and (n,) w, of points; w <= 0 behind a sheet."""
+    def keys_of(self, positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Coordinates in which neighbouring directions are near each other, and w, of points.
+
+        Args:
+            positions: (n, 3) points.
+
+        Returns:
+            (n, 2) for a sheet or (n, 3) for a dome, and (n,) w, not positive behind a sheet.
+        """
         offset = positions - self.centre
         if self.axis is None:
             length = np.maximum(np.linalg.norm(offset, axis=1), 1e-12)
@@ -74,38 +112,49 @@ class Directions:
 
     @property
     def keys(self) -> NDArray[np.float64]:
-        """`of` the directions themselves."""
-        return self.of(self.centre + self.vectors)[0]
+        """`keys_of` the directions themselves."""
+        return self.keys_of(self.centre + self.vectors)[0]
 
 
 def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
-    """The mesh and a far surface behind it: every pixel of every camera is covered.
+    """The mesh and a far surface behind it, so that every pixel of every camera is covered.
 
-    Cameras that look one way get a sheet, others a dome around them all. Only what some camera sees of it is kept,
-    with a ring of triangles around. The mesh's UVs are dropped. Raises ProxyError `surface-empty` for an empty mesh.
+    Cameras that look in one direction get a sheet, others a dome around them all. Only the part that some camera sees
+    is kept, with one ring of triangles around it. The mesh's UVs are dropped.
+
+    Args:
+        mesh: The reconstructed surface.
+        cameras: All cameras.
+
+    Raises:
+        ProxyError: `surface-empty`: the mesh is empty.
     """
     if len(mesh.faces) == 0:
         raise ProxyError("surface-empty", "the surface is empty", remedy="check the calibration and the depth range")
-    samples, _ = surface_samples(mesh, SAMPLES)
-    directions = _sheet(samples, cameras) or _dome(samples, cameras)
-    far = _relief(directions, samples, cameras)
-    for _ in range(ROUNDS):
-        w, hidden = _pulled(directions, far, mesh, cameras)
+    samples, _ = surface_samples(mesh, BACKGROUND_TUNING.surface_samples)
+    directions = _sheet_directions(samples, cameras) or _dome_directions(samples, cameras)
+    far = _fit_inverse_distance(directions, samples, cameras)
+    for _ in range(BACKGROUND_TUNING.push_rounds):
+        w, hidden = _push_behind(directions, far, mesh, cameras)
         if not hidden:
             break
         far = w
     background = Mesh((directions.centre + directions.vectors / far[:, None]).astype(np.float32), directions.faces)
-    both = joined(mesh, background)
+    both = join_meshes(mesh, background)
     kept = np.append(np.ones(len(mesh.faces), np.bool_), seen_faces(both, cameras)[len(mesh.faces) :])
-    kept[len(mesh.faces) :] = with_ring(background.faces, kept[len(mesh.faces) :])
+    kept[len(mesh.faces) :] = add_face_ring(background.faces, kept[len(mesh.faces) :])
     log.info(
         "background: a %s of %d triangles", "dome" if directions.axis is None else "sheet", kept.sum() - len(mesh.faces)
     )
-    return compact(Mesh(both.vertices, both.faces[kept]))
+    return remove_unused_vertices(Mesh(both.vertices, both.faces[kept]))
 
 
-def joined(*meshes: Mesh) -> Mesh:
-    """Several meshes as one, their vertices apart, without UVs."""
+def join_meshes(*meshes: Mesh) -> Mesh:
+    """Several meshes as one, without shared vertices and without UVs.
+
+    Args:
+        meshes: In order.
+    """
     starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
     return Mesh(
         np.concatenate([mesh.vertices for mesh in meshes]),
@@ -113,41 +162,60 @@ def joined(*meshes: Mesh) -> Mesh:
     )
 
 
-def coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n,) the part of each camera's pixels on which the mesh puts surface."""
+def camera_coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64]:
+    """(n,) fraction of each camera's pixels that the mesh covers.
+
+    Args:
+        mesh: The mesh.
+        cameras: The n cameras.
+    """
     return np.array(parallel_map(lambda camera: float((rasterise_view(mesh, camera).face >= 0).mean()), cameras))
 
 
 def seen_faces(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.bool_]:
-    """(m,) which faces are nearest at some pixel of some camera, looked at in small pictures."""
+    """(m,) faces that are nearest at some pixel of some camera, in small pictures.
+
+    Args:
+        mesh: The mesh.
+        cameras: The cameras.
+    """
     seen = np.zeros(len(mesh.faces), np.bool_)
-    for faces in parallel_map(lambda camera: np.unique(rasterise_view(mesh, _small(camera)).face), cameras):
+    for faces in parallel_map(lambda camera: np.unique(rasterise_view(mesh, _small_camera(camera)).face), cameras):
         seen[faces[faces >= 0]] = True
     return seen
 
 
-def _small(camera: Camera) -> Camera:
-    scale = min(1.0, LOOK / max(camera.width, camera.height))
+def _small_camera(camera: Camera) -> Camera:
+    scale = min(1.0, BACKGROUND_TUNING.visibility_pixels / max(camera.width, camera.height))
     return camera.resized(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
 
 
-def with_ring(faces: NDArray[np.int32], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """With all faces that share a corner with the chosen ones."""
+def add_face_ring(faces: NDArray[np.int32], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(m,) the chosen faces and all faces that share a vertex with them.
+
+    Args:
+        faces: (m, 3).
+        chosen: (m,) mask.
+    """
     touched = np.zeros(int(faces.max()) + 1, np.bool_)
     touched[faces[chosen]] = True
     return np.asarray(touched[faces].any(axis=1))
 
 
 def corner_rays(camera: Camera) -> NDArray[np.float64]:
-    """(16, 3) world directions of depth 1 around a camera's frame."""
+    """(16, 3) world directions of depth 1 around the border of a camera's frame.
+
+    Args:
+        camera: The camera.
+    """
     t = np.linspace(0, 1, 5)[:-1]
     x = np.concatenate([t, np.ones(4), 1 - t, np.zeros(4)]) * camera.width
     y = np.concatenate([np.zeros(4), t, np.ones(4), 1 - t]) * camera.height
     return np.stack([x, y, np.ones(16)], axis=1) @ np.linalg.inv(camera.K).T @ camera.R
 
 
-def _sheet(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions | None:
-    """Directions over the plane of a camera in the array's middle; None where a ray would look past its reach."""
+def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions | None:
+    """Directions over the plane of a camera in the array's middle; None if a ray would leave its reach."""
     centres = np.array([camera.centre for camera in cameras])
     centre = centres.mean(axis=0)
     mean = np.mean([camera.R for camera in cameras], axis=0)
@@ -160,9 +228,9 @@ def _sheet(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Direction
     ahead = depth > 0
     if not ahead.any() or np.percentile(depth[ahead], 90) < 1.5 * reach:
         return None
-    w_low, w_high = _range(1 / depth[ahead])
+    w_low, w_high = _inverse_range(1 / depth[ahead])
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
-    steepest = np.tan(np.radians(WIDEST))
+    steepest = np.tan(np.radians(BACKGROUND_TUNING.sheet_max_angle_degrees))
     for camera in cameras:
         rays = corner_rays(camera) @ axis.T
         if (rays[:, 2] * steepest <= np.hypot(rays[:, 0], rays[:, 1])).any():
@@ -171,12 +239,15 @@ def _sheet(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Direction
         for w in (w_low, w_high):
             step = (1 / w - local[2]) / rays[:, 2:]
             if (step <= 0).any():
-                continue  # a camera ahead of the nearest things: only the far end counts
+                continue  # a camera ahead of the nearest points: only the far end counts
             at = (local[:2] + step * rays[:, :2]) * w
             low, high = np.minimum(low, at.min(axis=0)), np.maximum(high, at.max(axis=0))
     size = high - low
-    low, high = low - BEYOND * size.max(), high + BEYOND * size.max()
-    cell = float((high - low).max()) / CELLS
+    low, high = (
+        low - BACKGROUND_TUNING.sheet_border_sizes * size.max(),
+        high + BACKGROUND_TUNING.sheet_border_sizes * size.max(),
+    )
+    cell = float((high - low).max()) / BACKGROUND_TUNING.sheet_cells
     columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
     x, y = np.meshgrid(low[0] + cell * np.arange(columns), low[1] + cell * np.arange(rows))
     first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
@@ -191,101 +262,115 @@ def _sheet(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Direction
     return Directions(centre, vectors, faces.astype(np.int32), axis)
 
 
-def _dome(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions:
+def _dome_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions:
     """All directions from the middle of the cameras."""
     import trimesh
 
-    sphere = trimesh.creation.icosphere(DOME_LEVEL)
+    sphere = trimesh.creation.icosphere(BACKGROUND_TUNING.dome_subdivisions)
     centre = np.mean([camera.centre for camera in cameras], axis=0)
     faces = np.ascontiguousarray(np.asarray(sphere.faces)[:, ::-1]).astype(np.int32)  # seen from inside
     return Directions(centre, np.asarray(sphere.vertices, np.float64), faces, None)
 
 
-def _range(w: NDArray[np.float64]) -> tuple[float, float]:
+def _inverse_range(w: NDArray[np.float64]) -> tuple[float, float]:
     """The smallest and the largest inverse distance that the background may have."""
     low, high = np.percentile(w, [1, 99])
-    return LIMIT * float(low), float(high)
+    return BACKGROUND_TUNING.min_inverse_ratio * float(low), float(high)
 
 
-def _relief(directions: Directions, samples: NDArray[np.float64], cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n,) w of each direction: see the module."""
+def _fit_inverse_distance(
+    directions: Directions, samples: NDArray[np.float64], cameras: Sequence[Camera]
+) -> NDArray[np.float64]:
+    """(n,) w of each direction; see the module."""
     from scipy.spatial import KDTree
 
-    key, w = directions.of(samples)
-    ceiling = _clearance(directions, cameras)
+    key, w = directions.keys_of(samples)
+    ceiling = _max_inverse_distance(directions, cameras)
     tree = KDTree(directions.keys)
     if directions.axis is not None:
         ahead = w > 0
         key, w = key[ahead], w[ahead]
     nearest = np.asarray(tree.query(key)[1], np.int64)
     count = len(directions.vectors)
-    outside = w < ceiling[nearest]  # what lies between the cameras is no background
-    low = _range(w[outside] if outside.any() else ceiling)[0]
+    outside = w < ceiling[nearest]  # points between the cameras are no background
+    low = _inverse_range(w[outside] if outside.any() else ceiling)[0]
     target, weight = _quantiles(nearest[outside], w[outside], count)
     if not (weight > 0).any():
         target, weight = ceiling * 0.5, np.full(count, 1e-3)
-    target = _opened(directions.faces, target, weight > 0)
-    smooth = np.clip(_plate(directions.faces, target, weight), low, w[outside].max() if outside.any() else None)
-    envelope = np.minimum(_minimum(nearest[outside], w[outside], count), ceiling)
-    result = np.minimum(smooth, envelope * (1 - BEHIND))
-    return _eased(np.clip(result, low, None), directions.faces)
+    target = _open_morphologically(directions.faces, target, weight > 0)
+    smooth = np.clip(
+        _fit_thin_plate(directions.faces, target, weight), low, w[outside].max() if outside.any() else None
+    )
+    envelope = np.minimum(_cell_minimum(nearest[outside], w[outside], count), ceiling)
+    result = np.minimum(smooth, envelope * (1 - BACKGROUND_TUNING.behind_fraction))
+    return _ease_steps(np.clip(result, low, None), directions.faces)
 
 
-def _plate(faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArray[np.float64]) -> NDArray[np.float64]:
+def _fit_thin_plate(
+    faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArray[np.float64]
+) -> NDArray[np.float64]:
     count = len(target)
     laplacian = _laplacian(faces, count)
     ends, number = face_edges(faces)
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian
-    stiff = STIFFNESS * (bend.T @ bend) + TENSION * laplacian + diags_array(weight + 1e-9)
+    stiff = (
+        BACKGROUND_TUNING.stiffness * (bend.T @ bend)
+        + BACKGROUND_TUNING.tension * laplacian
+        + diags_array(weight + 1e-9)
+    )
     return np.asarray(spsolve(stiff.tocsc(), weight * target))
 
 
-def _opened(faces: NDArray[np.int32], target: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """The target without peaks less than 2 OPENING directions wide; unchanged where it is not known."""
+def _open_morphologically(
+    faces: NDArray[np.int32], target: NDArray[np.float64], known: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """The target without peaks narrower than twice `opening_directions`; unchanged where it is unknown."""
     a = faces.reshape(-1)
     b = np.roll(faces, -1, axis=1).reshape(-1)
 
-    def spread(values: NDArray[np.float64], least: np.ufunc) -> NDArray[np.float64]:
-        for _ in range(OPENING):
+    def spread_extremes(values: NDArray[np.float64], least: np.ufunc) -> NDArray[np.float64]:
+        for _ in range(BACKGROUND_TUNING.opening_directions):
             result = values.copy()
             least.at(result, a, values[b])
             least.at(result, b, values[a])
             values = result
         return values
 
-    eroded = spread(np.where(known, target, np.inf), np.minimum)
-    opened = spread(np.where(np.isfinite(eroded), eroded, -np.inf), np.maximum)
+    eroded = spread_extremes(np.where(known, target, np.inf), np.minimum)
+    opened = spread_extremes(np.where(np.isfinite(eroded), eroded, -np.inf), np.maximum)
     return np.where(known, np.minimum(target, opened), target)
 
 
 def _quantiles(
     cell: NDArray[np.int64], w: NDArray[np.float64], count: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of the samples in each cell, the low quantile of w, and a weight of 0 (none) to 1 (as many as in most)."""
+    """The low quantile of w of the samples in each cell, and a weight from 0 (none) to 1 (as many as in most cells)."""
     order = np.lexsort((w, cell))
     number = np.bincount(cell, minlength=count)
     first = np.cumsum(number) - number
     target = np.zeros(count)
     full = number > 0
-    target[full] = w[order][(first + FARTHEST * np.maximum(number - 1, 0)).astype(np.int64)[full]]
+    target[full] = w[order][(first + BACKGROUND_TUNING.far_quantile * np.maximum(number - 1, 0)).astype(np.int64)[full]]
     typical = float(np.median(number[full])) if full.any() else 1.0
     return target, np.minimum(number / typical, 1.0)
 
 
-def _minimum(cell: NDArray[np.int64], w: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+def _cell_minimum(cell: NDArray[np.int64], w: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     result = np.full(count, np.inf)
     np.minimum.at(result, cell, w)
     return result
 
 
-def _clearance(directions: Directions, cameras: Sequence[Camera]) -> NDArray[np.float64]:
-    """(n,) the largest w that keeps every camera well on the near side."""
+def _max_inverse_distance(directions: Directions, cameras: Sequence[Camera]) -> NDArray[np.float64]:
+    """(n,) the largest w that keeps every camera on the near side."""
     if directions.axis is not None:
         return np.full(len(directions.vectors), np.inf)
     farthest = max(float(np.linalg.norm(camera.centre - directions.centre)) for camera in cameras)
-    return np.full(len(directions.vectors), 1 / (CLEARANCE * farthest) if farthest > 0 else np.inf)
+    return np.full(
+        len(directions.vectors), 1 / (BACKGROUND_TUNING.dome_clearance_ratio * farthest) if farthest > 0 else np.inf
+    )
 
 
 def _adjacency(faces: NDArray[np.int32], count: int) -> csr_array:
@@ -302,8 +387,8 @@ def _laplacian(faces: NDArray[np.int32], count: int) -> csr_array:
     return diags_array(np.asarray(neighbours.sum(axis=1)).ravel()) - neighbours
 
 
-def _eased(w: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Steps rounded off, but nowhere nearer than before: the least of each vertex and the mean around it, twice."""
+def _ease_steps(w: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Round off steps, but nowhere nearer than before: the minimum of each vertex and the mean around it, twice."""
     neighbours = _adjacency(faces, len(w))
     degree = np.asarray(neighbours.sum(axis=1)).ravel()
     for _ in range(2):
@@ -311,18 +396,18 @@ def _eased(w: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float
     return w
 
 
-def _pulled(
+def _push_behind(
     directions: Directions, w: NDArray[np.float64], mesh: Mesh, cameras: Sequence[Camera]
 ) -> tuple[NDArray[np.float64], bool]:
-    """w, smaller at the faces that hide a part of the mesh from some camera, and whether there were any."""
+    """w, reduced at the faces that hide a part of the mesh from some camera, and whether there were any."""
     background = Mesh((directions.centre + directions.vectors / w[:, None]).astype(np.float32), directions.faces)
 
-    def hiding(camera: Camera) -> NDArray[np.int32]:
-        small = _small(camera)
+    def hiding_faces(camera: Camera) -> NDArray[np.int32]:
+        small = _small_camera(camera)
         front, back = rasterise_view(mesh, small), rasterise_view(background, small)
         return np.unique(back.face[(front.face >= 0) & (back.inverse_depth > front.inverse_depth)])
 
-    faces = np.unique(np.concatenate(parallel_map(hiding, cameras)))
+    faces = np.unique(np.concatenate(parallel_map(hiding_faces, cameras)))
     result = w.copy()
     result[np.unique(directions.faces[faces])] *= 0.9
-    return _eased(result, directions.faces), bool(len(faces))
+    return _ease_steps(result, directions.faces), bool(len(faces))

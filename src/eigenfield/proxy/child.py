@@ -1,4 +1,4 @@
-"""Libraries that take minutes, cannot be interrupted or end their process, in a process of their own."""
+"""Child processes for libraries that take minutes, cannot be interrupted, or end their process."""
 
 from __future__ import annotations
 
@@ -15,20 +15,28 @@ from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
 
-TICK = 0.2  # seconds between two calls of `waiting`
+CHILD_POLL_SECONDS = 0.2  # between two calls of `on_wait`
 
 
 def run_child(
-    script: Path, arrays: Sequence[NDArray[Any]], waiting: Callable[[], None], code: str, name: str, remedy: str
+    script: Path, arrays: Sequence[NDArray[Any]], on_wait: Callable[[], None], code: str, name: str, remedy: str
 ) -> bytes:
-    """What `script` writes to standard output when `arrays` come in (as `numpy.save` writes).
+    """What a script writes to standard output when arrays come in (as `numpy.save` writes).
 
-    waiting: called while the child works; the child is ended when the waiting is (Ctrl-C, or an exception from
-    `waiting`). Raises ProxyError `code`, saying how `name` ended, with the remedy.
+    Args:
+        script: A Python script.
+        arrays: Its input.
+        on_wait: Called while the child works. If it raises, or on Ctrl-C, the child is killed.
+        code: Of the error.
+        name: Of the library, for the error.
+        remedy: Of the error.
+
+    Raises:
+        ProxyError: `code`: the child failed.
     """
     command = [sys.executable, "-P", str(script)]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-    with tempfile.TemporaryFile() as message:  # a pipe would stay half sent when `communicate` runs into its timeout
+    with tempfile.TemporaryFile() as message:  # `communicate` would leave a pipe half sent at its timeout
         for array in arrays:
             np.save(message, array, allow_pickle=False)
         message.seek(0)
@@ -38,10 +46,10 @@ def run_child(
     try:
         while True:
             try:
-                answer, complaint = process.communicate(timeout=TICK)
+                answer, complaint = process.communicate(timeout=CHILD_POLL_SECONDS)
                 break
             except subprocess.TimeoutExpired:
-                waiting()
+                on_wait()
     except BaseException:
         process.kill()
         process.communicate()

@@ -10,7 +10,7 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel()
-def _area(a, b, c):
+def _twice_area(a, b, c):
     ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
     vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
     x, y, z = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
@@ -18,11 +18,17 @@ def _area(a, b, c):
 
 
 @kernel()
-def least_area(loop):
-    """(n - 2, 3) int64: the triangulation of the closed polygon loop (n, 3) float64 of least area.
+def triangulate_least_area(loop):
+    """The triangulation of a closed polygon with the least area.
 
     Dynamic programming over runs of the loop (Barequet and Sharir, "Filling gaps in the boundary of a polyhedron",
     1995): W[i, k] = min over i < j < k of W[i, j] + W[j, k] + area(i, j, k), in O(n^3).
+
+    Args:
+        loop: (n, 3) float64.
+
+    Returns:
+        (n - 2, 3) int64.
     """
     n = loop.shape[0]
     weight = np.zeros((n, n))
@@ -32,7 +38,7 @@ def least_area(loop):
             k = i + length
             best = np.inf
             for j in range(i + 1, k):
-                w = weight[i, j] + weight[j, k] + _area(loop[i], loop[j], loop[k])
+                w = weight[i, j] + weight[j, k] + _twice_area(loop[i], loop[j], loop[k])
                 if w < best:
                     best = w
                     split[i, k] = j

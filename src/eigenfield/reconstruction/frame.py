@@ -1,4 +1,4 @@
-"""All photographs of a capture at one size, and their masks and cameras alike."""
+"""All photographs of a capture at one size, with their masks and cameras."""
 
 from __future__ import annotations
 
@@ -13,18 +13,22 @@ from eigenfield.capture import Capture, LightField
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import parallel_map
 
-PIXELS = 120_000_000  # of all photographs together that depth is estimated from; larger captures are reduced
+FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
 
 
 def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
-    """(width, height) that holds every photograph, and the same reduced to keep all within PIXELS."""
+    """(width, height) that holds every photograph, and the same reduced to keep all within FRAME_MAX_TOTAL_PIXELS.
+
+    Args:
+        capture: The photographs.
+    """
     sizes = capture.sizes
     width, height = (max(side) for side in zip(*sizes, strict=True))
-    scale = min(1.0, (PIXELS / (len(sizes) * width * height)) ** 0.5)
+    scale = min(1.0, (FRAME_MAX_TOTAL_PIXELS / (len(sizes) * width * height)) ** 0.5)
     return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
 
 
-def _fitted(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
+def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
     """A photograph in the common frame (those of one camera may differ by a row or two), reduced."""
     missing = whole[1] - picture.shape[0], whole[0] - picture.shape[1]
     if any(missing):
@@ -36,40 +40,51 @@ def _fitted(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int
 
 
 def read_pictures(capture: Capture) -> NDArray[np.uint8]:
-    """(n, H, W, 3) all photographs, lenses removed, in their common frame."""
+    """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame.
+
+    Args:
+        capture: The photographs.
+    """
     whole, small = common_frame(capture)
     result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
 
-    def put(index: int) -> None:
-        result[index] = _fitted(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
+    def fill(index: int) -> None:
+        result[index] = _fit_to_frame(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
 
-    parallel_map(put, range(len(capture)))
+    parallel_map(fill, range(len(capture)))
     return result
 
 
 def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
-    """(n, H, W, 3) the masks of the photographs, 255 where they count; None where there are none.
+    """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None if there are none.
 
-    What a removed lens leaves out at the border is no mask: the array's other views see behind it.
+    The border that the removal of a lens leaves empty is no mask: other views of the array see behind it.
+
+    Args:
+        capture: The photographs.
     """
     whole, small = common_frame(capture)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
 
-    def put(index: int) -> bool:
+    def fill(index: int) -> bool:
         source = capture.sources[index]
         if source.mask is None and source.lens is not None:
             return False
         mask = capture.photograph(index).mask
         if mask is None:
             return False
-        result[index] = _fitted(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
+        result[index] = _fit_to_frame(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
         return True
 
-    return result if any(parallel_map(put, range(len(capture)))) else None
+    return result if any(parallel_map(fill, range(len(capture)))) else None
 
 
 def resized_cameras(capture: LightField) -> list[Camera]:
-    """The cameras in the common frame of `read_pictures`."""
+    """The cameras in the common frame of `read_pictures`.
+
+    Args:
+        capture: Photographs with cameras.
+    """
     whole, small = common_frame(capture)
     scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
     return [replace(camera, K=scale @ camera.K, width=small[0], height=small[1]) for camera in capture.cameras]

@@ -1,4 +1,4 @@
-"""What a proxy is like, for people."""
+"""Quality measures of a proxy, for people."""
 
 from __future__ import annotations
 
@@ -11,16 +11,19 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import AtlasStatistics, atlas_statistics
-from eigenfield.proxy.background import coverage
+from eigenfield.proxy.background import camera_coverage
 from eigenfield.proxy.surface.trim import SurfaceError
 
 
 @dataclass(frozen=True, eq=False)
 class ProxyReport:
-    """A proxy in figures.
+    """Quality measures of a proxy.
 
-    triangles: how many. coverage: (n,) the part of each camera's pixels on which it puts surface.
-    error: of its simplification; None where the surface was not simplified (reliefs). atlas: of its UVs.
+    Attributes:
+        triangles: Number of triangles.
+        coverage: (n,) fraction of each camera's pixels that the proxy covers.
+        error: Of its simplification; None if it was not simplified (reliefs).
+        atlas: Of its UVs.
     """
 
     triangles: int
@@ -29,17 +32,27 @@ class ProxyReport:
     atlas: AtlasStatistics
 
     def lines(self, names: Sequence[str]) -> list[str]:
-        """For people. names: of the cameras."""
+        """Lines of text.
+
+        Args:
+            names: Of the cameras.
+        """
         least = int(self.coverage.argmin())
-        told = f"coverage {self.coverage.mean():.1%}"
+        coverage = f"coverage {self.coverage.mean():.1%}"
         if self.coverage[least] < 0.9995:
-            told += f", least {self.coverage[least]:.1%} in {names[least]}"
-        lines = [f"  {self.triangles} triangles, {told}"]
+            coverage += f", least {self.coverage[least]:.1%} in {names[least]}"
+        lines = [f"  {self.triangles} triangles, {coverage}"]
         if self.error is not None:
             lines.append(f"  simplified with an error of {self.error}")
         return [*lines, f"  {self.atlas}"]
 
 
-def report_of(mesh: Mesh, cameras: Sequence[Camera], error: SurfaceError | None) -> ProxyReport:
-    """Measured on a mesh with an atlas."""
-    return ProxyReport(len(mesh.faces), coverage(mesh, cameras), error, atlas_statistics(mesh))
+def measure_proxy(mesh: Mesh, cameras: Sequence[Camera], error: SurfaceError | None) -> ProxyReport:
+    """The report of a mesh.
+
+    Args:
+        mesh: With an atlas.
+        cameras: All cameras.
+        error: Of its simplification, if any.
+    """
+    return ProxyReport(len(mesh.faces), camera_coverage(mesh, cameras), error, atlas_statistics(mesh))

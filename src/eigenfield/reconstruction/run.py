@@ -1,4 +1,4 @@
-"""The options of a reconstruction, and the running of its stages."""
+"""The settings of a reconstruction, and how its stages run."""
 
 from __future__ import annotations
 
@@ -11,39 +11,50 @@ from typing import Any
 
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
-from eigenfield.proxy import (
-    parse_primitive,
-    parse_region,
-)
-from eigenfield.proxy.atlas.unwrap import FEWEST_TRIANGLES
+from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, parse_primitive, parse_region
+from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger("eigenfield.reconstruction")
 
-SURFACES = ("auto", "relief", "poisson")
-DEFAULT_TRIANGLES = 30_000
+SURFACE_KINDS = ("auto", "relief", "poisson")
 
 
 @dataclass(frozen=True)
-class Settings:
-    """How photographs become a proxy; `reconstruct` describes each."""
+class ReconstructionSettings:
+    """How photographs become a proxy. `reconstruct` describes the values.
+
+    Attributes:
+        surface: Kind of surface, one of SURFACE_KINDS.
+        refine: Whether the cameras of an array are corrected.
+        triangles: Most triangles of the proxy.
+        background: Whether the frustum is closed behind the surface.
+        primitives: Texts of primitives.
+        fit_spheres: Texts of spheres to fit.
+        blind: Rule of the views that take no part.
+
+    Raises:
+        OptionError: `surface`, `triangles`, `primitive` or `fit-sphere`.
+    """
 
     surface: str = "auto"
     refine: bool | None = None
-    triangles: int = DEFAULT_TRIANGLES
+    triangles: int = PROXY_DEFAULT_TRIANGLES
     background: bool | None = None
     primitives: tuple[str, ...] = ()
     fit_spheres: tuple[str, ...] = ()
     blind: str | None = None
 
     def __post_init__(self) -> None:
-        if self.surface not in SURFACES:
-            raise OptionError("surface", f"no surface is called {self.surface}", remedy=f"use {', '.join(SURFACES)}")
-        if self.triangles < FEWEST_TRIANGLES:
+        if self.surface not in SURFACE_KINDS:
+            raise OptionError(
+                "surface", f"no surface is called {self.surface}", remedy=f"use {', '.join(SURFACE_KINDS)}"
+            )
+        if self.triangles < UNWRAP_MIN_TRIANGLES:
             raise OptionError(
                 "triangles",
                 f"{self.triangles} triangles were asked for",
-                remedy=f"ask for {FEWEST_TRIANGLES} or more",
+                remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more",
             )
         for text in self.primitives:
             parse_primitive(text)
@@ -52,14 +63,29 @@ class Settings:
 
 
 @dataclass(frozen=True)
-class Run:
+class StageRunner:
+    """Runs the stages of one reconstruction.
+
+    Attributes:
+        stages: Finished stages.
+        settings: Of the reconstruction.
+        progress: Called within stages.
+        seconds: Time that each stage took.
+    """
+
     stages: Stages
-    settings: Settings
+    settings: ReconstructionSettings
     progress: Progress | None
     seconds: dict[str, float]
 
     def stage(self, name: str, inputs: Sequence[Any], build: Callable[[Path], None]) -> Path:
-        """The folder of a finished stage, and how long it took."""
+        """The folder of a stage, built if it is not finished.
+
+        Args:
+            name: Of the stage.
+            inputs: What its result depends on.
+            build: Writes its files into a folder.
+        """
         started = time.monotonic()
         key = stage_key([name, *inputs])
         ready = self.stages.path(name, key).is_dir()

@@ -8,7 +8,7 @@ from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
 from eigenfield.rendering.paths import PATHS, path_points
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.render_jobs import Shots
+from eigenfield.rendering.render_jobs import RenderJob
 from eigenfield.rendering.software.renderer import (
     Renderer,
     at_resolution,
@@ -29,8 +29,8 @@ __all__ = [
     "PATHS",
     "OpenGLRenderer",
     "Picture",
+    "RenderJob",
     "Renderer",
-    "Shots",
     "at_resolution",
     "camera_colour",
     "camera_index",

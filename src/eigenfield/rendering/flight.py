@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
-from eigenfield.rendering.render_jobs import Shots
+from eigenfield.rendering.render_jobs import RenderJob
 from eigenfield.rendering.video import write_video
 from eigenfield.runtime.files import atomic_files, is_numbered, numbered_files, refuse_existing
 
 
 def write_flight(
-    shots: Shots,
+    job: RenderJob,
     points: NDArray[np.float64],
     output: Path,
     fps: Fraction,
@@ -29,10 +29,10 @@ def write_flight(
     Raises OutputError, and OptionError as `Renderer.draw` does.
     """
     if not is_numbered(output):
-        write_video(output, shots.film_along(points, progress), fps, overwrite=overwrite)
+        write_video(output, job.film_along(points, progress), fps, overwrite=overwrite)
         return
     with atomic_files(numbered_files(output, len(points)), overwrite=overwrite) as places:
-        for place, data in zip(places, shots.pngs_along(points, progress), strict=True):
+        for place, data in zip(places, job.pngs_along(points, progress), strict=True):
             place.write_bytes(data)
 
 

@@ -28,7 +28,7 @@ Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, eq=False)
-class Shots:
+class RenderJob:
     """A scene and how it is to be drawn.
 
     resolution: (width, height), the camera's own if None. background: 1 or 3 numbers in 0..1, None for transparent.

@@ -1,4 +1,4 @@
-"""Whether the depth maps of several views agree."""
+"""The inner loop of the consistency check between depth maps."""
 
 # mypy: disable-error-code="no-untyped-def"
 
@@ -10,12 +10,21 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel()
-def count_agreeing(first, last, d, across, others, present, tolerance, count):
-    """count (h, w) += maps that agree with rows [first, last) of d.
+def count_consistent_rows(first, last, d, transfer, others, valid, tolerance, count):
+    """Add the number of maps that agree with the points of rows [first, last) of d.
 
-    across[o] (4, 4) takes (x, y, d, 1) of this canvas to the homogeneous (x, y, d, 1) of canvas o. Map o agrees where
-    one of the four samples round the point there lies within `tolerance` of the point's label, relative to how fast
-    labels of o change with those of this canvas: both are then compared in this canvas's unit.
+    Map o agrees where one of the four samples around the transferred point lies within `tolerance` of the point's
+    label. The difference is divided by the rate at which labels of o change with labels of this view, so that both are
+    compared in this view's unit.
+
+    Args:
+        first, last: Range of rows.
+        d: (h, w) labels of the map that is judged.
+        transfer: (O, 4, 4) matrices from (x, y, d, 1) of this view to homogeneous (x, y, d, 1) of each other view.
+        others: (O, H, W) labels of the other maps.
+        valid: (O, H, W) which points of the other maps may confirm.
+        tolerance: In labels of d.
+        count: (h, w) int32, added to.
     """
     height, width = others.shape[1], others.shape[2]
     for y in range(first, last):
@@ -24,7 +33,7 @@ def count_agreeing(first, last, d, across, others, present, tolerance, count):
             if not np.isfinite(label):
                 continue
             for o in range(others.shape[0]):
-                m = across[o]
+                m = transfer[o]
                 w = m[3, 0] * x + m[3, 1] * y + m[3, 2] * label + m[3, 3]
                 if not w > 1e-9:
                     continue
@@ -37,7 +46,7 @@ def count_agreeing(first, last, d, across, others, present, tolerance, count):
                 column, row = np.int64(np.floor(px)), np.int64(np.floor(py))
                 for k in range(4):
                     c, r = column + k % 2, row + k // 2
-                    inside = 0 <= c < width and 0 <= r < height and present[o, r, c]
+                    inside = 0 <= c < width and 0 <= r < height and valid[o, r, c]
                     if inside and abs(others[o, r, c] - pd) <= tolerance * max(scale, 1e-12):
                         count[y, x] += 1
                         break

@@ -1,4 +1,4 @@
-"""Pictures made for comparing: local detail, which moves with the surface, over shading, which need not."""
+"""Pictures for matching: local detail, which moves with the surface, is amplified over shading, which may not."""
 
 from __future__ import annotations
 
@@ -7,37 +7,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.views import Pictures, pack, unpack
+from eigenfield.stereo.views import Pictures, pack_pictures, unpack_pictures
 
-DIAMETER, RANGE, SPACE = 9, 20.0, 3.0  # of the bilateral filter: pixels, grey levels, pixels
-GAIN, REST = 4.0, 0.5
-SOFT = 0.6  # pixels
-MIDDLE = 128
+DETAIL_DIAMETER_PIXELS, DETAIL_RANGE_SIGMA_LEVELS, DETAIL_SPACE_SIGMA_PIXELS = 9, 20.0, 3.0  # of the bilateral filter
+DETAIL_GAIN, DETAIL_BASE_GAIN = 4.0, 0.5
+DETAIL_BLUR_SIGMA_PIXELS = 0.6
+DETAIL_MID_LEVEL = 128
 
 
 def detail_pictures(
-    pictures: Pictures, gain: float = GAIN, rest: float = REST, soft: float = SOFT
+    pictures: Pictures,
+    gain: float = DETAIL_GAIN,
+    base_gain: float = DETAIL_BASE_GAIN,
+    blur_sigma: float = DETAIL_BLUR_SIGMA_PIXELS,
 ) -> NDArray[np.uint32]:
-    """Packed pictures 128 + gain (p - base) + rest (base - 128), base being
-    the picture after a bilateral filter.
+    """Packed pictures mid + gain (p - base) + base_gain (base - mid), with base the picture after a bilateral filter.
 
-    Shading, gloss and fall-off of light are smooth and move with the camera, not with the surface: compared as they
-    are, they outweigh faint texture and put it at a wrong depth. The filter keeps edges, so that what lies on one side
-    of an outline says nothing of the other.
+    Shading, gloss and light fall-off are smooth and move with the camera, not with the surface. In plain pictures they
+    outweigh faint texture and put it at a wrong depth. The filter keeps edges, so that one side of an outline does not
+    affect the other.
 
-    soft: pixels by which the result is blurred. Bilinear reading smooths noise between pixels but not on them: without
-    a little blur, labels of a regular array that fall on whole pixels look worse than they are. Outlines want none.
+    Bilinear sampling smooths noise between pixels but not on them. Without a little blur, labels of a regular array
+    that fall on whole pixels look worse than they are. Outlines are sharper without blur.
+
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        gain: Factor of the detail.
+        base_gain: Factor of the shading.
+        blur_sigma: Pixels by which the result is blurred; 0 for none.
+
+    Returns:
+        (V, H, W) packed pictures.
     """
-    packed = pack(pictures)
+    packed = pack_pictures(pictures)
     result = np.empty_like(packed)
 
     def work(index: int) -> None:
-        colours = unpack(packed[index]).astype(np.float32)
-        base = cv2.bilateralFilter(colours, DIAMETER, RANGE, SPACE)
-        raised = MIDDLE + gain * (colours - base) + rest * (base - MIDDLE)
-        if soft > 0:
-            raised = cv2.GaussianBlur(raised, (0, 0), soft)
-        result[index] = pack(np.clip(np.rint(raised), 0, 255).astype(np.uint8)[None])[0]
+        colours = unpack_pictures(packed[index]).astype(np.float32)
+        base = cv2.bilateralFilter(
+            colours, DETAIL_DIAMETER_PIXELS, DETAIL_RANGE_SIGMA_LEVELS, DETAIL_SPACE_SIGMA_PIXELS
+        )
+        raised = DETAIL_MID_LEVEL + gain * (colours - base) + base_gain * (base - DETAIL_MID_LEVEL)
+        if blur_sigma > 0:
+            raised = cv2.GaussianBlur(raised, (0, 0), blur_sigma)
+        result[index] = pack_pictures(np.clip(np.rint(raised), 0, 255).astype(np.uint8)[None])[0]
 
     parallel_map(work, range(len(packed)))
     return result

@@ -1,4 +1,4 @@
-"""The range of depth labels that a scene occupies, from a coarse sweep."""
+"""The range of labels that a scene occupies, from a coarse sweep."""
 
 from __future__ import annotations
 
@@ -6,54 +6,76 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.stereo.detail import detail_pictures
-from eigenfield.stereo.estimate import P1, P2, labels_over, reference_picture, spread_views
-from eigenfield.stereo.semiglobal import semi_global
-from eigenfield.stereo.sweep import MOST, sweep
-from eigenfield.stereo.sweep_kernels import UNIT
-from eigenfield.stereo.views import Pictures, halve, halved_matrices, motion, pack
+from eigenfield.stereo.estimate import DEPTH_TUNING, spaced_labels, spread_views, warp_reference_picture
+from eigenfield.stereo.semiglobal import semi_global_matching
+from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
+from eigenfield.stereo.sweep_kernels import SWEEP_COST_UNITS_PER_LEVEL
+from eigenfield.stereo.views import Pictures, halve_pictures, halved_matrices, label_parallax, pack_pictures
 
-LOOKED_AT = 25  # views
-HALVINGS = 2
-TRIMMED = 0.5  # per cent of the pixels that each end of the range may leave out
-WIDENED = 0.05  # of the range, added at both ends
-SOUND = 0.5  # a label's cost against the median of all labels', under which a pixel counts as matched
-VISIBLE = 0.01  # of the pixels that must show any contrast
-FEWEST = 0.15  # of those, the part that must have matched (noise: 0.06; a range that misses the scene: 0.07)
+LABEL_RANGE_MAX_VIEWS = 25
+LABEL_RANGE_HALVINGS = 2
+LABEL_RANGE_TRIM_PERCENT = 0.5  # pixels that may lie outside at each end of the range
+LABEL_RANGE_MARGIN_FRACTION = 0.05  # added at both ends
+LABEL_RANGE_MATCH_COST_RATIO = 0.5  # a pixel is matched if its best cost is below this fraction of the median cost
+LABEL_RANGE_MIN_CONTRAST_FRACTION = 0.01  # pixels that must show contrast
+LABEL_RANGE_MIN_MATCH_FRACTION = 0.15  # of those, matched (noise: 0.06; a range that misses the scene: 0.07)
 
 
 def depth_range(
     pictures: Pictures,
     matrices: NDArray[np.float64],
     shape: tuple[int, int],
-    wide: tuple[float, float],
+    search_range: tuple[float, float],
     *,
     labels: int = 128,
 ) -> tuple[float, float] | None:
-    """(low, high) labels that hold the scene, from a sweep of `wide` at a quarter of the resolution.
+    """The range of labels that holds the scene, from a sweep at a quarter of the resolution.
 
-    Only pixels count at which one label fits clearly better than most: flat paint fits anywhere. None if hardly any
-    does: nothing in `wide` is consistent with the photographs.
+    Only pixels count at which one label fits clearly better than most others: flat paint fits anywhere.
+
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
+        search_range: Lowest and highest label tried.
+        labels: How many labels are tried.
+
+    Returns:
+        (low, high), or None if hardly any pixel matches: nothing in `search_range` is consistent with the photographs.
     """
-    packed = pack(pictures)
-    chosen = spread_views(motion(matrices, shape, sum(wide) / 2), LOOKED_AT)
+    packed = pack_pictures(pictures)
+    chosen = spread_views(label_parallax(matrices, shape, sum(search_range) / 2), LABEL_RANGE_MAX_VIEWS)
     small, coarse = packed[chosen], np.asarray(matrices, np.float64)[chosen]
-    for _ in range(HALVINGS):
-        small, coarse = halve(small), halved_matrices(coarse)
+    for _ in range(LABEL_RANGE_HALVINGS):
+        small, coarse = halve_pictures(small), halved_matrices(coarse)
         shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
-    tried = labels_over(*wide, (wide[1] - wide[0]) / (labels - 1))
+    tried = spaced_labels(*search_range, (search_range[1] - search_range[0]) / (labels - 1))
     detail = detail_pictures(small)
-    compared, known = reference_picture(detail, coarse, shape)
-    seen, _ = reference_picture(small, coarse, shape)
-    cost = sweep(detail, coarse, shape, tried, reference=compared if known.any() else None, known=known, unseen=MOST)
-    d, _ = semi_global(cost, seen.mean(axis=-1).astype(np.float32), tried, P1, P2)
+    compared, known = warp_reference_picture(detail, coarse, shape)
+    seen, _ = warp_reference_picture(small, coarse, shape)
+    cost = plane_sweep(
+        detail,
+        coarse,
+        shape,
+        tried,
+        reference=compared if known.any() else None,
+        known=known,
+        unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
+    )
+    d, _ = semi_global_matching(
+        cost, seen.mean(axis=-1).astype(np.float32), tried, DEPTH_TUNING.sgm_p1_levels, DEPTH_TUNING.sgm_p2_levels
+    )
     nearest = np.abs(tried[None, None] - d[..., None]).argmin(axis=-1)
     at_best = np.take_along_axis(cost, nearest[..., None], axis=-1)[..., 0].astype(np.float32)
     usual = np.median(cost, axis=-1)
     ends = (nearest > 0) & (nearest < len(tried) - 1)
-    contrast = usual > float(UNIT)
-    matched = ends & (at_best < SOUND * usual) & contrast
-    if contrast.mean() < VISIBLE or matched.sum() < FEWEST * contrast.sum():
+    contrast = usual > float(SWEEP_COST_UNITS_PER_LEVEL)
+    matched = ends & (at_best < LABEL_RANGE_MATCH_COST_RATIO * usual) & contrast
+    if (
+        contrast.mean() < LABEL_RANGE_MIN_CONTRAST_FRACTION
+        or matched.sum() < LABEL_RANGE_MIN_MATCH_FRACTION * contrast.sum()
+    ):
         return None
-    low, high = np.percentile(d[matched], [TRIMMED, 100 - TRIMMED])
-    margin = WIDENED * (high - low) + float(tried[1] - tried[0])
-    return float(max(low - margin, wide[0])), float(min(high + margin, wide[1]))
+    low, high = np.percentile(d[matched], [LABEL_RANGE_TRIM_PERCENT, 100 - LABEL_RANGE_TRIM_PERCENT])
+    margin = LABEL_RANGE_MARGIN_FRACTION * (high - low) + float(tried[1] - tried[0])
+    return float(max(low - margin, search_range[0])), float(min(high + margin, search_range[1]))

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.stereo.refine_kernels import label_costs, settle
-from eigenfield.stereo.views import Pictures, check_matrices, pack
-from eigenfield.stereo.visibility import BIAS, flat
+from eigenfield.stereo.refine_kernels import aggregate_rows, label_costs
+from eigenfield.stereo.views import Pictures, check_matrices, pack_pictures
+from eigenfield.stereo.visibility import VISIBILITY_BIAS_LABELS, flatten_buffers
 
-BAND = 4
-TAU = 25.0  # grey levels at which a view's say is halved
-ENERGY = 6.0  # squared gradient of the mean texture at which confidence is halved, and again
-TEXTURED = 20.0  # confidence below which a point keeps its depth
+REFINE_ROWS_PER_TASK = 4
+REFINE_TAU_LEVELS = 25.0  # difference at which a view's weight is halved
+REFINE_HALF_ENERGY = 6.0  # squared gradient of the mean texture at which confidence falls to a quarter
+REFINE_MIN_CONFIDENCE = 20.0  # a point below keeps its depth
 
 
 def refine_depth(
@@ -26,23 +26,37 @@ def refine_depth(
     buffers: NDArray[np.float32] | None,
     texture: NDArray[np.float32],
     guide: NDArray[np.float32] | None = None,
-    bias: float = BIAS,
-    tau: float = TAU,
-    fewest: int = 3,
+    bias: float = VISIBILITY_BIAS_LABELS,
+    tau: float = REFINE_TAU_LEVELS,
+    min_views: int = 3,
     radius: int = 2,
-    colour: float = 60.0,
-    depth: float = 0.12,
-    todo: NDArray[np.bool_] | None = None,
+    colour_scale: float = 60.0,
+    depth_scale: float = 0.12,
+    mask: NDArray[np.bool_] | None = None,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """One round: each point tries five labels `step` apart over all views that see it. (d, confidence), (h, w) float32.
+    """One round of refinement: each point tries five labels over all views that see it.
 
-    buffers: of `depth_buffers` for the present d. texture: (h, w, 3) mean of the same pictures (`mean_texture`).
-    guide: (h, w, 3) colours that steer the aggregation over (2 radius + 1)^2 points, default the texture;
-    colour, depth: its scales in grey levels (sum of three channels) and label units. fewest: views that must see a
-    point. todo: points that may move. confidence: about 1 / variance of d (`refine_kernels.settle`), times what
-    `texture_energy` says of the mean texture; 0 where a point cannot be judged.
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        matrices: (V, 3, 4) of the views.
+        d: (h, w) present labels.
+        step: Distance of the five labels.
+        buffers: (V, H, W) of `depth_buffers` for the present d; None: nothing is hidden.
+        texture: (h, w, 3) mean of the same pictures (`mean_texture`).
+        guide: (h, w, 3) colours that weigh the aggregation window. Default: the texture.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        tau: Grey levels at which a view's weight is halved.
+        min_views: Views that must see a point.
+        radius: The window has (2 radius + 1)^2 points.
+        colour_scale: Grey levels, summed over the channels, at which the weight of a point of the window falls by e.
+        depth_scale: The same for the difference of labels.
+        mask: (h, w) points that may move. Default: all.
+
+    Returns:
+        (h, w) float32 labels, and (h, w) float32 confidence: about 1 / variance of d (`aggregate_rows`) times
+        `texture_energy`; 0 where a point cannot be judged.
     """
-    packed = pack(pictures)
+    packed = pack_pictures(pictures)
     count, height, width = packed.shape
     checked = check_matrices(matrices, count)
     d = np.ascontiguousarray(d, np.float32)
@@ -51,29 +65,36 @@ def refine_depth(
     offsets = (np.arange(-2, 3) * step).astype(np.float32)
     costs, seen = np.empty((*d.shape, len(offsets)), np.float32), np.empty(d.shape, np.float32)
     fixed = (
-        packed.reshape(count, -1), flat(buffers, count), checked, height, width, d, texture, offsets, np.float32(bias),
-        np.float32(tau), np.float32(fewest), costs, seen,
+        packed.reshape(count, -1), flatten_buffers(buffers, count), checked, height, width, d, texture, offsets,
+        np.float32(bias), np.float32(tau), np.float32(min_views), costs, seen,
     )  # fmt: skip
-    parallel_map(lambda rows: label_costs(rows[0], rows[1], *fixed), pieces(d.shape[0], BAND))
+    parallel_map(lambda rows: label_costs(rows[0], rows[1], *fixed), pieces(d.shape[0], REFINE_ROWS_PER_TASK))
     shift, confidence = np.empty_like(d), np.empty_like(d)
-    scales = [np.float32(scale) for scale in (colour, depth, step)]
+    scales = [np.float32(scale) for scale in (colour_scale, depth_scale, step)]
     window = (costs, seen, steering, d, radius, *scales, shift, confidence)
-    parallel_map(lambda rows: settle(rows[0], rows[1], *window), pieces(d.shape[0], BAND))
+    parallel_map(lambda rows: aggregate_rows(rows[0], rows[1], *window), pieces(d.shape[0], REFINE_ROWS_PER_TASK))
     confidence *= texture_energy(texture)
-    moves = confidence > TEXTURED
-    if todo is not None:
-        moves &= todo
+    moves = confidence > REFINE_MIN_CONFIDENCE
+    if mask is not None:
+        moves &= mask
     return d + np.where(moves, shift, np.float32(0)), confidence
 
 
-def texture_energy(texture: NDArray[np.float32], half: float = ENERGY) -> NDArray[np.float32]:
-    """(h, w) in 0..1: (e / (e + half))^2, e the squared gradient of the mean texture, smoothed over 2 pixels.
+def texture_energy(texture: NDArray[np.float32], half_energy: float = REFINE_HALF_ENERGY) -> NDArray[np.float32]:
+    """A factor of confidence, (e / (e + half_energy))^2, from the squared gradient e of the mean texture.
 
-    Compression blocks are fixed to each photograph's raster: they look like confident depth in flat paint, but not in
-    the mean over many views.
+    Compression blocks are fixed to each photograph's pixel raster. In flat paint they look like confident depth, but
+    the mean over many views does not show them.
+
+    Args:
+        texture: (h, w, 3) mean texture, grey levels.
+        half_energy: e at which the factor is 1/4.
+
+    Returns:
+        (h, w) float32 in 0..1, smoothed over 2 pixels.
     """
     grey = np.ascontiguousarray(texture.mean(axis=-1), np.float32)
     gx, gy = cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)
     energy = cv2.GaussianBlur((gx * gx + gy * gy) / 64, (0, 0), 2.0)
-    result: NDArray[np.float32] = (energy / (energy + np.float32(half))) ** 2
+    result: NDArray[np.float32] = (energy / (energy + np.float32(half_energy))) ** 2
     return result

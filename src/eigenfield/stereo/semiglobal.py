@@ -1,4 +1,7 @@
-"""Semi-global optimisation of a cost volume (Hirschmüller, PAMI 2008): eight paths, edge-adaptive jumps, sub-label."""
+"""Semi-global matching of a cost volume, with eight paths, edge-adaptive jumps and sub-label precision.
+
+Hirschmüller, Stereo Processing by Semiglobal Matching and Mutual Information, PAMI 2008.
+"""
 
 from __future__ import annotations
 
@@ -6,39 +9,50 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.stereo.semiglobal_kernels import accumulate, take_best
-from eigenfield.stereo.sweep_kernels import UNIT
+from eigenfield.stereo.semiglobal_kernels import accumulate_path_costs, select_label_rows
+from eigenfield.stereo.sweep_kernels import SWEEP_COST_UNITS_PER_LEVEL
 
-BAND = 16  # rows
-CONTRAST = 10.0  # grey levels of the guide at which a jump costs half
-PARALLEL_BYTES = 1 << 29  # above this the two passes share one volume of sums, one after the other
+SGM_ROWS_PER_TASK = 16
+SGM_HALF_JUMP_LEVELS = 10.0  # difference of the guide at which a jump costs half
+SGM_MAX_PARALLEL_BYTES = 1 << 29  # above, the two passes run one after the other and share one volume
 
 
-def semi_global(
+def semi_global_matching(
     cost: NDArray[np.uint8],
     guide: NDArray[np.float32],
     labels: NDArray[np.float32],
     p1: float = 1.0,
     p2: float = 12.0,
-    contrast: float = CONTRAST,
+    contrast: float = SGM_HALF_JUMP_LEVELS,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """The depth map of least cost and smoothness: (d, confidence), each (h, w) float32.
+    """The depth map of least matching cost plus smoothness penalty.
 
-    cost: of `sweep`, (h, w, L) uint8. guide: (h, w) grey levels; at its edges jumps are cheap. labels: (L,), even.
-    p1, p2: penalties in grey levels for a step of one label and for a jump. confidence: curvature of the summed cost at
-    its least, grey levels per squared label unit; 0 where it lies at the range's end.
+    Args:
+        cost: (h, w, L) uint8 of `plane_sweep`.
+        guide: (h, w) grey levels; jumps are cheap at its edges.
+        labels: (L,) evenly spaced.
+        p1: Penalty in grey levels for a step of one label.
+        p2: Penalty in grey levels for a jump.
+        contrast: Difference of the guide, in grey levels, at which a jump costs half.
+
+    Returns:
+        (h, w) float32 labels, and (h, w) float32 confidence: curvature of the summed cost at its minimum, in grey
+        levels per squared label; 0 where the minimum lies at the end of the range.
     """
     guide = np.ascontiguousarray(guide, np.float32)
     labels = np.ascontiguousarray(labels, np.float32)
-    small, large = np.int32(round(p1 * float(UNIT))), np.float32(p2 * float(UNIT))
+    small, large = (
+        np.int32(round(p1 * float(SWEEP_COST_UNITS_PER_LEVEL))),
+        np.float32(p2 * float(SWEEP_COST_UNITS_PER_LEVEL)),
+    )
     d, confidence = np.empty(cost.shape[:2], np.float32), np.empty(cost.shape[:2], np.float32)
-    shared = 4 * cost.size > PARALLEL_BYTES
+    shared = 4 * cost.size > SGM_MAX_PARALLEL_BYTES
     forward = np.zeros(cost.shape, np.uint16)
     backward = forward if shared else np.zeros(cost.shape, np.uint16)
     passes = [(False, forward), (True, backward)]
 
     def run(item: tuple[bool, NDArray[np.uint16]]) -> None:
-        accumulate(cost, guide, small, large, np.float32(contrast), item[0], item[1])
+        accumulate_path_costs(cost, guide, small, large, np.float32(contrast), item[0], item[1])
 
     if shared:
         for item in passes:
@@ -47,5 +61,5 @@ def semi_global(
     else:
         parallel_map(run, passes)
     fixed = (cost, forward, backward, labels, d, confidence)
-    parallel_map(lambda rows: take_best(*rows, *fixed), pieces(cost.shape[0], BAND))
+    parallel_map(lambda rows: select_label_rows(*rows, *fixed), pieces(cost.shape[0], SGM_ROWS_PER_TASK))
     return d, confidence

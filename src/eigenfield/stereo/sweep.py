@@ -1,4 +1,4 @@
-"""Plane sweep: how well the photographs agree on each of a row of depth labels, at every pixel of a canvas."""
+"""Plane sweep: how well the photographs agree on each of a series of labels, at every pixel of a reference view."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.stereo.sweep_kernels import NEVER, UNIT, sweep_rows
-from eigenfield.stereo.views import Pictures, check_matrices, motion, pack, sectors
+from eigenfield.stereo.sweep_kernels import SWEEP_COST_UNITS_PER_LEVEL, SWEEP_EXCLUDED_COST, sweep_rows
+from eigenfield.stereo.views import Pictures, check_matrices, label_parallax, pack_pictures, parallax_sectors
+from eigenfield.stereo.visibility import flatten_buffers
 
-BAND = 4  # rows a thread takes at a time
-MOST = 30.0  # grey levels: a difference larger than this counts as this
+SWEEP_ROWS_PER_TASK = 4
+SWEEP_MAX_DIFFERENCE_LEVELS = 30.0  # a larger difference counts as this
 
 
-def sweep(
+def plane_sweep(
     pictures: Pictures,
     matrices: NDArray[np.float64],
     shape: tuple[int, int],
@@ -21,61 +22,77 @@ def sweep(
     *,
     reference: NDArray[np.uint8] | NDArray[np.float32] | None = None,
     known: NDArray[np.bool_] | None = None,
-    todo: NDArray[np.bool_] | None = None,
+    mask: NDArray[np.bool_] | None = None,
     floor: NDArray[np.float32] | None = None,
     ceiling: NDArray[np.float32] | None = None,
     buffers: NDArray[np.float32] | None = None,
     bias: float = 0.12,
-    best: float = 0.4,
-    most: float = MOST,
-    fewest: int = 2,
-    unseen: float | None = None,
-    free: float = 0.0,
+    half_plane_fraction: float = 0.4,
+    max_difference: float = SWEEP_MAX_DIFFERENCE_LEVELS,
+    min_views: int = 2,
+    unseen_cost: float | None = None,
+    centring: float = 0.0,
 ) -> NDArray[np.uint8]:
-    """(h, w, L) costs in eighths of a grey level (0..254); 255 marks labels that were not tried and may not be taken.
+    """The matching cost of every label at every pixel.
 
-    pictures, matrices: the views, (V, H, W, 3) uint8 or packed, (V, 3, 4) from (x, y, d, 1) to index coordinates.
-    labels: (L,) rising. reference: (h, w, 3), the canvas camera's own picture where `known` (h, w) (default:
-        everywhere, if a reference is given); elsewhere colours are compared with the views' own robust centre.
-    todo: pixels to look at; the others are 255 throughout. floor, ceiling: (h, w), only labels between them.
-    buffers: (V, H, W) depth buffers: points more than `bias` behind them are hidden. best: the cost is the least mean
-        over half-planes of parallax directions that hold at least this part of the views that look; 1: over all views.
-    most: grey levels at which differences are cut. fewest: views that must look; otherwise the cost is `unseen` grey
-        levels (default: `most` times 0.7).
+    The equations are those of `sweep_rows`. Memory: one byte a pixel and label.
 
-    free: 0 measures the distance from the centre, 1 the spread about the views' own mean.
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        matrices: (V, 3, 4) from (x, y, d, 1) to index coordinates of each view.
+        shape: (h, w) of the reference view.
+        labels: (L,) increasing.
+        reference: (h, w, 3) the reference camera's own picture. Without it, colours are compared with the views' robust
+            mean.
+        known: (h, w) where `reference` is valid. Default: everywhere.
+        mask: (h, w) pixels to process. The others get 255 throughout.
+        floor: (h, w) lowest label tried at each pixel.
+        ceiling: (h, w) highest label tried.
+        buffers: (V, H, W) depth buffers that hide points.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        half_plane_fraction: The cost is the least mean over half-planes of parallax directions that hold at least this
+            fraction of the visible views; 1: over all views.
+        max_difference: Grey levels at which differences are cut off.
+        min_views: Views that must see a point. Otherwise its cost is `unseen_cost`.
+        unseen_cost: Grey levels. Default: 0.7 times `max_difference`.
+        centring: 0 measures the distance from the centre, 1 the spread around the views' own mean.
 
-    Equations: `sweep_kernels.sweep_rows`. Memory: one byte a pixel and label.
+    Returns:
+        (h, w, L) costs in eighths of a grey level (0..254); 255 marks labels that were not tried and may not be taken.
+
+    Raises:
+        ValueError: Pictures or matrices are malformed, or `max_difference` does not fit a byte.
     """
-    packed = pack(pictures)
+    packed = pack_pictures(pictures)
     count, height, width = packed.shape
     matrices = check_matrices(matrices, count)
-    if not 0 < most * float(UNIT) < NEVER:
-        raise ValueError(f"most must be under {NEVER / float(UNIT)} grey levels")
+    if not 0 < max_difference * float(SWEEP_COST_UNITS_PER_LEVEL) < SWEEP_EXCLUDED_COST:
+        raise ValueError(
+            f"max_difference must be under {SWEEP_EXCLUDED_COST / float(SWEEP_COST_UNITS_PER_LEVEL)} grey levels"
+        )
     sorted_labels = np.ascontiguousarray(labels, np.float32)
-    low, high = _ranges(shape, sorted_labels, todo, floor, ceiling)
+    low, high = _label_ranges(shape, sorted_labels, mask, floor, ceiling)
     if reference is None:
         reference, known = np.zeros((*shape, 3), np.float32), np.zeros(shape, np.bool_)
     if known is None:
         known = np.ones(shape, np.bool_)
-    empty = np.zeros((count, 0), np.float32)
-    flat_buffers = empty if buffers is None else np.ascontiguousarray(buffers, np.float32).reshape(count, -1)
-    sector = sectors(motion(matrices, shape, float(np.median(sorted_labels))))
-    out = np.full((*shape, len(sorted_labels)), NEVER, np.uint8)
+    sector = parallax_sectors(label_parallax(matrices, shape, float(np.median(sorted_labels))))
+    out = np.full((*shape, len(sorted_labels)), SWEEP_EXCLUDED_COST, np.uint8)
     fixed = (
-        packed.reshape(count, -1), flat_buffers, matrices, sector, height, width,
+        packed.reshape(count, -1), flatten_buffers(buffers, count), matrices, sector, height, width,
         np.ascontiguousarray(reference, np.float32), np.ascontiguousarray(known), sorted_labels, low, high,
-        np.float32(most), np.float32(fewest), np.float32(best), np.float32(0.7 * most if unseen is None else unseen),
-        np.float32(bias), np.float32(free),
+        np.float32(max_difference), np.float32(min_views), np.float32(half_plane_fraction),
+        np.float32(0.7 * max_difference if unseen_cost is None else unseen_cost), np.float32(bias),
+        np.float32(centring),
     )  # fmt: skip
-    parallel_map(lambda rows: sweep_rows(rows[0], rows[1], *fixed, out), pieces(shape[0], BAND))
+    parallel_map(lambda rows: sweep_rows(rows[0], rows[1], *fixed, out), pieces(shape[0], SWEEP_ROWS_PER_TASK))
     return out
 
 
-def _ranges(
+def _label_ranges(
     shape: tuple[int, int],
     labels: NDArray[np.float32],
-    todo: NDArray[np.bool_] | None,
+    mask: NDArray[np.bool_] | None,
     floor: NDArray[np.float32] | None,
     ceiling: NDArray[np.float32] | None,
 ) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
@@ -85,6 +102,6 @@ def _ranges(
         low[:] = np.searchsorted(labels, floor, side="left")
     if ceiling is not None:
         high[:] = np.searchsorted(labels, ceiling, side="right")
-    if todo is not None:
-        high[~todo] = 0
+    if mask is not None:
+        high[~mask] = 0
     return low, np.maximum(high, low)

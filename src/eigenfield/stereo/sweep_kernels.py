@@ -1,4 +1,4 @@
-"""The plane sweep's inner loop."""
+"""The inner loops of the plane sweep."""
 
 # mypy: disable-error-code="no-untyped-def"
 
@@ -7,80 +7,96 @@ from __future__ import annotations
 import numpy as np
 
 from eigenfield.runtime.jit import kernel
-from eigenfield.stereo.taps import EXACT, REAL_SLOTS, RUN, WHOLE_SLOTS, channel, fetch, place, visible, weights
+from eigenfield.stereo.taps import (
+    FASTMATH_ORDERED,
+    TAP_FLOAT_SLOTS,
+    TAP_INT_SLOTS,
+    TAP_RUN,
+    bilinear_channel,
+    bilinear_weights,
+    fetch_run,
+    is_visible,
+    project_run,
+)
 
-UNIT = np.float32(8)  # stored costs are eighths of a grey level
-NEVER = 255  # a label that may not be taken
+SWEEP_COST_UNITS_PER_LEVEL = np.float32(8)  # costs are stored in eighths of a grey level
+SWEEP_EXCLUDED_COST = 255  # marks a label that may not be taken
 _ONE, _ZERO = np.float32(1), np.float32(0)
 
 
-@kernel(fastmath=EXACT)
-def _add_colours(count, real, whole, centre, reach, total):
-    """total += w (r, g, b, 1) over visible points; w = 1 / (1 + (distance to `centre` / reach)^2), 1 if reach is 0."""
-    scale = np.float32(1) / (reach * reach) if reach > _ZERO else _ZERO
+@kernel(fastmath=FASTMATH_ORDERED)
+def _add_colours(count, floats, ints, centre, scale_levels, total):
+    """total += w (r, g, b, 1) over visible points.
+
+    w = 1 / (1 + (distance to `centre` / scale_levels)^2), or 1 if scale_levels is 0.
+    """
+    scale = np.float32(1) / (scale_levels * scale_levels) if scale_levels > _ZERO else _ZERO
     for i in range(count):
-        w00, w01, w10, w11 = weights(real, i)
-        r = channel(whole, i, 0, w00, w01, w10, w11)
-        g = channel(whole, i, 8, w00, w01, w10, w11)
-        b = channel(whole, i, 16, w00, w01, w10, w11)
-        er, eg, eb = r - centre[i], g - centre[i + RUN], b - centre[i + 2 * RUN]
-        w = visible(real, i) / (_ONE + (er * er + eg * eg + eb * eb) * scale)
+        w00, w01, w10, w11 = bilinear_weights(floats, i)
+        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11)
+        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11)
+        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        er, eg, eb = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
+        w = is_visible(floats, i) / (_ONE + (er * er + eg * eg + eb * eb) * scale)
         total[i] += w * r
-        total[i + RUN] += w * g
-        total[i + 2 * RUN] += w * b
-        total[i + 3 * RUN] += w
+        total[i + TAP_RUN] += w * g
+        total[i + 2 * TAP_RUN] += w * b
+        total[i + 3 * TAP_RUN] += w
 
 
-@kernel(fastmath=EXACT)
-def _add_moments(count, real, whole, centre, most, moments):
+@kernel(fastmath=FASTMATH_ORDERED)
+def _add_moments(count, floats, ints, centre, max_difference, moments):
     """moments (5 slots): counts, sums of e, sum of |e|^2 over visible points, e = colour - centre.
 
-    Where |e|^2 > 3 most^2 the point adds that much to the squares and nothing to the sums of e."""
-    cut = np.float32(3) * most * most
+    Where |e|^2 > 3 max_difference^2 the point adds that much to the squares and nothing to the sums of e.
+    """
+    max_square = np.float32(3) * max_difference * max_difference
     for i in range(count):
-        w00, w01, w10, w11 = weights(real, i)
-        r = channel(whole, i, 0, w00, w01, w10, w11) - centre[i]
-        g = channel(whole, i, 8, w00, w01, w10, w11) - centre[i + RUN]
-        b = channel(whole, i, 16, w00, w01, w10, w11) - centre[i + 2 * RUN]
-        m = visible(real, i)
+        w00, w01, w10, w11 = bilinear_weights(floats, i)
+        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11) - centre[i]
+        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11) - centre[i + TAP_RUN]
+        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11) - centre[i + 2 * TAP_RUN]
+        m = is_visible(floats, i)
         e = r * r + g * g + b * b
-        k = m if e < cut else _ZERO
+        k = m if e < max_square else _ZERO
         moments[i] += m
-        moments[i + RUN] += k * r
-        moments[i + 2 * RUN] += k * g
-        moments[i + 3 * RUN] += k * b
-        moments[i + 4 * RUN] += m * min(e, cut)
+        moments[i + TAP_RUN] += k * r
+        moments[i + 2 * TAP_RUN] += k * g
+        moments[i + 3 * TAP_RUN] += k * b
+        moments[i + 4 * TAP_RUN] += m * min(e, max_square)
 
 
-@kernel(fastmath=EXACT)
-def _own_centre(
-    pictures, buffers, matrices, x, y, count, label, limit, height, width, reach, real, whole, total, guess,
+@kernel(fastmath=FASTMATH_ORDERED)
+def _robust_mean(
+    pictures, buffers, matrices, x, y, count, label, limit, height, width, scale_levels, floats, ints, total, mean,
 ):  # fmt: skip
-    """guess: the robust mean colour of all visible views, one step from the plain mean."""
+    """mean: the robust mean colour of all visible views, one step from the plain mean."""
     for attempt in range(2):
         total[:] = 0
         for v in range(matrices.shape[0]):
-            place(matrices[v], y, x, count, label, limit, height, width, real, whole)
-            fetch(pictures[v], buffers[v], width, count, real, whole)
-            _add_colours(count, real, whole, guess, reach if attempt else _ZERO, total)
+            project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
+            fetch_run(pictures[v], buffers[v], width, count, floats, ints)
+            _add_colours(count, floats, ints, mean, scale_levels if attempt else _ZERO, total)
         for i in range(count):
-            inverse = _ONE / max(total[i + 3 * RUN], np.float32(1e-6))
+            inverse = _ONE / max(total[i + 3 * TAP_RUN], np.float32(1e-6))
             for c in range(3):
-                guess[i + c * RUN] = total[i + c * RUN] * inverse
+                mean[i + c * TAP_RUN] = total[i + c * TAP_RUN] * inverse
 
 
 @kernel()
-def _parts(sector, groups, best):
-    """(n, 2) int64: the runs (first, how many) of groups whose spread is looked at: the half-planes, those with the
-    same views once, or all groups as one where `best` is not under 1."""
+def _half_planes(sector, groups, fraction):
+    """(n, 2) int64: the runs (first, how many) of sectors whose spread is measured.
+
+    They are the half-planes, those with the same views once, or all sectors as one where `fraction` is at least 1.
+    """
     views = np.zeros(groups, np.int64)
     for v in range(sector.size):
         if sector[v] >= 0:
             views[sector[v]] += 1
-    parts = np.zeros((groups, 2), np.int64)
-    if best >= _ONE:
-        parts[0, 1] = groups
-        return parts[:1]
+    half_planes = np.zeros((groups, 2), np.int64)
+    if fraction >= _ONE:
+        half_planes[0, 1] = groups
+        return half_planes[:1]
     masks = np.zeros(groups, np.int64)
     count = 0
     for first in range(groups):
@@ -88,113 +104,141 @@ def _parts(sector, groups, best):
         for k in range(groups // 2):
             if views[(first + k) % groups] > 0:
                 mask |= 1 << ((first + k) % groups)
-        fresh = mask != 0
+        is_new = mask != 0
         for other in range(count):
-            fresh &= masks[other] != mask
-        if fresh:
+            is_new &= masks[other] != mask
+        if is_new:
             masks[count] = mask
-            parts[count, 0], parts[count, 1] = first, groups // 2
+            half_planes[count, 0], half_planes[count, 1] = first, groups // 2
             count += 1
-    return parts[:count]
+    return half_planes[:count]
 
 
-@kernel(fastmath=EXACT)
-def _add_up(moments, first, size, sums):
+@kernel(fastmath=FASTMATH_ORDERED)
+def _sum_groups(moments, first, size, sums):
     """sums (5 slots): the moments of the groups first .. first + size - 1."""
     groups = moments.shape[0]
     sums[:] = 0
     for k in range(size):
         part = moments[(first + k) % groups]
-        for i in range(5 * RUN):
+        for i in range(5 * TAP_RUN):
             sums[i] += part[i]
 
 
-@kernel(fastmath=EXACT)
-def _half_spread(count, sums, need, free, lowest):
+@kernel(fastmath=FASTMATH_ORDERED)
+def _add_spread(count, sums, need, centring, lowest):
     """lowest = min(lowest, spread of the summed moments), where they hold `need` views.
 
-    The reference counts as one more view, at e = 0: without it a single view would agree with itself."""
+    The reference counts as one more view, at e = 0: without it a single view would agree with itself.
+    """
     for i in range(count):
-        n, sr, sg, sb = sums[i], sums[i + RUN], sums[i + 2 * RUN], sums[i + 3 * RUN]
-        q = sums[i + 4 * RUN]
-        v = (q - free * (sr * sr + sg * sg + sb * sb) / (n + _ONE)) / (np.float32(3) * max(n, _ONE))
+        n, sr, sg, sb = sums[i], sums[i + TAP_RUN], sums[i + 2 * TAP_RUN], sums[i + 3 * TAP_RUN]
+        q = sums[i + 4 * TAP_RUN]
+        v = (q - centring * (sr * sr + sg * sg + sb * sb) / (n + _ONE)) / (np.float32(3) * max(n, _ONE))
         lowest[i] = min(lowest[i], v) if n >= need[i] else lowest[i]
 
 
-@kernel(fastmath=EXACT)
-def _best_half(count, moments, parts, fewest, part, unseen, free, sums, need, cost):
+@kernel(fastmath=FASTMATH_ORDERED)
+def _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_cost, centring, sums, need, cost):
     """cost: the least spread over the half-planes of directions that hold enough of the visible views."""
-    _add_up(moments, 0, moments.shape[0], sums)
+    _sum_groups(moments, 0, moments.shape[0], sums)
     for i in range(count):
-        need[i] = max(part * sums[i], _ONE)
-        need[i + RUN] = sums[i]
+        need[i] = max(fraction * sums[i], _ONE)
+        need[i + TAP_RUN] = sums[i]
         cost[i] = np.float32(1e9)
-    for k in range(parts.shape[0]):
-        if parts[k, 1] < moments.shape[0]:
-            _add_up(moments, parts[k, 0], parts[k, 1], sums)
-        _half_spread(count, sums, need, free, cost)
+    for k in range(half_planes.shape[0]):
+        if half_planes[k, 1] < moments.shape[0]:
+            _sum_groups(moments, half_planes[k, 0], half_planes[k, 1], sums)
+        _add_spread(count, sums, need, centring, cost)
     for i in range(count):
-        cost[i] = np.sqrt(max(cost[i], _ZERO)) if need[i + RUN] >= fewest else unseen
+        cost[i] = np.sqrt(max(cost[i], _ZERO)) if need[i + TAP_RUN] >= min_views else unseen_cost
 
 
-@kernel(fastmath=EXACT)
+@kernel(fastmath=FASTMATH_ORDERED)
 def sweep_rows(
-    first, last, pictures, buffers, matrices, sector, height, width, reference, known, labels, low, high, most, fewest,
-    part, unseen, bias, free, out,
+    first, last, pictures, buffers, matrices, sector, height, width, reference, known, labels, low, high,
+    max_difference, min_views, fraction, unseen_cost, bias, centring, out,
 ):  # fmt: skip
-    """Costs of rows [first, last): out (h, w, L) uint8 for labels [low, high) of each pixel; others stay as they are.
+    """Matching costs of rows [first, last), for labels [low, high) of each pixel.
 
-    A view's colour is compared with the reference picture's where that is `known`, else with the visible views' robust
-    mean. The views are grouped by the direction of their parallax (`sector`, 0..7). What hides a point hides it in the
-    views on one side: the cost is the least, over the eight half-planes of directions that hold at least `part` of the
-    visible views (part 1: all of them together), of the root of the mean of min(3 most^2, |e|^2 - free |mean e|^2) / 3.
+    A view's colour is compared with the reference picture where that is known, else with the visible views' robust
+    mean. The views are grouped by the direction of their parallax. An occluder hides a point from the views on one
+    side. The cost is therefore the least, over the eight half-planes of directions that hold at least `fraction` of the
+    visible views (1: all of them together), of the root of the mean of min(3 max_difference^2, |e|^2 - centring |mean
+    e|^2) / 3.
+
+    Args:
+        first, last: Range of rows.
+        pictures: (V, H W) packed.
+        buffers: (V, H W) depth buffers, or (V, 0) for none.
+        matrices: (V, 3, 4) of the views.
+        sector: (V,) sector of each view's parallax, 0..7; -1: the view is left out.
+        height, width: Size of the views.
+        reference: (h, w, 3) reference picture.
+        known: (h, w) where it is valid.
+        labels: (L,) increasing.
+        low, high: (h, w) range of the labels tried at each pixel.
+        max_difference: Grey levels at which differences are cut off.
+        min_views: Views that must see a point.
+        fraction: See above.
+        unseen_cost: Grey levels, where fewer than `min_views` see a point.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        centring: See above.
+        out: (h, w, L) uint8, written for the labels tried.
     """
     columns = known.shape[1]
     groups = 8
-    real, whole = np.zeros(REAL_SLOTS * RUN, np.float32), np.zeros(WHOLE_SLOTS * RUN, np.uint32)
-    label, limit = np.zeros(RUN, np.float32), np.zeros(RUN, np.float32)
-    centre, guess = np.zeros(3 * RUN, np.float32), np.zeros(3 * RUN, np.float32)
-    total = np.zeros(4 * RUN, np.float32)
-    moments, sums = np.zeros((groups, 5 * RUN), np.float32), np.zeros(5 * RUN, np.float32)
-    parts = _parts(sector, groups, part)
-    need = np.zeros(2 * RUN, np.float32)
-    cost = np.zeros(RUN, np.float32)
+    floats, ints = np.zeros(TAP_FLOAT_SLOTS * TAP_RUN, np.float32), np.zeros(TAP_INT_SLOTS * TAP_RUN, np.uint32)
+    label, limit = np.zeros(TAP_RUN, np.float32), np.zeros(TAP_RUN, np.float32)
+    centre, mean = np.zeros(3 * TAP_RUN, np.float32), np.zeros(3 * TAP_RUN, np.float32)
+    total = np.zeros(4 * TAP_RUN, np.float32)
+    moments, sums = np.zeros((groups, 5 * TAP_RUN), np.float32), np.zeros(5 * TAP_RUN, np.float32)
+    half_planes = _half_planes(sector, groups, fraction)
+    need = np.zeros(2 * TAP_RUN, np.float32)
+    cost = np.zeros(TAP_RUN, np.float32)
     for y in range(first, last):
         following = 0
         while following < columns:
             x = following
-            strangers = not known[y, x]
-            count = 0  # a run ends where the reference picture does: its own centres cost the strangers dear
-            while count < RUN and x + count < columns and known[y, x + count] != strangers:
+            unreferenced = not known[y, x]
+            count = 0  # a run ends where the reference picture does: only the rest needs its own mean
+            while count < TAP_RUN and x + count < columns and known[y, x + count] != unreferenced:
                 count += 1
             following = x + count
             longest = 0
             for i in range(count):
                 longest = max(longest, high[y, x + i] - low[y, x + i])
                 for c in range(3):
-                    centre[i + c * RUN] = reference[y, x + i, c]
+                    centre[i + c * TAP_RUN] = reference[y, x + i, c]
             for k in range(longest):
                 for i in range(count):
                     at = max(min(low[y, x + i] + k, high[y, x + i] - 1), 0)
                     label[i] = labels[at]
                     limit[i] = labels[at] + bias
-                if strangers:
-                    guess[:] = 0
-                    _own_centre(
-                        pictures, buffers, matrices, x, y, count, label, limit, height, width, most, real, whole, total,
-                        guess,
+                if unreferenced:
+                    mean[:] = 0
+                    _robust_mean(
+                        pictures, buffers, matrices, x, y, count, label, limit, height, width, max_difference, floats,
+                        ints, total, mean,
                     )  # fmt: skip
-                    centre[:] = guess
+                    centre[:] = mean
                 moments[:] = 0
                 for v in range(matrices.shape[0]):
                     g = sector[v]
                     if g < 0:
                         continue
-                    place(matrices[v], y, x, count, label, limit, height, width, real, whole)
-                    fetch(pictures[v], buffers[v], width, count, real, whole)
-                    _add_moments(count, real, whole, centre, most, moments[g])
-                _best_half(count, moments, parts, fewest, part, unseen, free, sums, need, cost)
+                    project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
+                    fetch_run(pictures[v], buffers[v], width, count, floats, ints)
+                    _add_moments(count, floats, ints, centre, max_difference, moments[g])
+                _half_plane_cost(
+                    count, moments, half_planes, min_views, fraction, unseen_cost, centring, sums, need, cost
+                )
                 for i in range(count):
                     at = low[y, x + i] + k
                     if at < high[y, x + i]:
-                        out[y, x + i, at] = np.uint8(min(cost[i] * UNIT + np.float32(0.5), np.float32(NEVER - 1)))
+                        out[y, x + i, at] = np.uint8(
+                            min(
+                                cost[i] * SWEEP_COST_UNITS_PER_LEVEL + np.float32(0.5),
+                                np.float32(SWEEP_EXCLUDED_COST - 1),
+                            )
+                        )

@@ -1,8 +1,8 @@
-"""Kernels that every sum over photographs shares: where a row of points falls in one view, and what is there.
+"""Kernels that every sum over photographs shares: where a run of points falls in one view, and the pixels there.
 
-Points come in runs of at most `RUN` neighbours of one canvas row. A tap is taken in three loops: `place` (positions, in
-vectors), `fetch` (memory, one by one) and the caller's arithmetic (in vectors again). Written as one loop the compiler
-would leave it scalar, at a fifth of the speed. Scratch arrays are flat: slot k of point i is [k RUN + i], a distance
+Points come in runs of at most TAP_RUN neighbours of one row. A run is sampled in three loops: `project_run` (positions,
+vectorised), `fetch_run` (memory, one by one) and the caller's arithmetic (vectorised again). The compiler leaves a
+single loop scalar, at a fifth of the speed. Scratch arrays are flat: slot k of point i is [k TAP_RUN + i], a distance
 that the compiler knows.
 
 A photograph is one uint32 a pixel (red in the lowest byte), so that a corner of the bilinear cell is one load.
@@ -16,25 +16,34 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 
-RUN = 128
-REAL_SLOTS = 4  # fraction x, fraction y, visibility limit, depth buffer
-WHOLE_SLOTS = 6  # address of the cell, its four corners, address of the nearest pixel
-OUTSIDE = np.float32(-1e30)
-EMPTY = np.float32(-1e9)  # of a depth buffer: nothing there
-EXACT = {"contract", "nnan", "nsz", "ninf", "arcp"}  # no re-association: sums keep their order
-GUARDED = {"contract", "nsz"}  # where a NaN may come in and must be told from a number
+TAP_RUN = 128  # points
+TAP_FLOAT_SLOTS = 4  # fraction x, fraction y, visibility limit, depth buffer
+TAP_INT_SLOTS = 6  # address of the cell, its four corners, address of the nearest pixel
+TAP_OUTSIDE_LIMIT = np.float32(-1e30)
+EMPTY_DEPTH_LABEL = np.float32(-1e9)  # of a depth buffer where no point falls
+FASTMATH_ORDERED = {"contract", "nnan", "nsz", "ninf", "arcp"}  # no re-association: sums keep their order
+FASTMATH_NAN_SAFE = {"contract", "nsz"}  # where input may hold NaNs that must be recognised
 
 _ONE, _ZERO, _HALF = np.float32(1), np.float32(0), np.float32(0.5)
 _BYTE = np.uint32(255)
 
 
-@kernel(fastmath=GUARDED)
-def place(matrix, y, x, count, label, limit, height, width, real, whole):
-    """Positions of points (x + i, y, label[i]) in the view of `matrix` (3, 4): p = M (x, y, d, 1), (p0, p1) / p2.
+@kernel(fastmath=FASTMATH_NAN_SAFE)
+def project_run(matrix, y, x, count, label, limit, height, width, floats, ints):
+    """Positions of points (x + i, y, label[i]) in one view: p = M (x, y, d, 1), (p0, p1) / p2.
 
-    limit[i]: the largest depth-buffer value that leaves the point visible; OUTSIDE is put in its place where the point
-    falls outside the picture or behind the camera, or is no number. Addresses are always inside: such points take
-    pixel 0.
+    Addresses always lie inside the picture: points outside it, behind the camera or NaN take pixel 0 and are marked as
+    hidden by TAP_OUTSIDE_LIMIT.
+
+    Args:
+        matrix: M, (3, 4).
+        y, x: Index coordinates of the first point.
+        count: Number of points.
+        label: (TAP_RUN,) labels.
+        limit: (TAP_RUN,) largest depth-buffer value that leaves each point visible.
+        height, width: Size of the view.
+        floats: Scratch; slots 0 to 2 are written.
+        ints: Scratch; slots 0 and 5 are written.
     """
     f = np.float32
     a0, a1, a2 = f(matrix[0, 0]), f(matrix[1, 0]), f(matrix[2, 0])
@@ -56,53 +65,79 @@ def place(matrix, y, x, count, label, limit, height, width, real, whole):
         px = min(px, last_x) if inside else _ZERO
         py = min(py, last_y) if inside else _ZERO
         column, row = np.int32(px), np.int32(py)
-        real[i] = px - f(column)
-        real[i + RUN] = py - f(row)
-        real[i + 2 * RUN] = limit[i] if inside else OUTSIDE
-        whole[i] = np.uint32(row * wide + column)
-        whole[i + 5 * RUN] = np.uint32(np.int32(py + _HALF) * wide + np.int32(px + _HALF))
+        floats[i] = px - f(column)
+        floats[i + TAP_RUN] = py - f(row)
+        floats[i + 2 * TAP_RUN] = limit[i] if inside else TAP_OUTSIDE_LIMIT
+        ints[i] = np.uint32(row * wide + column)
+        ints[i + 5 * TAP_RUN] = np.uint32(np.int32(py + _HALF) * wide + np.int32(px + _HALF))
 
 
-@kernel(fastmath=EXACT)
-def fetch(picture, buffer, width, count, real, whole):
-    """The four corners of each point's cell, and the depth buffer at the nearest pixel (an empty one hides nothing)."""
+@kernel(fastmath=FASTMATH_ORDERED)
+def fetch_run(picture, buffer, width, count, floats, ints):
+    """The four corners of each point's cell, and the depth buffer at the nearest pixel.
+
+    Args:
+        picture: (H W,) packed.
+        buffer: (H W,) depth buffer; an empty one hides nothing.
+        width: Of the view.
+        count: Number of points.
+        floats: Scratch of `project_run`; slot 3 is written.
+        ints: Scratch of `project_run`; slots 1 to 4 are written.
+    """
     down = np.uint32(width)
     one = np.uint32(1)
     for i in range(count):
-        at = whole[i]
-        whole[i + RUN] = picture[at]
-        whole[i + 2 * RUN] = picture[at + one]
-        whole[i + 3 * RUN] = picture[at + down]
-        whole[i + 4 * RUN] = picture[at + down + one]
+        at = ints[i]
+        ints[i + TAP_RUN] = picture[at]
+        ints[i + 2 * TAP_RUN] = picture[at + one]
+        ints[i + 3 * TAP_RUN] = picture[at + down]
+        ints[i + 4 * TAP_RUN] = picture[at + down + one]
     if buffer.size > 0:
         for i in range(count):
-            real[i + 3 * RUN] = buffer[whole[i + 5 * RUN]]
+            floats[i + 3 * TAP_RUN] = buffer[ints[i + 5 * TAP_RUN]]
     else:
         for i in range(count):
-            real[i + 3 * RUN] = EMPTY
+            floats[i + 3 * TAP_RUN] = EMPTY_DEPTH_LABEL
 
 
 @kernel(inline=True)
-def channel(whole, i, shift, w00, w01, w10, w11):
-    """One colour channel (shift 0, 8 or 16) of point i's cell under bilinear weights."""
+def bilinear_channel(ints, i, shift, w00, w01, w10, w11):
+    """One colour channel of a point, bilinearly interpolated.
+
+    Args:
+        ints: Scratch of `fetch_run`.
+        i: The point.
+        shift: 0, 8 or 16 bits: red, green or blue.
+        w00, w01, w10, w11: Weights of the corners (`bilinear_weights`).
+    """
     s = np.uint32(shift)
     return (
-        w00 * np.float32(np.int32((whole[i + RUN] >> s) & _BYTE))
-        + w01 * np.float32(np.int32((whole[i + 2 * RUN] >> s) & _BYTE))
-        + w10 * np.float32(np.int32((whole[i + 3 * RUN] >> s) & _BYTE))
-        + w11 * np.float32(np.int32((whole[i + 4 * RUN] >> s) & _BYTE))
+        w00 * np.float32(np.int32((ints[i + TAP_RUN] >> s) & _BYTE))
+        + w01 * np.float32(np.int32((ints[i + 2 * TAP_RUN] >> s) & _BYTE))
+        + w10 * np.float32(np.int32((ints[i + 3 * TAP_RUN] >> s) & _BYTE))
+        + w11 * np.float32(np.int32((ints[i + 4 * TAP_RUN] >> s) & _BYTE))
     )
 
 
 @kernel(inline=True)
-def weights(real, i):
-    """Bilinear weights of the corners (top left, top right, bottom left, bottom right)."""
-    fx, fy = real[i], real[i + RUN]
+def bilinear_weights(floats, i):
+    """Bilinear weights of the corners (top left, top right, bottom left, bottom right).
+
+    Args:
+        floats: Scratch of `project_run`.
+        i: The point.
+    """
+    fx, fy = floats[i], floats[i + TAP_RUN]
     w11 = fx * fy
     return _ONE - fx - fy + w11, fx - w11, fy - w11, w11
 
 
 @kernel(inline=True)
-def visible(real, i):
-    """1 where the point is inside the picture and not hidden, else 0."""
-    return _ONE if real[i + 3 * RUN] <= real[i + 2 * RUN] else _ZERO
+def is_visible(floats, i):
+    """1 where the point is inside the picture and not hidden, else 0.
+
+    Args:
+        floats: Scratch of `fetch_run`.
+        i: The point.
+    """
+    return _ONE if floats[i + 3 * TAP_RUN] <= floats[i + 2 * TAP_RUN] else _ZERO

@@ -1,4 +1,4 @@
-"""Photographs as kernels read them, and what is known of how a set of views looks at a canvas."""
+"""Photographs as kernels read them, and the parallax of a set of views."""
 
 from __future__ import annotations
 
@@ -6,13 +6,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 Pictures = NDArray[np.uint8] | NDArray[np.uint32]  # (V, H, W, 3), or packed (V, H, W)
-SECTORS = 8
+PARALLAX_SECTORS = 8
 
 
-def pack(pictures: Pictures) -> NDArray[np.uint32]:
-    """(V, H, W, 3) uint8 as (V, H, W) uint32, red in the lowest byte; packed pictures are handed back as they are.
+def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
+    """Pictures as one uint32 a pixel, red in the lowest byte; packed pictures are returned unchanged.
 
-    Every function of this room takes either; packing once saves time where many are called.
+    Every function of this package takes either form. Packing once saves time where many are called.
+
+    Args:
+        pictures: (V, H, W, 3) uint8, or (V, H, W) uint32.
+
+    Returns:
+        (V, H, W) uint32.
+
+    Raises:
+        ValueError: Another shape or type, or under 2 x 2 pixels.
     """
     if pictures.ndim == 3 and pictures.dtype == np.uint32:
         return np.ascontiguousarray(pictures)
@@ -25,52 +34,89 @@ def pack(pictures: Pictures) -> NDArray[np.uint32]:
     return packed.view(np.uint32)[..., 0]
 
 
-def unpack(pictures: NDArray[np.uint32]) -> NDArray[np.uint8]:
-    """(..., H, W) packed as (..., H, W, 3) uint8."""
+def unpack_pictures(pictures: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    """(..., H, W, 3) uint8 of packed pictures.
+
+    Args:
+        pictures: (..., H, W) uint32.
+    """
     return np.ascontiguousarray(pictures[..., None]).view(np.uint8)[..., :3]
 
 
 def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    """`matrices` as (count, 3, 4) float64, finite; ValueError if not."""
+    """View matrices as contiguous float64.
+
+    Args:
+        matrices: (count, 3, 4), finite.
+        count: Number of views.
+
+    Raises:
+        ValueError: Another shape, or not finite.
+    """
     result = np.ascontiguousarray(matrices, np.float64)
     if result.shape != (count, 3, 4) or not np.isfinite(result).all():
         raise ValueError(f"matrices must be finite and ({count}, 3, 4), not {result.shape}")
     return result
 
 
-def halve(pictures: Pictures) -> NDArray[np.uint32]:
-    """Packed pictures at half the size (rounded up), each pixel the mean of four."""
-    packed = pack(pictures)
+def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
+    """Packed pictures at half the size (rounded up), each pixel the mean of four.
+
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+    """
+    packed = pack_pictures(pictures)
     count, height, width = packed.shape
     result = np.empty((count, (height + 1) // 2, (width + 1) // 2), np.uint32)
     for index in range(count):
-        colours = unpack(packed[index])
+        colours = unpack_pictures(packed[index])
         colours = np.pad(colours, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge").astype(np.uint16)
         total = colours[::2, ::2] + colours[1::2, ::2] + colours[::2, 1::2] + colours[1::2, 1::2]
-        result[index] = pack(((total + 2) // 4).astype(np.uint8)[None])[0]
+        result[index] = pack_pictures(((total + 2) // 4).astype(np.uint8)[None])[0]
     return result
 
 
-HALVE_PICTURE = np.array([[0.5, 0, -0.25], [0, 0.5, -0.25], [0, 0, 1]])
-HALVE_CANVAS = np.array([[2, 0, 0, 0.5], [0, 2, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1.0]])
+HALF_FROM_FULL_INDEX = np.array([[0.5, 0, -0.25], [0, 0.5, -0.25], [0, 0, 1]])
+FULL_FROM_HALF_POINT = np.array([[2, 0, 0, 0.5], [0, 2, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
 
 def halved_matrices(matrices: NDArray[np.float64], pictures: bool = True) -> NDArray[np.float64]:
-    """The matrices from a canvas of half the resolution, into pictures halved as well (or not)."""
-    return (HALVE_PICTURE if pictures else np.eye(3)) @ matrices @ HALVE_CANVAS
+    """View matrices for a reference view of half the resolution.
+
+    Args:
+        matrices: (V, 3, 4) at full resolution.
+        pictures: Whether the pictures are halved as well.
+    """
+    return (HALF_FROM_FULL_INDEX if pictures else np.eye(3)) @ matrices @ FULL_FROM_HALF_POINT
 
 
-def motion(matrices: NDArray[np.float64], shape: tuple[int, int], d: float = 0.0) -> NDArray[np.float64]:
-    """(V, 2) pixels that the point in the canvas's middle moves in each view for one unit of d, at label d."""
+def label_parallax(matrices: NDArray[np.float64], shape: tuple[int, int], d: float = 0.0) -> NDArray[np.float64]:
+    """Pixels that the centre of the reference view moves in each view for one unit of d.
+
+    Args:
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
+        d: The label at which it is measured.
+
+    Returns:
+        (V, 2) along x and y.
+    """
     point = np.array([(shape[1] - 1) / 2, (shape[0] - 1) / 2, d, 1.0])
     p = matrices @ point
     return (matrices[:, :2, 2] - matrices[:, 2:, 2] * p[:, :2] / p[:, 2:]) / p[:, 2:]
 
 
-def sectors(moves: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(V,) which eighth of the directions each view's `motion` has; -1 for views without parallax."""
-    length = np.hypot(moves[:, 0], moves[:, 1])
-    turn = np.arctan2(moves[:, 1], moves[:, 0]) / (2 * np.pi) * SECTORS
-    result = np.floor(turn + 0.25).astype(np.int64) % SECTORS  # axis-aligned rows fall well inside a sector
+def parallax_sectors(parallax: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Which eighth of the directions each view's parallax falls into.
+
+    Args:
+        parallax: (V, 2) of `label_parallax`.
+
+    Returns:
+        (V,) 0..7; -1 for views without parallax.
+    """
+    length = np.hypot(parallax[:, 0], parallax[:, 1])
+    angle = np.arctan2(parallax[:, 1], parallax[:, 0]) / (2 * np.pi) * PARALLAX_SECTORS
+    result = np.floor(angle + 0.25).astype(np.int64) % PARALLAX_SECTORS  # axis-aligned rows fall well inside a sector
     result[length < 0.05 * max(length.max(initial=0.0), 1e-12)] = -1
     return result

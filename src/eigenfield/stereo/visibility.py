@@ -1,4 +1,4 @@
-"""Which views see a point: splatted depth buffers; and the mean of what they see."""
+"""Which views see a point, by splatted depth buffers, and the mean colour of these views."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.stereo.views import Pictures, check_matrices, pack
-from eigenfield.stereo.visibility_kernels import cubic_mean_rows, mean_rows, splat
+from eigenfield.stereo.views import Pictures, check_matrices, pack_pictures
+from eigenfield.stereo.visibility_kernels import cubic_mean_rows, mean_rows, splat_labels
 
-BAND = 8
-BIAS = 0.12  # label units: a point this far behind the depth buffer still counts as on the surface
+VISIBILITY_ROWS_PER_TASK = 8
+VISIBILITY_BIAS_LABELS = 0.12  # a point this far behind the depth buffer still counts as on the surface
 
 
 def depth_buffers(
@@ -20,9 +20,17 @@ def depth_buffers(
     valid: NDArray[np.bool_] | None = None,
     out: NDArray[np.float32] | None = None,
 ) -> NDArray[np.float32]:
-    """(V, H, W) float32: the largest d of the canvas's points on each pixel of each view; -1e9 where none falls.
+    """The largest label of the reference view's points on each pixel of each view.
 
-    d: (h, w) the canvas's labels, `valid` (h, w) those that count. shape: (H, W) of the views. out: to be written into.
+    Args:
+        matrices: (V, 3, 4) of the views.
+        d: (h, w) labels.
+        shape: (H, W) of the views.
+        valid: (h, w) points that count. Default: all finite ones.
+        out: Where the result is written. Default: a new array.
+
+    Returns:
+        (V, H, W) float32; -1e9 where no point falls.
     """
     checked = check_matrices(matrices, len(matrices))
     labels = np.ascontiguousarray(d, np.float32)
@@ -30,7 +38,7 @@ def depth_buffers(
     buffers = np.empty((len(checked), *shape), np.float32) if out is None else out
     if buffers.shape != (len(checked), *shape):
         raise ValueError(f"the buffers have the shape {buffers.shape}, not {(len(checked), *shape)}")
-    parallel_map(lambda v: splat(checked[v], labels, counts, buffers[v]), range(len(checked)))
+    parallel_map(lambda v: splat_labels(checked[v], labels, counts, buffers[v]), range(len(checked)))
     return buffers
 
 
@@ -39,28 +47,54 @@ def mean_texture(
     matrices: NDArray[np.float64],
     d: NDArray[np.float32],
     buffers: NDArray[np.float32] | None = None,
-    bias: float = BIAS,
+    bias: float = VISIBILITY_BIAS_LABELS,
     *,
     cubic: bool = False,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
-    """The mean over the views that see each point (x, y, d): (texture (h, w, 3) float32 in grey levels, count (h, w)).
+    """The mean colour over the views that see each point (x, y, d).
 
-    buffers: of `depth_buffers`; None: nothing hides anything. cubic: Catmull-Rom instead of bilinear interpolation.
-    Where nobody looks the texture is 0.
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        matrices: (V, 3, 4) of the views.
+        d: (h, w) labels.
+        buffers: (V, H, W) of `depth_buffers`; None: nothing is hidden.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        cubic: Catmull-Rom instead of bilinear interpolation.
+
+    Returns:
+        (h, w, 3) float32 texture in grey levels, 0 where no view looks, and (h, w) int32 number of views.
     """
-    packed = pack(pictures)
+    packed = pack_pictures(pictures)
     count, height, width = packed.shape
     checked = check_matrices(matrices, count)
     labels = np.ascontiguousarray(d, np.float32)
     texture, seen = np.zeros((*labels.shape, 3), np.float32), np.zeros(labels.shape, np.int32)
-    fixed = (packed.reshape(count, -1), flat(buffers, count), checked, height, width, labels, np.float32(bias))
+    fixed = (
+        packed.reshape(count, -1),
+        flatten_buffers(buffers, count),
+        checked,
+        height,
+        width,
+        labels,
+        np.float32(bias),
+    )
     work = cubic_mean_rows if cubic else mean_rows
-    parallel_map(lambda rows: work(rows[0], rows[1], *fixed, texture, seen), pieces(labels.shape[0], BAND))
+    parallel_map(
+        lambda rows: work(rows[0], rows[1], *fixed, texture, seen), pieces(labels.shape[0], VISIBILITY_ROWS_PER_TASK)
+    )
     return texture, seen
 
 
-def flat(buffers: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
-    """Depth buffers as kernels read them: (V, H W), or (V, 0) for none."""
+def flatten_buffers(buffers: NDArray[np.float32] | None, count: int) -> NDArray[np.float32]:
+    """Depth buffers as kernels read them.
+
+    Args:
+        buffers: (V, H, W), or None for none.
+        count: Number of views V.
+
+    Returns:
+        (V, H W) float32, or (V, 0) for none.
+    """
     if buffers is None:
         return np.zeros((count, 0), np.float32)
     return np.ascontiguousarray(buffers, np.float32).reshape(count, -1)

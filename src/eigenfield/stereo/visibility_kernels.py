@@ -1,4 +1,4 @@
-"""Depth buffers by splatting, and mean colours over the views that see a point."""
+"""Inner loops: depth buffers by splatting, and mean colours over the views that see a point."""
 
 # mypy: disable-error-code="no-untyped-def"
 
@@ -8,28 +8,35 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 from eigenfield.stereo.taps import (
-    EMPTY,
-    EXACT,
-    GUARDED,
-    REAL_SLOTS,
-    RUN,
-    WHOLE_SLOTS,
-    channel,
-    fetch,
-    place,
-    visible,
-    weights,
+    EMPTY_DEPTH_LABEL,
+    FASTMATH_NAN_SAFE,
+    FASTMATH_ORDERED,
+    TAP_FLOAT_SLOTS,
+    TAP_INT_SLOTS,
+    TAP_RUN,
+    bilinear_channel,
+    bilinear_weights,
+    fetch_run,
+    is_visible,
+    project_run,
 )
 
 _ONE, _ZERO = np.float32(1), np.float32(0)
 
 
-@kernel(fastmath=GUARDED)
-def splat(matrix, d, valid, buffer):
-    """buffer (H, W): the largest d of the points that fall on a pixel; each point covers the 2 x 2 pixels round it."""
+@kernel(fastmath=FASTMATH_NAN_SAFE)
+def splat_labels(matrix, d, valid, buffer):
+    """The largest d of the points that fall on each pixel; each point covers the 2 x 2 pixels around it.
+
+    Args:
+        matrix: (3, 4) of the view.
+        d: (h, w) labels.
+        valid: (h, w) points that count.
+        buffer: (H, W), written.
+    """
     height, width = buffer.shape
     f = np.float32
-    buffer[:] = EMPTY
+    buffer[:] = EMPTY_DEPTH_LABEL
     a0, a1, a2 = f(matrix[0, 0]), f(matrix[1, 0]), f(matrix[2, 0])
     d0, d1, d2 = f(matrix[0, 2]), f(matrix[1, 2]), f(matrix[2, 2])
     for y in range(d.shape[0]):
@@ -53,74 +60,106 @@ def splat(matrix, d, valid, buffer):
                     buffer[r, c] = max(buffer[r, c], label)
 
 
-@kernel(fastmath=EXACT)
+@kernel(fastmath=FASTMATH_ORDERED)
 def mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, texture, count_out):
-    """texture, count_out: bilinear mean and number of the views that see each point of rows [first, last)."""
+    """Bilinear mean and number of the views that see each point of rows [first, last).
+
+    Args:
+        first, last: Range of rows.
+        pictures: (V, H W) packed.
+        buffers: (V, H W) depth buffers, or (V, 0) for none.
+        matrices: (V, 3, 4) of the views.
+        height, width: Size of the views.
+        d: (h, w) labels.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        texture: (h, w, 3) mean colour, written.
+        count_out: (h, w) number of views, written.
+    """
     columns = d.shape[1]
-    real, whole = np.zeros(REAL_SLOTS * RUN, np.float32), np.zeros(WHOLE_SLOTS * RUN, np.uint32)
-    limit, label, total = np.zeros(RUN, np.float32), np.zeros(RUN, np.float32), np.zeros(4 * RUN, np.float32)
+    floats, ints = np.zeros(TAP_FLOAT_SLOTS * TAP_RUN, np.float32), np.zeros(TAP_INT_SLOTS * TAP_RUN, np.uint32)
+    limit, label, total = (
+        np.zeros(TAP_RUN, np.float32),
+        np.zeros(TAP_RUN, np.float32),
+        np.zeros(4 * TAP_RUN, np.float32),
+    )
     for y in range(first, last):
-        for x in range(0, columns, RUN):
-            count = min(RUN, columns - x)
+        for x in range(0, columns, TAP_RUN):
+            count = min(TAP_RUN, columns - x)
             for i in range(count):
                 label[i] = d[y, x + i]
                 limit[i] = label[i] + bias
             total[:] = 0
             for v in range(matrices.shape[0]):
-                place(matrices[v], y, x, count, label, limit, height, width, real, whole)
-                fetch(pictures[v], buffers[v], width, count, real, whole)
-                add_means(count, real, whole, total)
+                project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
+                fetch_run(pictures[v], buffers[v], width, count, floats, ints)
+                _add_means(count, floats, ints, total)
             for i in range(count):
-                inverse = _ONE / max(total[i + 3 * RUN], _ONE)
+                inverse = _ONE / max(total[i + 3 * TAP_RUN], _ONE)
                 for c in range(3):
-                    texture[y, x + i, c] = total[i + c * RUN] * inverse
-                count_out[y, x + i] = np.int32(total[i + 3 * RUN])
+                    texture[y, x + i, c] = total[i + c * TAP_RUN] * inverse
+                count_out[y, x + i] = np.int32(total[i + 3 * TAP_RUN])
 
 
-@kernel(fastmath=EXACT)
-def add_means(count, real, whole, total):
+@kernel(fastmath=FASTMATH_ORDERED)
+def _add_means(count, floats, ints, total):
     """total += visible (r, g, b, 1)."""
     for i in range(count):
-        w00, w01, w10, w11 = weights(real, i)
-        m = visible(real, i)
-        total[i] += m * channel(whole, i, 0, w00, w01, w10, w11)
-        total[i + RUN] += m * channel(whole, i, 8, w00, w01, w10, w11)
-        total[i + 2 * RUN] += m * channel(whole, i, 16, w00, w01, w10, w11)
-        total[i + 3 * RUN] += m
+        w00, w01, w10, w11 = bilinear_weights(floats, i)
+        m = is_visible(floats, i)
+        total[i] += m * bilinear_channel(ints, i, 0, w00, w01, w10, w11)
+        total[i + TAP_RUN] += m * bilinear_channel(ints, i, 8, w00, w01, w10, w11)
+        total[i + 2 * TAP_RUN] += m * bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        total[i + 3 * TAP_RUN] += m
 
 
 @kernel(inline=True)
 def _cubic(t):
-    """Catmull-Rom's weights of the four samples round a point at fraction t."""
+    """Catmull-Rom weights of the four samples around a point at fraction t."""
     w0 = ((-np.float32(0.5) * t + _ONE) * t - np.float32(0.5)) * t
     w1 = (np.float32(1.5) * t - np.float32(2.5)) * t * t + _ONE
     w2 = ((-np.float32(1.5) * t + np.float32(2)) * t + np.float32(0.5)) * t
     return w0, w1, w2, _ONE - w0 - w1 - w2
 
 
-@kernel(fastmath=EXACT)
+@kernel(fastmath=FASTMATH_ORDERED)
 def cubic_mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, texture, count_out):
-    """As `mean_rows`, with Catmull-Rom interpolation; samples beyond the picture are its border's."""
+    """As `mean_rows`, with Catmull-Rom interpolation; samples beyond the picture repeat its border.
+
+    Args:
+        first, last: Range of rows.
+        pictures: (V, H W) packed.
+        buffers: (V, H W) depth buffers, or (V, 0) for none.
+        matrices: (V, 3, 4) of the views.
+        height, width: Size of the views.
+        d: (h, w) labels.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+        texture: (h, w, 3) mean colour, written.
+        count_out: (h, w) number of views, written.
+    """
     columns = d.shape[1]
-    real, whole = np.zeros(REAL_SLOTS * RUN, np.float32), np.zeros(WHOLE_SLOTS * RUN, np.uint32)
-    limit, label, total = np.zeros(RUN, np.float32), np.zeros(RUN, np.float32), np.zeros(4 * RUN, np.float32)
+    floats, ints = np.zeros(TAP_FLOAT_SLOTS * TAP_RUN, np.float32), np.zeros(TAP_INT_SLOTS * TAP_RUN, np.uint32)
+    limit, label, total = (
+        np.zeros(TAP_RUN, np.float32),
+        np.zeros(TAP_RUN, np.float32),
+        np.zeros(4 * TAP_RUN, np.float32),
+    )
     byte = np.uint32(255)
     for y in range(first, last):
-        for x in range(0, columns, RUN):
-            count = min(RUN, columns - x)
+        for x in range(0, columns, TAP_RUN):
+            count = min(TAP_RUN, columns - x)
             for i in range(count):
                 label[i] = d[y, x + i]
                 limit[i] = label[i] + bias
             total[:] = 0
             for v in range(matrices.shape[0]):
                 picture = pictures[v]
-                place(matrices[v], y, x, count, label, limit, height, width, real, whole)
-                fetch(picture, buffers[v], width, count, real, whole)
+                project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
+                fetch_run(picture, buffers[v], width, count, floats, ints)
                 for i in range(count):
-                    if visible(real, i) == _ZERO:
+                    if is_visible(floats, i) == _ZERO:
                         continue
-                    row, column = np.int64(whole[i]) // width, np.int64(whole[i]) % width
-                    across, down = _cubic(real[i]), _cubic(real[i + RUN])
+                    row, column = np.int64(ints[i]) // width, np.int64(ints[i]) % width
+                    across, down = _cubic(floats[i]), _cubic(floats[i + TAP_RUN])
                     r, g, b = _ZERO, _ZERO, _ZERO
                     for j in range(4):
                         line = min(max(row + j - 1, 0), height - 1) * width
@@ -131,11 +170,11 @@ def cubic_mean_rows(first, last, pictures, buffers, matrices, height, width, d, 
                             g += w * np.float32((p >> np.uint32(8)) & byte)
                             b += w * np.float32((p >> np.uint32(16)) & byte)
                     total[i] += r
-                    total[i + RUN] += g
-                    total[i + 2 * RUN] += b
-                    total[i + 3 * RUN] += _ONE
+                    total[i + TAP_RUN] += g
+                    total[i + 2 * TAP_RUN] += b
+                    total[i + 3 * TAP_RUN] += _ONE
             for i in range(count):
-                inverse = _ONE / max(total[i + 3 * RUN], _ONE)
+                inverse = _ONE / max(total[i + 3 * TAP_RUN], _ONE)
                 for c in range(3):
-                    texture[y, x + i, c] = total[i + c * RUN] * inverse
-                count_out[y, x + i] = np.int32(total[i + 3 * RUN])
+                    texture[y, x + i, c] = total[i + c * TAP_RUN] * inverse
+                count_out[y, x + i] = np.int32(total[i + 3 * TAP_RUN])

@@ -1,1 +1,1 @@
-"""Calibration by boards."""
+"""Calibration of multi-camera rigs with boards."""

@@ -2,11 +2,12 @@
 
 A corner X of the board at moment m is seen by camera c at
 
-    u = project(R_c (R_m X + t_m) + t_c, intrinsics_c),
+    u = project(R_c (R_m X + t_m) + t_c, intrinsics_c).
 
-and the sum of rho(|u - measured|^2), rho(s) = f^2 log(1 + s / f^2) (Cauchy), is made least by Levenberg-Marquardt on
-reweighted normal equations. They are sparse (a sighting ties one camera to one board); SuperLU solves them, serially,
-so that the result does not depend on the number of threads. Rotations are updated from the left, R <- exp(w) R.
+The sum of rho(|u - measured|^2), rho(s) = f^2 log(1 + s / f^2) (Cauchy), is minimised by Levenberg-Marquardt on
+reweighted normal equations. They are sparse, since an observation couples one camera to one board. SuperLU solves them
+serially, so that the result does not depend on the number of threads. Rotations are updated from the left, R <- exp(w)
+R.
 """
 
 from __future__ import annotations
@@ -21,34 +22,44 @@ from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
-from eigenfield.calibrate.charts.corners import Corners
-from eigenfield.calibrate.charts.lens_models import project, project_with_derivatives
+from eigenfield.calibrate.charts.corners import DetectedCorners
+from eigenfield.calibrate.charts.lens_models import project_points, project_points_with_derivatives
 
 log = logging.getLogger("eigenfield.calibrate")
 
-STEPS = 60
-SCALINGS = 3  # times the scale of the loss is taken from the residuals
-SCALE = 2.5  # of the median residual: where the loss bends
-LEAST_SCALE = 0.1  # pixels
-ENOUGH = 1e-7  # relative decrease of the cost that ends a round
-FIRST_DAMPING, MOST_DAMPING = 1e-4, 1e12
+BUNDLE_MAX_STEPS = 60
+BUNDLE_SCALE_ROUNDS = 3  # how often the loss scale is set from the residuals
+BUNDLE_LOSS_MEDIANS = 2.5  # loss scale, in median residuals
+BUNDLE_MIN_LOSS_PIXELS = 0.1
+BUNDLE_COST_TOLERANCE = 1e-7  # relative decrease of the cost that ends a round
+BUNDLE_FIRST_DAMPING, BUNDLE_MAX_DAMPING = 1e-4, 1e12
 
 
 @dataclass(frozen=True, eq=False)
-class Sighting:
-    """The corners that one camera saw at one moment."""
+class BoardObservation:
+    """The corners that one camera saw at one moment.
+
+    Attributes:
+        camera: Index of the camera.
+        moment: Index of the moment.
+        corners: What was detected.
+    """
 
     camera: int
     moment: int
-    corners: Corners
+    corners: DetectedCorners
 
 
 @dataclass(frozen=True, eq=False)
-class Rig:
+class RigEstimate:
     """Cameras and boards in one world.
 
-    intrinsics: (C, 9), see `lens_models`. R, t: (C, 3, 3) and (C, 3), world to camera.
-    board_rotation, board_shift: (M, 3, 3) and (M, 3), board to world; NaN at moments without a board.
+    Attributes:
+        intrinsics: (C, 9), see `lens_models`.
+        R: (C, 3, 3) world to camera.
+        t: (C, 3) world to camera.
+        board_rotation: (M, 3, 3) board to world; NaN at moments without a board.
+        board_shift: (M, 3) board to world; NaN at moments without a board.
     """
 
     intrinsics: NDArray[np.float64]
@@ -57,14 +68,29 @@ class Rig:
     board_rotation: NDArray[np.float64]
     board_shift: NDArray[np.float64]
 
-    def in_camera(self, points: NDArray[np.float64], sighting: Sighting) -> NDArray[np.float64]:
-        """(k, 3) the sighting's corners in its camera's axes; points: (n, 3) on the board."""
-        m, c = sighting.moment, sighting.camera
-        return (points[sighting.corners.ids] @ self.board_rotation[m].T + self.board_shift[m]) @ self.R[c].T + self.t[c]
+    def in_camera(self, points: NDArray[np.float64], observation: BoardObservation) -> NDArray[np.float64]:
+        """(k, 3) the observed corners in the axes of the observation's camera.
 
-    def residuals(self, points: NDArray[np.float64], sighting: Sighting) -> NDArray[np.float64]:
-        """(k, 2) pixels, projected minus measured."""
-        return project(self.in_camera(points, sighting), self.intrinsics[sighting.camera]) - sighting.corners.pixels
+        Args:
+            points: (n, 3) corners on the board.
+            observation: Whose corners.
+        """
+        m, c = observation.moment, observation.camera
+        return (points[observation.corners.ids] @ self.board_rotation[m].T + self.board_shift[m]) @ self.R[
+            c
+        ].T + self.t[c]
+
+    def residuals(self, points: NDArray[np.float64], observation: BoardObservation) -> NDArray[np.float64]:
+        """(k, 2) pixels, projected minus measured.
+
+        Args:
+            points: (n, 3) corners on the board.
+            observation: Whose corners.
+        """
+        return (
+            project_points(self.in_camera(points, observation), self.intrinsics[observation.camera])
+            - observation.corners.pixels
+        )
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,115 +103,127 @@ class _Problem:
     moment: NDArray[np.int64]
     bases: tuple[NDArray[np.float64], ...]  # (9, m) of each camera
     camera_at: NDArray[np.int64]  # first unknown of each camera: intrinsics, then the pose
-    moves: NDArray[np.bool_]  # whether each camera's pose is free
+    pose_is_free: NDArray[np.bool_]  # whether each camera's pose is free
     board_at: NDArray[np.int64]  # first unknown of each moment's board, -1 where there is none
     unknowns: int
 
 
-def adjust(
+def adjust_bundle(
     points: NDArray[np.float64],
-    sightings: Sequence[Sighting],
-    rig: Rig,
+    observations: Sequence[BoardObservation],
+    rig: RigEstimate,
     bases: Sequence[NDArray[np.float64]],
     fixed: int,
-) -> tuple[Rig, NDArray[np.float64]]:
-    """The rig that fits the sightings best, and (C,) the standard deviation of each camera's fx in pixels (NaN where
-    no intrinsics are free).
+) -> tuple[RigEstimate, NDArray[np.float64]]:
+    """The rig that fits the observations best.
 
-    points: (n, 3) corners on the board. bases: (9, m) directions in which each camera's intrinsics may move, m = 0 to
-    hold them. fixed: the camera whose pose stays.
+    Args:
+        points: (n, 3) corners on the board.
+        observations: What the cameras saw.
+        rig: The start.
+        bases: (9, m) directions in which each camera's intrinsics may move; m = 0 holds them.
+        fixed: The camera whose pose stays.
+
+    Returns:
+        The rig, and (C,) standard deviation of each camera's fx in pixels, NaN if its intrinsics are held.
     """
-    problem = _problem(points, sightings, rig, bases, fixed)
-    for _ in range(SCALINGS):
-        scale = max(SCALE * float(np.median(_distances(problem, rig))), LEAST_SCALE)
-        rig = _descend(problem, rig, scale)
+    problem = _make_problem(points, observations, rig, bases, fixed)
+    for _ in range(BUNDLE_SCALE_ROUNDS):
+        scale = max(
+            BUNDLE_LOSS_MEDIANS * float(np.median(_reprojection_distances(problem, rig))), BUNDLE_MIN_LOSS_PIXELS
+        )
+        rig = _minimise(problem, rig, scale)
     return rig, _focal_deviations(problem, rig, scale)
 
 
-def _problem(
+def _make_problem(
     points: NDArray[np.float64],
-    sightings: Sequence[Sighting],
-    rig: Rig,
+    observations: Sequence[BoardObservation],
+    rig: RigEstimate,
     bases: Sequence[NDArray[np.float64]],
     fixed: int,
 ) -> _Problem:
-    counts = [len(s.corners.ids) for s in sightings]
-    moves = np.arange(len(bases)) != fixed
-    seen = {s.camera for s in sightings}
+    counts = [len(s.corners.ids) for s in observations]
+    pose_is_free = np.arange(len(bases)) != fixed
+    seen = {s.camera for s in observations}
     bases = [basis if c in seen else basis[:, :0] for c, basis in enumerate(bases)]
-    moves &= np.isin(np.arange(len(bases)), sorted(seen))
-    sizes = np.array([basis.shape[1] for basis in bases]) + 6 * moves
+    pose_is_free &= np.isin(np.arange(len(bases)), sorted(seen))
+    sizes = np.array([basis.shape[1] for basis in bases]) + 6 * pose_is_free
     camera_at = np.concatenate([[0], np.cumsum(sizes)])
     board_at = np.full(len(rig.board_shift), -1)
-    moments = np.unique([s.moment for s in sightings])
+    moments = np.unique([s.moment for s in observations])
     board_at[moments] = camera_at[-1] + 6 * np.arange(len(moments))
     return _Problem(
-        np.concatenate([points[s.corners.ids] for s in sightings]),
-        np.concatenate([s.corners.pixels for s in sightings]),
-        np.repeat([s.camera for s in sightings], counts),
-        np.repeat([s.moment for s in sightings], counts),
-        tuple(bases), camera_at[:-1], moves, board_at, int(camera_at[-1] + 6 * len(moments)),
+        np.concatenate([points[s.corners.ids] for s in observations]),
+        np.concatenate([s.corners.pixels for s in observations]),
+        np.repeat([s.camera for s in observations], counts),
+        np.repeat([s.moment for s in observations], counts),
+        tuple(bases), camera_at[:-1], pose_is_free, board_at, int(camera_at[-1] + 6 * len(moments)),
     )  # fmt: skip
 
 
-def _in_world(problem: _Problem, rig: Rig) -> NDArray[np.float64]:
+def _in_world(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
     turned = np.einsum("nij,nj->ni", rig.board_rotation[problem.moment], problem.points)
     return turned + rig.board_shift[problem.moment]
 
 
-def _in_camera(problem: _Problem, rig: Rig) -> NDArray[np.float64]:
+def _in_camera(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
     return np.einsum("nij,nj->ni", rig.R[problem.camera], _in_world(problem, rig)) + rig.t[problem.camera]
 
 
-def _distances(problem: _Problem, rig: Rig) -> NDArray[np.float64]:
-    """(n,) pixels from each corner to where it should be; infinite behind the camera."""
+def _reprojection_distances(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
+    """(n,) pixels from each corner to its projection; infinite behind the camera."""
     inside = _in_camera(problem, rig)
     ahead = inside[:, 2] > 0
     away = np.full(len(inside), np.inf)
-    at = project(inside[ahead], rig.intrinsics[problem.camera[ahead]])
+    at = project_points(inside[ahead], rig.intrinsics[problem.camera[ahead]])
     away[ahead] = np.linalg.norm(at - problem.pixels[ahead], axis=1)
     return away
 
 
-def _cost(problem: _Problem, rig: Rig, scale: float) -> float:
-    return float(scale**2 * np.sum(np.log1p((_distances(problem, rig) / scale) ** 2)))
+def _cost(problem: _Problem, rig: RigEstimate, scale: float) -> float:
+    return float(scale**2 * np.sum(np.log1p((_reprojection_distances(problem, rig) / scale) ** 2)))
 
 
-def _descend(problem: _Problem, rig: Rig, scale: float) -> Rig:
-    cost, damping = _cost(problem, rig, scale), FIRST_DAMPING
-    for _ in range(STEPS):
+def _minimise(problem: _Problem, rig: RigEstimate, scale: float) -> RigEstimate:
+    cost, damping = _cost(problem, rig, scale), BUNDLE_FIRST_DAMPING
+    for _ in range(BUNDLE_MAX_STEPS):
         H, g = _normal_equations(problem, rig, scale)
         diagonal = np.maximum(H.diagonal(), 1e-12)
         improved = False
-        while damping < MOST_DAMPING and not improved:
-            step = splu(_raised(H, damping * diagonal)).solve(-g)
-            moved = _moved(problem, rig, step)
+        while damping < BUNDLE_MAX_DAMPING and not improved:
+            step = splu(_add_to_diagonal(H, damping * diagonal)).solve(-g)
+            moved = _apply_step(problem, rig, step)
             after = _cost(problem, moved, scale)
             improved = after < cost
             damping = damping / 10 if improved else damping * 10
         if not improved:
             return rig
-        done = cost - after <= ENOUGH * cost
+        done = cost - after <= BUNDLE_COST_TOLERANCE * cost
         rig, cost = moved, after
         if done:
             return rig
-    log.info("bundle adjustment: %d steps were not enough", STEPS)
+    log.info("bundle adjustment: %d steps were not enough", BUNDLE_MAX_STEPS)
     return rig
 
 
-def _raised(H: csc_array[np.float64], diagonal: NDArray[np.float64]) -> csc_array[np.float64]:
+def _add_to_diagonal(H: csc_array[np.float64], diagonal: NDArray[np.float64]) -> csc_array[np.float64]:
     """H with `diagonal` added to its diagonal."""
     size = len(diagonal)
     addition: csc_array[np.float64] = csc_array((diagonal, (np.arange(size), np.arange(size))), shape=(size, size))
     return csc_array(H + addition)
 
 
-def _normal_equations(problem: _Problem, rig: Rig, scale: float) -> tuple[csc_array[np.float64], NDArray[np.float64]]:
+def _normal_equations(
+    problem: _Problem, rig: RigEstimate, scale: float
+) -> tuple[csc_array[np.float64], NDArray[np.float64]]:
     """Reweighted normal equations: J^T W J and J^T W r, W = 1 / (1 + |r|^2 / f^2)."""
     world = _in_world(problem, rig)
     R = rig.R[problem.camera]
     seen = np.einsum("nij,nj->ni", R, world)
-    at, by_point, by_intrinsics = project_with_derivatives(seen + rig.t[problem.camera], rig.intrinsics[problem.camera])
+    at, by_point, by_intrinsics = project_points_with_derivatives(
+        seen + rig.t[problem.camera], rig.intrinsics[problem.camera]
+    )
     residual = at - problem.pixels
     weight = 1 / (1 + np.sum(residual**2, axis=1) / scale**2)
     by_world = by_point @ R
@@ -218,7 +256,7 @@ def _jacobian(
         start = np.full(len(mine), problem.camera_at[c])
         if len(mine) and basis.shape[1]:
             blocks.append((mine, start, by_intrinsics[mine] @ basis))
-        if len(mine) and problem.moves[c]:
+        if len(mine) and problem.pose_is_free[c]:
             blocks.append((mine, start + basis.shape[1], by_camera[mine]))
     rows = [np.broadcast_to((2 * i)[:, None, None] + [[0], [1]], v.shape).ravel() for i, _, v in blocks]
     columns = [np.broadcast_to(s[:, None, None] + np.arange(v.shape[2]), v.shape).ravel() for _, s, v in blocks]
@@ -227,13 +265,13 @@ def _jacobian(
     return csc_array(coo_array((values, (np.concatenate(rows), np.concatenate(columns))), shape=shape))
 
 
-def _moved(problem: _Problem, rig: Rig, step: NDArray[np.float64]) -> Rig:
+def _apply_step(problem: _Problem, rig: RigEstimate, step: NDArray[np.float64]) -> RigEstimate:
     intrinsics, R, t = rig.intrinsics.copy(), rig.R.copy(), rig.t.copy()
     board_rotation, board_shift = rig.board_rotation.copy(), rig.board_shift.copy()
     for c, basis in enumerate(problem.bases):
         start = problem.camera_at[c]
         intrinsics[c] += basis @ step[start : start + basis.shape[1]]
-        if problem.moves[c]:
+        if problem.pose_is_free[c]:
             pose = step[start + basis.shape[1] :][:6]
             R[c] = Rotation.from_rotvec(pose[:3]).as_matrix() @ R[c]
             t[c] += pose[3:]
@@ -244,15 +282,17 @@ def _moved(problem: _Problem, rig: Rig, step: NDArray[np.float64]) -> Rig:
     return replace(rig, intrinsics=intrinsics, R=R, t=t, board_rotation=board_rotation, board_shift=board_shift)
 
 
-def _focal_deviations(problem: _Problem, rig: Rig, scale: float) -> NDArray[np.float64]:
-    """From the inverse of the normal equations, times the variance of a residual as its median tells it."""
+def _focal_deviations(problem: _Problem, rig: RigEstimate, scale: float) -> NDArray[np.float64]:
+    """From the inverse of the normal equations, times the residual variance estimated from its median."""
     out = np.full(len(problem.bases), np.nan)
     free = [c for c, basis in enumerate(problem.bases) if basis.shape[1]]
     if not free:
         return out
     H, _ = _normal_equations(problem, rig, scale)
-    solver = splu(_raised(H, 1e-12 * np.maximum(H.diagonal(), 1e-12)))
-    variance = (float(np.median(_distances(problem, rig))) / 1.1774) ** 2  # the median of a Rayleigh distribution
+    solver = splu(_add_to_diagonal(H, 1e-12 * np.maximum(H.diagonal(), 1e-12)))
+    variance = (
+        float(np.median(_reprojection_distances(problem, rig))) / 1.1774
+    ) ** 2  # the median of a Rayleigh distribution
     for c in free:
         basis = problem.bases[c]
         direction = np.zeros(problem.unknowns)

@@ -1,10 +1,10 @@
-"""Pinhole and Brown's lens as OpenCV defines them, with derivatives, and how many of their numbers are free.
+"""The pinhole camera with Brown's distortion as OpenCV defines it, its derivatives, and which parameters are free.
 
     r^2 = x^2 + y^2,  q = 1 + k1 r^2 + k2 r^4 + k3 r^6
     u = fx (x q + 2 p1 x y + p2 (r^2 + 2 x^2)) + cx
     v = fy (y q + p1 (r^2 + 2 y^2) + 2 p2 x y) + cy
 
-Intrinsics are (9,) float64: fx, fy, cx, cy, k1, k2, p1, p2, k3, pixel centres at +0.5.
+Intrinsics are (9,) float64: fx, fy, cx, cy, k1, k2, p1, p2, k3. Pixel centres are at +0.5.
 """
 
 from __future__ import annotations
@@ -17,14 +17,17 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.photographs.lens import Lens
 
-COUNT = 9  # intrinsics of a camera
+LENS_INTRINSICS = 9  # parameters of a camera
 
 
 @dataclass(frozen=True)
-class Freedom:
-    """Which intrinsics are estimated; the rest keep their nominal values (square pixels, the middle, no distortion).
+class LensModel:
+    """Which intrinsics are estimated. The rest keep their nominal values (square pixels, centred, no distortion).
 
-    distortion: how many of k1, k2, p1 and p2 together, k3: 0 to 4.
+    Attributes:
+        centre: Whether the principal point is free.
+        aspect: Whether fx and fy differ.
+        distortion: How many of k1, k2, (p1 and p2), k3 are free: 0 to 4.
     """
 
     centre: bool
@@ -33,19 +36,19 @@ class Freedom:
 
     @property
     def basis(self) -> NDArray[np.float64]:
-        """(9, m) directions in which intrinsics move; fx and fy together where the aspect is fixed."""
+        """(9, m) directions in which intrinsics may move; fx and fy move together if the aspect is fixed."""
         columns = [[0, 1]] if not self.aspect else [[0], [1]]
         columns += [[2], [3]] if self.centre else []
         for group in ([[4]], [[5]], [[6], [7]], [[8]])[: self.distortion]:
             columns += group
-        basis = np.zeros((COUNT, len(columns)))
+        basis = np.zeros((LENS_INTRINSICS, len(columns)))
         for j, rows in enumerate(columns):
             basis[rows, j] = 1
         return basis
 
     @property
     def flags(self) -> int:
-        """For `cv2.calibrateCamera`."""
+        """Flags of `cv2.calibrateCamera`."""
         flags = 0 if self.aspect else cv2.CALIB_FIX_ASPECT_RATIO
         flags |= 0 if self.centre else cv2.CALIB_FIX_PRINCIPAL_POINT
         fixed = (cv2.CALIB_FIX_K1, cv2.CALIB_FIX_K2, cv2.CALIB_ZERO_TANGENT_DIST, cv2.CALIB_FIX_K3)
@@ -58,44 +61,65 @@ class Freedom:
         return " ".join(names + ["k1", "k2", "p1 p2", "k3"][: self.distortion])
 
 
-# from the stiffest to the loosest; which one is taken, the photographs decide
-LADDER = (
-    Freedom(False, False, 0),
-    Freedom(False, False, 1),
-    Freedom(True, False, 1),
-    Freedom(True, True, 2),
-    Freedom(True, True, 3),
-    Freedom(True, True, 4),
+# from the fewest free parameters to the most; cross-validation selects one
+LENS_MODEL_LADDER = (
+    LensModel(False, False, 0),
+    LensModel(False, False, 1),
+    LensModel(True, False, 1),
+    LensModel(True, True, 2),
+    LensModel(True, True, 3),
+    LensModel(True, True, 4),
 )
 
 
-def matrix(intrinsics: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(3, 3) K."""
+def camera_matrix(intrinsics: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) K.
+
+    Args:
+        intrinsics: (9,), see above.
+    """
     fx, fy, cx, cy = intrinsics[:4]
     return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]])
 
 
-def lens(intrinsics: NDArray[np.float64]) -> Lens | None:
-    """The distortion as a Lens, None where there is none."""
+def brown_lens(intrinsics: NDArray[np.float64]) -> Lens | None:
+    """The distortion as a Lens; None if there is none.
+
+    Args:
+        intrinsics: (9,), see above.
+    """
     k1, k2, p1, p2, k3 = (float(v) for v in intrinsics[4:])
     found = Lens("brown", (k1, k2, p1, p2, k3))
     return None if found.does_nothing else found
 
 
-def project(points: NDArray[np.float64], intrinsics: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, 3) points in camera axes, (9,) or (n, 9) intrinsics: (n, 2) pixels."""
-    return _project(points, intrinsics, None)
+def project_points(points: NDArray[np.float64], intrinsics: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 2) pixels of points.
+
+    Args:
+        points: (n, 3) in camera axes.
+        intrinsics: (9,) or (n, 9).
+    """
+    return _project_points(points, intrinsics, None)
 
 
-def project_with_derivatives(
+def project_points_with_derivatives(
     points: NDArray[np.float64], intrinsics: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """As `project`, with (n, 2, 3) derivatives by the points and (n, 2, 9) by the intrinsics."""
-    both = np.zeros((len(points), 2, 3)), np.zeros((len(points), 2, COUNT))
-    return _project(points, intrinsics, both), *both
+    """Pixels of points, and their derivatives.
+
+    Args:
+        points: (n, 3) in camera axes.
+        intrinsics: (9,) or (n, 9).
+
+    Returns:
+        (n, 2) pixels, (n, 2, 3) derivatives by the points and (n, 2, 9) by the intrinsics.
+    """
+    both = np.zeros((len(points), 2, 3)), np.zeros((len(points), 2, LENS_INTRINSICS))
+    return _project_points(points, intrinsics, both), *both
 
 
-def _project(
+def _project_points(
     points: NDArray[np.float64],
     intrinsics: NDArray[np.float64],
     derivatives: tuple[NDArray[np.float64], NDArray[np.float64]] | None,

@@ -23,20 +23,21 @@ from eigenfield.capture.locate import photographs_in
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.core.errors import CaptureError
 
-VIDEOS = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v")
-MOMENTS = 300  # of a video that are looked at, evenly spread
-NAMED = 5  # names that a line lists
+CHART_VIDEO_SUFFIXES = (".mp4", ".mov", ".avi", ".mkv", ".webm", ".m4v")
+CHART_MAX_VIDEO_FRAMES = 300  # evenly spread over the video
+CHART_MAX_LISTED_NAMES = 5  # in one line
 
 
 @dataclass(frozen=True)
 class ChartCamera:
     """The chart pictures of one camera.
 
-    name: as the photographs of a scene taken with it are to be called.
-    paths: its pictures, one a moment; or its one video.
-    moments: index into `Charts.moments` of each picture (of each frame that is looked at).
-    frames: of the video that are looked at, None for pictures.
-    size: (width, height) pixels.
+    Attributes:
+        name: The name that this camera's photographs of a scene will have.
+        paths: Its pictures, one a moment, or its one video.
+        moments: Index into `ChartPictures.moments` of each picture (of each frame that is used).
+        size: (width, height) pixels.
+        frames: Frames of the video that are used; None for pictures.
     """
 
     name: str
@@ -47,10 +48,15 @@ class ChartCamera:
 
     @property
     def is_video(self) -> bool:
+        """Whether the pictures are frames of a video."""
         return self.frames is not None
 
     def sample(self, count: int) -> ChartCamera:
-        """The same camera with `count` of its pictures at most, evenly spread."""
+        """The same camera with fewer pictures, evenly spread.
+
+        Args:
+            count: How many at most.
+        """
         if len(self.moments) <= count:
             return self
         chosen = np.unique(np.linspace(0, len(self.moments) - 1, count).round().astype(int)).tolist()
@@ -63,11 +69,14 @@ class ChartCamera:
 
 
 @dataclass(frozen=True)
-class Charts:
+class ChartPictures:
     """All chart pictures of a rig.
 
-    moments: names of the moments at which the pictures were taken, in order.
-    problems: one line each, for people.
+    Attributes:
+        root: The folder.
+        cameras: In natural order of their names.
+        moments: Names of the moments at which the pictures were taken, in order.
+        problems: One line each, for people.
     """
 
     root: Path
@@ -76,16 +85,21 @@ class Charts:
     problems: tuple[str, ...]
 
 
-def find_charts(root: Path) -> Charts:
-    """The chart pictures or videos below `root`; only headers are read.
+def find_charts(root: Path) -> ChartPictures:
+    """The chart pictures or videos below a folder; only headers are read.
 
-    A folder that holds nothing but one folder stands for that one. Pictures that cannot be read, that have another
-    size than the rest of their camera's, or that share a moment with another are named in `problems` and left out.
-    Raises CaptureError `capture-missing` or `charts-empty`.
+    A folder that holds nothing but one folder stands for that one. Pictures that cannot be read, differ in size from
+    the rest of their camera, or share a moment with another are listed in `problems` and left out.
+
+    Args:
+        root: The folder.
+
+    Raises:
+        CaptureError: `capture-missing`: no such folder. `charts-empty`: it holds no readable pictures.
     """
     if not root.is_dir():
         raise CaptureError("capture-missing", "is no folder of chart pictures", path=root, remedy="check the path")
-    root = _descended(root)
+    root = _descend_folders(root)
     videos = _videos_by_camera(root)
     if videos:
         return _from_videos(root, videos)
@@ -100,10 +114,14 @@ def find_charts(root: Path) -> Charts:
     return _from_pictures(root, by_camera)
 
 
-def frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]]:
-    """The moment and the grey picture (H, W) of each frame of a video camera, decoded one after the other.
+def decode_frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]]:
+    """The moment and the (H, W) grey picture of each used frame of a video, decoded one after the other.
 
-    Raises CaptureError `video-unreadable` where the video is damaged before its last frame.
+    Args:
+        camera: A camera with a video.
+
+    Raises:
+        CaptureError: `video-unreadable`: the video is damaged before its last used frame.
     """
     assert camera.frames is not None
     wanted = dict(zip(camera.frames, camera.moments, strict=True))
@@ -119,13 +137,20 @@ def frames(camera: ChartCamera) -> Iterator[tuple[int, NDArray[np.uint8]]]:
         raise _unreadable_video(path, error) from error
 
 
-def grey_picture(path: Path) -> NDArray[np.uint8]:
-    """A photograph as (H, W) grey levels, upright; CaptureError as `decode` raises."""
+def read_grey_picture(path: Path) -> NDArray[np.uint8]:
+    """A photograph as (H, W) uint8 grey levels, upright.
+
+    Args:
+        path: The file.
+
+    Raises:
+        CaptureError: As `decode`.
+    """
     colours, _ = decode(path)
     return np.asarray(np.rint(cv2.cvtColor(colours, cv2.COLOR_RGB2GRAY) * 255), np.uint8)
 
 
-def _descended(root: Path) -> Path:
+def _descend_folders(root: Path) -> Path:
     """Down through folders that hold nothing of ours but one other folder."""
     while not photographs_in(root) and not _videos_in(root):
         inner = [folder for folder in _folders(root) if photographs_in(folder) or _videos_in(folder)]
@@ -142,14 +167,18 @@ def _descended(root: Path) -> Path:
 def _folders(root: Path) -> list[Path]:
     return sorted(
         (path for path in root.iterdir() if path.is_dir() and not path.name.startswith(".")),
-        key=lambda path: (_natural(path.name), path.name),
+        key=lambda path: (_natural_key(path.name), path.name),
     )
 
 
 def _videos_in(folder: Path) -> list[Path]:
     return sorted(
-        (p for p in folder.iterdir() if p.suffix.lower() in VIDEOS and not p.name.startswith(".") and p.is_file()),
-        key=lambda path: (_natural(path.name), path.name),
+        (
+            p
+            for p in folder.iterdir()
+            if p.suffix.lower() in CHART_VIDEO_SUFFIXES and not p.name.startswith(".") and p.is_file()
+        ),
+        key=lambda path: (_natural_key(path.name), path.name),
     )
 
 
@@ -182,7 +211,14 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
 
 
 def split_name(stem: str) -> tuple[str, str]:
-    """("left", "1") of left01, left_01 or 01_left; the number is "" where there is none."""
+    """The camera and the number in a file name: ("left", "1") of left01, left_01 or 01_left.
+
+    Args:
+        stem: The name without extension.
+
+    Returns:
+        The rest of the name, and the number without leading zeros, "" if there is none.
+    """
     if match := re.fullmatch(r"(.*?)[\s_.-]*([0-9]+)", stem):
         return match[1], str(int(match[2]))
     if match := re.fullmatch(r"([0-9]+)[\s_.-]*(.*)", stem):
@@ -190,18 +226,18 @@ def split_name(stem: str) -> tuple[str, str]:
     return stem, ""
 
 
-def _natural(name: str) -> list[tuple[int, str]]:
-    """cam_2 before cam_10."""
+def _natural_key(name: str) -> list[tuple[int, str]]:
+    """Sorts cam_2 before cam_10."""
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"([0-9]+)", name.casefold())]
 
 
-def _from_pictures(root: Path, by_camera: dict[str, list[tuple[str, Path]]]) -> Charts:
+def _from_pictures(root: Path, by_camera: dict[str, list[tuple[str, Path]]]) -> ChartPictures:
     problems: list[str] = []
-    kept = {name: _usable(name, pictures, problems) for name, pictures in by_camera.items()}
-    moments = sorted({moment for pictures in kept.values() for moment in pictures}, key=lambda m: (_natural(m), m))
+    kept = {name: _usable_pictures(name, pictures, problems) for name, pictures in by_camera.items()}
+    moments = sorted({moment for pictures in kept.values() for moment in pictures}, key=lambda m: (_natural_key(m), m))
     index = {moment: i for i, moment in enumerate(moments)}
     cameras = []
-    for name in sorted(kept, key=lambda name: (_natural(name), name)):
+    for name in sorted(kept, key=lambda name: (_natural_key(name), name)):
         pictures = sorted(kept[name].items(), key=lambda item: index[item[0]])
         if pictures:
             size = pictures[0][1][1]
@@ -213,13 +249,13 @@ def _from_pictures(root: Path, by_camera: dict[str, list[tuple[str, Path]]]) -> 
         raise CaptureError(
             "charts-empty", f"none of its pictures can be read ({problems[0]})", path=root, remedy="copy them again"
         )
-    return Charts(root, tuple(cameras), tuple(moments), tuple(problems))
+    return ChartPictures(root, tuple(cameras), tuple(moments), tuple(problems))
 
 
-def _usable(
+def _usable_pictures(
     name: str, pictures: Iterable[tuple[str, Path]], problems: list[str]
 ) -> dict[str, tuple[Path, tuple[int, int]]]:
-    """Path and size of each moment's picture, all of one size; what is left out is named in `problems`."""
+    """Path and size of each moment's picture, all of one size; the rest is listed in `problems`."""
     found: dict[str, tuple[Path, tuple[int, int]]] = {}
     for moment, path in pictures:
         try:
@@ -235,13 +271,15 @@ def _usable(
     if len(sizes) > 1:
         usual = max(sizes, key=lambda size: (sizes[size], size))
         odd = [moment for moment, (_, size) in found.items() if size != usual]
-        shown = ", ".join(printable(found[m][0].name) for m in odd[:NAMED]) + (" .." if len(odd) > NAMED else "")
+        shown = ", ".join(printable(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES]) + (
+            " .." if len(odd) > CHART_MAX_LISTED_NAMES else ""
+        )
         problems.append(f"camera {name}: {len(odd)} pictures are not {usual[0]}x{usual[1]} (left out): {shown}")
         found = {moment: value for moment, value in found.items() if value[1] == usual}
     return found
 
 
-def _from_videos(root: Path, videos: dict[str, Path]) -> Charts:
+def _from_videos(root: Path, videos: dict[str, Path]) -> ChartPictures:
     problems: list[str] = []
     lengths: dict[str, tuple[int, tuple[int, int]]] = {}
     for name, path in videos.items():
@@ -256,20 +294,20 @@ def _from_videos(root: Path, videos: dict[str, Path]) -> Charts:
     counts = {name: count for name, (count, _) in lengths.items()}
     shared = min(counts.values())
     if max(counts.values()) != shared:
-        said = ", ".join(f"{name} {count}" for name, count in counts.items())
-        problems.append(f"the videos differ in length ({said} frames): frame i of each is taken as the same moment")
-    step = -(-shared // MOMENTS)
+        counted = ", ".join(f"{name} {count}" for name, count in counts.items())
+        problems.append(f"the videos differ in length ({counted} frames): frame i of each is taken as the same moment")
+    step = -(-shared // CHART_MAX_VIDEO_FRAMES)
     chosen = tuple(range(0, shared, step))
     moments = tuple(f"frame {frame}" for frame in chosen)
     cameras = tuple(
         ChartCamera(name, (videos[name],), tuple(range(len(chosen))), size, chosen)
         for name, (_, size) in lengths.items()
     )
-    return Charts(root, cameras, moments, tuple(problems))
+    return ChartPictures(root, cameras, moments, tuple(problems))
 
 
 def _video_length(path: Path) -> tuple[int, tuple[int, int]]:
-    """Frames, by counting packets (what the header says is often wrong), and size."""
+    """Number of frames, by counting packets (headers are often wrong), and size."""
     try:
         with av.open(str(path)) as container:
             if not container.streams.video:

@@ -1,7 +1,7 @@
-"""pycolmap, quiet, and able to be interrupted.
+"""pycolmap, silenced and interruptible.
 
-COLMAP logs to standard error from C++; nothing of it concerns the person at the terminal. Signals reach only the main
-thread of the interpreter, and only between its own instructions: long calls therefore run in another.
+COLMAP logs to standard error from C++, which does not concern the person at the terminal. Python delivers signals only
+to the main thread, between its own instructions. Long calls therefore run in another thread.
 """
 
 from __future__ import annotations
@@ -14,14 +14,16 @@ from typing import Any, TypeVar
 
 T = TypeVar("T")
 
-FATAL = 3  # glog's severity
-POLL = 0.1  # seconds
+COLMAP_LOG_FATAL = 3  # severity of glog
+COLMAP_POLL_SECONDS = 0.1
 
 
 @contextlib.contextmanager
-def _signals_held_back() -> Iterator[None]:
-    """Ctrl-C and SIGTERM arrive at the end of the block: inside pycolmap's initialisation the first hangs, and glog
-    takes the second for itself, to die by it without cleaning up."""
+def _hold_back_signals() -> Iterator[None]:
+    """Deliver Ctrl-C and SIGTERM at the end of the block.
+
+    Inside pycolmap's initialisation, Ctrl-C hangs, and glog takes SIGTERM for itself and dies without cleaning up.
+    """
     caught: list[int] = []
     handlers: dict[int, Any] = {}
     with contextlib.suppress(ValueError):  # not in the main thread, where none arrive
@@ -37,23 +39,24 @@ def _signals_held_back() -> Iterator[None]:
         signal.raise_signal(late)
 
 
-with _signals_held_back():
+with _hold_back_signals():
     import pycolmap as pycolmap  # the other modules import it from here
 
-pycolmap.logging.minloglevel = FATAL
+pycolmap.logging.minloglevel = COLMAP_LOG_FATAL
 pycolmap.logging.logtostderr = False
-pycolmap.logging.stderrthreshold = FATAL
+pycolmap.logging.stderrthreshold = COLMAP_LOG_FATAL
 
 
 class StoppedError(Exception):
     """Raised within the work when the waiting thread has given up."""
 
 
-def interruptible(work: Callable[[Callable[[], None]], T]) -> T:
-    """`work(check)` in a thread of its own: what it returns or raises.
+def run_interruptibly(work: Callable[[Callable[[], None]], T]) -> T:
+    """Run work in a thread of its own, and return or raise what it returns or raises.
 
-    `work` calls `check` now and then, which ends it (by an exception) once the waiting thread was interrupted; the
-    interruption goes on when the work has ended.
+    Args:
+        work: Is called with a function `check`, which it must call now and then. `check` raises once the waiting thread
+            was interrupted. The interruption continues when the work has ended.
     """
     stop = threading.Event()
     result: list[T] = []
@@ -73,7 +76,7 @@ def interruptible(work: Callable[[Callable[[], None]], T]) -> T:
     thread.start()
     try:
         while thread.is_alive():
-            thread.join(POLL)
+            thread.join(COLMAP_POLL_SECONDS)
     except BaseException:
         stop.set()
         thread.join()

@@ -1,7 +1,7 @@
-"""SIFT features of photographs: keypoints at full resolution, descriptors, and the colour beneath each.
+"""SIFT features of photographs: keypoints at full resolution, descriptors, and the colour at each keypoint.
 
 Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 2004; root-normalised (Arandjelović and
-Zisserman, CVPR 2012); pooled over sizes where there is little texture (Dong and Soatto, CVPR 2015).
+Zisserman, CVPR 2012); with domain-size pooling where there is little texture (Dong and Soatto, CVPR 2015).
 """
 
 from __future__ import annotations
@@ -25,36 +25,42 @@ from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress, track
 from eigenfield.runtime.parallel import parallel_stream
 
-LUMA = np.array([0.299, 0.587, 0.114], np.float32)
-MASK_MIDDLE = 0.5
-AT_ONCE = threading.BoundedSemaphore(4)  # extractions: each takes half a gigabyte, however many processors there are
-LITTLE_TEXTURE = 2500  # features of the median photograph, below which weaker ones are looked for
+FEATURE_LUMA_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
+FEATURE_MASK_THRESHOLD = 0.5
+# each extraction takes half a gigabyte, however many processors there are
+FEATURE_EXTRACTION_SLOTS = threading.BoundedSemaphore(4)
+FEATURE_MIN_MEDIAN_COUNT = 2500  # in the median photograph: below, weaker features are searched
 
 
 @dataclass(frozen=True)
 class FeatureOptions:
-    """How features are looked for.
+    """How features are searched.
 
-    side: pixels; longer photographs are reduced for the search, not for the coordinates.
-    most: features a photograph, the largest first. peak: of the difference of Gaussians, 0..1; lower finds weaker ones.
-    pooled: descriptors averaged over sizes: two to three times slower, a few per cent more matches.
+    Attributes:
+        max_side: Longer side in pixels at which features are searched; coordinates are those of the full photograph.
+        max_features: Features a photograph; the largest are kept.
+        peak_threshold: Of the difference of Gaussians, 0..1; a lower one finds weaker features.
+        domain_size_pooling: Average descriptors over sizes: two to three times slower, a few per cent more matches.
     """
 
-    side: int = 1600
-    most: int = 6000
-    peak: float = 0.0067
-    pooled: bool = False
+    max_side: int = 1600
+    max_features: int = 6000
+    peak_threshold: float = 0.0067
+    domain_size_pooling: bool = False
 
 
-WEAK = FeatureOptions(peak=0.002, pooled=True)
+WEAK_FEATURE_OPTIONS = FeatureOptions(peak_threshold=0.002, domain_size_pooling=True)
 
 
 @dataclass(frozen=True, eq=False)
 class Features:
     """The features of one photograph, the largest first.
 
-    points: (n, 2) float64 pixels of the photograph, centres at +0.5.
-    scales: (n,) float32 pixels. descriptors: (n, 128) uint8 of length 512. colours: (n, 3) uint8.
+    Attributes:
+        points: (n, 2) float64 pixels of the photograph, centres at +0.5.
+        scales: (n,) float32 pixels.
+        descriptors: (n, 128) uint8 of norm 512.
+        colours: (n, 3) uint8.
     """
 
     points: NDArray[np.float64]
@@ -66,48 +72,68 @@ class Features:
         return len(self.points)
 
     def subset(self, chosen: NDArray[np.bool_]) -> Features:
-        """Those that `chosen` (n,) says."""
+        """Some of the features.
+
+        Args:
+            chosen: (n,) which.
+        """
         return Features(self.points[chosen], self.scales[chosen], self.descriptors[chosen], self.colours[chosen])
 
-    def at(self, points: NDArray[np.float64]) -> Features:
-        """The same features at other places."""
+    def with_points(self, points: NDArray[np.float64]) -> Features:
+        """The same features at other places.
+
+        Args:
+            points: (n, 2) pixels.
+        """
         return replace(self, points=points)
 
 
 def extract_features(
     photos: PhotoSet, options: FeatureOptions | None = None, progress: Progress | None = None
 ) -> list[Features | CaptureError]:
-    """The features of every photograph; the error in place of those of one that cannot be read.
+    """The features of every photograph, or the error for a photograph that cannot be read.
 
-    options: None looks with the usual ones, and with WEAK where the median photograph has few.
+    Args:
+        photos: The photographs.
+        options: How features are searched. None: the default, and WEAK_FEATURE_OPTIONS if the median photograph has
+            few.
+        progress: Called for each photograph.
     """
     chosen = FeatureOptions() if options is None else options
     found = _extract(photos.shots, chosen, "features", progress)
     counts = [len(features) for features in found if isinstance(features, Features)]
-    if options is None and counts and np.median(counts) < LITTLE_TEXTURE:
-        found = _extract(photos.shots, WEAK, "weaker features", progress)
+    if options is None and counts and np.median(counts) < FEATURE_MIN_MEDIAN_COUNT:
+        found = _extract(photos.shots, WEAK_FEATURE_OPTIONS, "weaker features", progress)
     return found
 
 
 def _extract(
     shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
-    def one(shot: Shot) -> Features | CaptureError:
+    def extract(shot: Shot) -> Features | CaptureError:
         try:
-            return features_of(shot, options)
+            return extract_features_of(shot, options)
         except CaptureError as error:
             return error
 
-    return list(track(parallel_stream(one, shots), stage, len(shots), progress))
+    return list(track(parallel_stream(extract, shots), stage, len(shots), progress))
 
 
-def features_of(shot: Shot, options: FeatureOptions) -> Features:
-    """The features of one photograph, where its mask and alpha count it. Raises CaptureError as `decode` does."""
+def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
+    """The features of one photograph where its mask and alpha allow.
+
+    Args:
+        shot: The photograph.
+        options: How features are searched.
+
+    Raises:
+        CaptureError: As `decode`.
+    """
     pixels, mask = decode_masked(shot.path, shot.upright, shot.width, shot.height, shot.mask)
     height, width = pixels.shape[:2]
-    scale = min(1.0, options.side / max(width, height))
+    scale = min(1.0, options.max_side / max(width, height))
     size = max(1, round(width * scale)), max(1, round(height * scale))
-    grey = pixels @ LUMA
+    grey = pixels @ FEATURE_LUMA_WEIGHTS
     if scale < 1:
         grey = np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA))
     keypoints, descriptors = _sift(np.clip(np.rint(grey * 255), 0, 255).astype(np.uint8), options)
@@ -115,10 +141,10 @@ def features_of(shot: Shot, options: FeatureOptions) -> Features:
     points = keypoints[:, :2].astype(np.float64) * up
     scales = np.hypot(keypoints[:, 2], keypoints[:, 4]) * np.float32(up.mean())
     column, row = np.clip(points.astype(np.int64), 0, [width - 1, height - 1]).T
-    counts = np.ones(len(points), bool) if mask is None else mask[row, column] > MASK_MIDDLE
-    # the largest first, ties by place: the file order of the extractor is no promise
+    counts = np.ones(len(points), bool) if mask is None else mask[row, column] > FEATURE_MASK_THRESHOLD
+    # the largest first, ties by place: the extractor promises no order
     order = np.lexsort((points[:, 1], points[:, 0], -scales))
-    order = order[counts[order]][: options.most]
+    order = order[counts[order]][: options.max_features]
     colours = np.rint(pixels[row, column] * 255).astype(np.uint8)
     return Features(points[order], scales[order], np.ascontiguousarray(descriptors[order]), colours[order])
 
@@ -126,18 +152,18 @@ def features_of(shot: Shot, options: FeatureOptions) -> Features:
 def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
     """Keypoints (n, 6) x, y and the 2x2 shape, and descriptors (n, 128).
 
-    By way of a file: pycolmap's extractor of arrays keeps the interpreter to itself while it works.
+    The picture goes through a file: pycolmap's extractor of arrays holds the interpreter lock while it works.
     """
     settings = pycolmap.FeatureExtractionOptions()
     settings.num_threads = 1
     settings.use_gpu = False
-    settings.sift.max_num_features = 2 * options.most  # it drops whole octaves: more are asked for than are kept
-    settings.sift.peak_threshold = options.peak
-    settings.sift.domain_size_pooling = options.pooled
+    settings.sift.max_num_features = 2 * options.max_features  # COLMAP drops whole octaves: ask for more than are kept
+    settings.sift.peak_threshold = options.peak_threshold
+    settings.sift.domain_size_pooling = options.domain_size_pooling
     with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:
         place = Path(folder)
         Image.fromarray(grey).save(place / "grey.png", compress_level=1)
-        with AT_ONCE:
+        with FEATURE_EXTRACTION_SLOTS:
             pycolmap.extract_features(
                 place / "features.db",
                 place,

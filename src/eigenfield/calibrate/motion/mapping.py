@@ -1,6 +1,6 @@
 """Incremental structure from motion over verified matches (Schönberger and Frahm, CVPR 2016), by COLMAP, in memory.
 
-One thread throughout: COLMAP's bundle adjustment sums in another order with more.
+It runs in one thread: with more, COLMAP's bundle adjustment sums in another order.
 """
 
 from __future__ import annotations
@@ -13,33 +13,56 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.motion.colmap_core import interruptible, pycolmap
-from eigenfield.calibrate.motion.matching import FEWEST_INLIERS, Match
+from eigenfield.calibrate.motion.colmap_core import pycolmap, run_interruptibly
+from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match
 from eigenfield.core.progress import Progress
 
-SMALLEST_MODEL = 3  # views
-LOOSE_INLIERS, LOOSE_RATIO = 14, 0.15  # for photographs that the usual thresholds leave over
-FEWEST_OBSERVATIONS = 14  # points that a registered view must see
-SMALLEST_ANGLE = 0.5  # degrees between the rays of a point that is kept
-LIMITS = (4.0, 3.5, 3.0)  # spreads of the residuals beyond which a point is dropped, round after round
-ERRORS = (0.5, 4.0)  # pixels between which that limit is held
-SPREADS = (0.15, 1.5)  # pixels between which the scale of the loss is held
-NORMAL = 1.4826  # standard deviation of a normal distribution over its median deviation
+
+@dataclass(frozen=True)
+class MappingTuning:
+    """Constants of `map_views`.
+
+    Attributes:
+        min_views: Views of the smallest model.
+        relaxed_min_inliers: Points that must agree for a photograph that the usual thresholds leave over.
+        relaxed_min_inlier_ratio: Fraction of its points that must agree.
+        min_observations: Points that a registered view must see.
+        min_angle_degrees: Angle between the rays of a point that is kept.
+        outlier_spreads: Spreads of the residuals beyond which a point is dropped, one a round.
+        outlier_range_pixels: Bounds of that limit.
+        loss_range_pixels: Bounds of the loss function's scale.
+        sigma_per_median: Standard deviation of a normal distribution over its median absolute deviation.
+    """
+
+    min_views: int = 3
+    relaxed_min_inliers: int = 14
+    relaxed_min_inlier_ratio: float = 0.15
+    min_observations: int = 14
+    min_angle_degrees: float = 0.5
+    outlier_spreads: tuple[float, ...] = (4.0, 3.5, 3.0)
+    outlier_range_pixels: tuple[float, float] = (0.5, 4.0)
+    loss_range_pixels: tuple[float, float] = (0.15, 1.5)
+    sigma_per_median: float = 1.4826
+
+
+MAPPING_TUNING = MappingTuning()
 
 
 @dataclass(frozen=True, eq=False)
-class Model:
-    """What came out of the mapper.
+class SparseModel:
+    """A sparse reconstruction.
 
-    reconstruction: COLMAP's; image k + 1 is photograph k.
-    registered: photographs in it, in order. tried: those that were lost again because too little held.
-    others: photographs of smaller models that could not be joined, largest first.
+    Attributes:
+        reconstruction: COLMAP's reconstruction; image k + 1 is photograph k.
+        registered: Photographs in it, in order.
+        deregistered: Photographs that were removed again because too few of their points held.
+        separate: Photographs of smaller models that could not be joined, largest first.
     """
 
     reconstruction: Any
     registered: tuple[int, ...]
-    tried: tuple[int, ...]
-    others: tuple[tuple[int, ...], ...]
+    deregistered: tuple[int, ...]
+    separate: tuple[tuple[int, ...], ...]
 
 
 def map_views(
@@ -50,21 +73,27 @@ def map_views(
     fixed: bool,
     seed: int = 0,
     progress: Progress | None = None,
-) -> Model | None:
-    """Poses and points of the largest set of photographs that hold together; None where nothing does.
+) -> SparseModel | None:
+    """Poses and points of the largest set of photographs that fit together; None if there is none.
 
-    points: (n, 2) features of each photograph, in pixels of its camera. cameras: pycolmap cameras.
-    shared: each photograph's camera. fixed: the cameras' intrinsics are not touched.
+    Args:
+        points: (n, 2) features of each photograph, in pixels of its camera.
+        cameras: pycolmap cameras.
+        shared: Index of each photograph's camera.
+        matches: Verified matches.
+        fixed: The intrinsics are not refined.
+        seed: Of RANSAC.
+        progress: Called for each registered photograph.
     """
 
-    def work(check: Callable[[], None]) -> Model | None:
+    def work(check: Callable[[], None]) -> SparseModel | None:
         database = _database(points, cameras, shared, matches)
         try:
             return _map(database, len(points), fixed, seed, check, progress)
         finally:
             database.close()
 
-    return interruptible(work)
+    return run_interruptibly(work)
 
 
 def _database(
@@ -81,7 +110,7 @@ def _database(
         rig.add_ref_sensor(camera.sensor_id)
         database.write_rig(rig, True)
     for number, (places, camera_index) in enumerate(zip(points, shared, strict=True), 1):
-        # names are only for people, and may repeat or hold what SQL does not: numbers do as well
+        # numbers, because names may repeat or hold characters that SQL does not
         image = pycolmap.Image(name=f"{number:06d}", camera_id=camera_index + 1, image_id=number)
         database.write_image(image, True)
         frame = pycolmap.Frame(frame_id=number, rig_id=camera_index + 1)
@@ -99,8 +128,8 @@ def _options(fixed: bool, seed: int) -> Any:
     options.num_threads = options.mapper.num_threads = 1
     options.random_seed = options.mapper.random_seed = options.triangulation.random_seed = seed
     options.extract_colors = False
-    options.min_model_size = SMALLEST_MODEL
-    options.min_num_matches = FEWEST_INLIERS
+    options.min_model_size = MAPPING_TUNING.min_views
+    options.min_num_matches = MATCHING_TUNING.min_inliers
     if fixed:
         options.ba_refine_focal_length = options.ba_refine_extra_params = options.ba_refine_principal_point = False
         options.mapper.abs_pose_refine_focal_length = options.mapper.abs_pose_refine_extra_params = False
@@ -109,32 +138,35 @@ def _options(fixed: bool, seed: int) -> Any:
 
 def _map(
     database: Any, count: int, fixed: bool, seed: int, check: Callable[[], None], progress: Progress | None
-) -> Model | None:
+) -> SparseModel | None:
     options = _options(fixed, seed)
     manager = pycolmap.ReconstructionManager()
     _run(options, database, manager, count, "cameras", check, progress)
     models = sorted(
         (manager.get(k) for k in range(manager.size())), key=lambda m: (-m.num_reg_images(), -m.num_points3D())
     )
-    if not models or models[0].num_reg_images() < SMALLEST_MODEL:
+    if not models or models[0].num_reg_images() < MAPPING_TUNING.min_views:
         return None
-    others = [_registered(model) for model in models[1:]]
+    others = [_registered_views(model) for model in models[1:]]
     best = pycolmap.Reconstruction(models[0])
     if best.num_reg_images() < count:
-        best = _loosened(best, _options(fixed, seed), database, count, check, progress)
+        best = _register_leftovers(best, _options(fixed, seed), database, count, check, progress)
     check()
-    before = set(_registered(best))
-    _polish(best, fixed)
-    registered = _registered(best)
-    if len(registered) < SMALLEST_MODEL:
+    before = set(_registered_views(best))
+    _adjust_and_filter(best, fixed)
+    registered = _registered_views(best)
+    if len(registered) < MAPPING_TUNING.min_views:
         return None
     rest = [tuple(sorted(set(other) - set(registered))) for other in others]
-    return Model(
-        best, registered, tuple(sorted(before - set(registered))), tuple(r for r in rest if len(r) >= SMALLEST_MODEL)
+    return SparseModel(
+        best,
+        registered,
+        tuple(sorted(before - set(registered))),
+        tuple(r for r in rest if len(r) >= MAPPING_TUNING.min_views),
     )
 
 
-def _registered(model: Any) -> tuple[int, ...]:
+def _registered_views(model: Any) -> tuple[int, ...]:
     return tuple(sorted(image - 1 for image in model.reg_image_ids()))
 
 
@@ -150,7 +182,7 @@ def _run(
     pipeline = pycolmap.IncrementalPipeline(options, database, manager)
     most = 0
 
-    def registered() -> None:
+    def report_registered() -> None:
         nonlocal most
         check()
         done = max((manager.get(k).num_reg_images() for k in range(manager.size())), default=0)
@@ -161,21 +193,24 @@ def _run(
     if progress is not None:
         progress(stage, 0, count)
     for event in ("INITIAL_IMAGE_PAIR_REG_CALLBACK", "NEXT_IMAGE_REG_CALLBACK"):
-        pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, registered)
+        pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, report_registered)
     pipeline.run()
     if progress is not None:
         progress(stage, count, count)
 
 
-def _loosened(
+def _register_leftovers(
     model: Any, loose: Any, database: Any, count: int, check: Callable[[], None], progress: Progress | None
 ) -> Any:
-    """The model with what registers when fewer points need to agree; `_polish` throws out what does not hold."""
-    loose.mapper.abs_pose_min_num_inliers = LOOSE_INLIERS
-    loose.mapper.abs_pose_min_inlier_ratio = LOOSE_RATIO
+    """The model with photographs that register when fewer points need to agree.
+
+    `_adjust_and_filter` removes those that do not hold.
+    """
+    loose.mapper.abs_pose_min_num_inliers = MAPPING_TUNING.relaxed_min_inliers
+    loose.mapper.abs_pose_min_inlier_ratio = MAPPING_TUNING.relaxed_min_inlier_ratio
     loose.triangulation.ignore_two_view_tracks = False
     manager = pycolmap.ReconstructionManager()
-    with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:  # a manager takes models from files alone
+    with tempfile.TemporaryDirectory(prefix="eigenfield-") as folder:  # a manager reads models only from files
         model.write(folder)
         manager.read(folder)
     _run(loose, database, manager, count, "cameras left over", check, progress)
@@ -184,12 +219,11 @@ def _loosened(
     )
 
 
-def _polish(model: Any, fixed: bool) -> None:
-    """Adjust everything to convergence under Cauchy's loss, and drop points that do not fit, then views that see too
-    few.
+def _adjust_and_filter(model: Any, fixed: bool) -> None:
+    """Bundle adjustment to convergence under Cauchy's loss; then drop outlier points and views that see too few points.
 
-    The loss's scale and the limit follow the residuals, whose spread differs tenfold from capture to capture; a fixed
-    limit of four pixels lets in enough wrong matches to turn the cameras of a small photograph by a degree.
+    The loss scale and the limit follow the residuals, whose spread differs tenfold between captures. A fixed limit of
+    four pixels lets in enough wrong matches to rotate the cameras of a small photograph by a degree.
     """
     settings = pycolmap.BundleAdjustmentOptions()
     settings.refine_focal_length = settings.refine_extra_params = not fixed
@@ -199,26 +233,26 @@ def _polish(model: Any, fixed: bool) -> None:
     settings.ceres.solver_options.num_threads = 1
     settings.ceres.solver_options.max_num_iterations = 100
     settings.ceres.solver_options.function_tolerance = 1e-9
-    for times in LIMITS:
-        settings.ceres.loss_function_scale = float(np.clip(_spread(model), *SPREADS))
+    for times in MAPPING_TUNING.outlier_spreads:
+        settings.ceres.loss_function_scale = float(np.clip(_residual_spread(model), *MAPPING_TUNING.loss_range_pixels))
         config = pycolmap.BundleAdjustmentConfig()
         for image_id in sorted(model.reg_image_ids()):
             config.add_image(image_id)
         config.fix_gauge(pycolmap.BundleAdjustmentGauge.TWO_CAMS_FROM_WORLD)
-        # not pycolmap.bundle_adjustment: that one turns COLMAP's log back on
+        # not pycolmap.bundle_adjustment, which turns COLMAP's log back on
         pycolmap.create_default_bundle_adjuster(settings, config, model).solve()
         observations = pycolmap.ObservationManager(model)
-        limit = float(np.clip(times * _spread(model), *ERRORS))
-        observations.filter_all_points3D(limit, SMALLEST_ANGLE)
+        limit = float(np.clip(times * _residual_spread(model), *MAPPING_TUNING.outlier_range_pixels))
+        observations.filter_all_points3D(limit, MAPPING_TUNING.min_angle_degrees)
         for image_id in sorted(model.reg_image_ids()):
             image = model.image(image_id)
-            if image.num_points3D < FEWEST_OBSERVATIONS:
+            if image.num_points3D < MAPPING_TUNING.min_observations:
                 observations.deregister_frame(image.frame_id)
-        if model.num_reg_images() < SMALLEST_MODEL:
+        if model.num_reg_images() < MAPPING_TUNING.min_views:
             return
 
 
-def _spread(model: Any) -> float:
+def _residual_spread(model: Any) -> float:
     """A robust standard deviation of the reprojection errors, pixels."""
     errors = []
     for image_id in sorted(model.reg_image_ids()):
@@ -227,4 +261,4 @@ def _spread(model: Any) -> float:
             pixel = image.project_point(model.point3D(seen.point3D_id).xyz)
             if pixel is not None:
                 errors.append(float(np.linalg.norm(pixel - seen.xy)))
-    return NORMAL * float(np.median(errors)) if errors else 0.0
+    return MAPPING_TUNING.sigma_per_median * float(np.median(errors)) if errors else 0.0

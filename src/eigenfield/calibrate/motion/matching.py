@@ -1,7 +1,7 @@
-"""Which photographs are compared, and which of their features are the same point: pairs, matches, verification.
+"""Which photographs are compared, and which of their features match: pairs, matches, geometric verification.
 
-Descriptors have the length 512 in whole numbers, so that their inner products are exact in float32 and a match does
-not depend on the order of sums. Every pair has a seed of its own: the result is the same at any number of threads.
+Descriptors are integer vectors of norm 512. Their inner products are exact in float32, so that a match does not depend
+on the order of summation. Every pair has its own seed. The result is therefore the same at any number of threads.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from threadpoolctl import threadpool_limits
 from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
 from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import Features
-from eigenfield.calibrate.motion.matching_kernels import best_two, keep_on_lines
-from eigenfield.capture.layout import Layout
+from eigenfield.calibrate.motion.matching_kernels import find_best_two, mask_off_lines
+from eigenfield.capture.layout import GridLayout
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.runtime.parallel import parallel_stream, pieces
@@ -26,28 +26,60 @@ from eigenfield.runtime.parallel import parallel_stream, pieces
 Matching = Literal["auto", "exhaustive", "similar", "grid", "positions"]
 Pair = tuple[int, int]
 
-EXHAUSTIVE = 24  # photographs up to which `auto` compares all with all
-PARTNERS = 14  # photographs that each is compared with otherwise
-REACH = 2  # steps of the grid
-LONG_STEPS = (4, 8)  # along rows and columns: wider base lines
-BLOCK = 1024  # rows of the similarity matrix at a time
-GLANCE = 2e12  # multiplications that choosing similar photographs may take
-FEWEST_GLANCED, MOST_GLANCED = 128, 1000  # features a photograph looked at for that
-LENGTH = 512.0
-RATIO, ANGLE = 0.8, 0.7  # of the best to the second best angle between descriptors; radians
-GUIDED_RATIO = 0.85
-ON_LINE = 3.0  # pixels
-ENOUGH = 400  # verified matches above which none is looked for along epipolar lines
-EPIPOLAR_ERROR = 4.0  # pixels at 2000 along the longer side
-FEWEST_INLIERS = 15
+
+@dataclass(frozen=True)
+class MatchingTuning:
+    """Constants of `choose_pairs` and `match_pairs`.
+
+    Attributes:
+        max_exhaustive: Photographs up to which `auto` compares all with all.
+        partners: Photographs that each is compared with otherwise.
+        grid_reach_steps: Neighbourhood in a grid.
+        grid_long_steps: Further steps along rows and columns, for wider baselines.
+        block_rows: Rows of the similarity matrix that are computed at a time.
+        preview_multiplications: Multiplications that the choice of similar photographs may take.
+        preview_min_features: Features a photograph that the choice compares, at least.
+        preview_max_features: Features a photograph that the choice compares, at most.
+        descriptor_length: Norm of a descriptor.
+        max_angle_ratio: Largest ratio of the best to the second-best angle between descriptors.
+        max_angle_radians: Largest angle between matching descriptors.
+        guided_max_angle_ratio: As `max_angle_ratio`, for matches along epipolar lines.
+        guided_line_pixels: Distance from an epipolar line within which features are compared.
+        guided_max_matches: Verified matches above which none is searched along epipolar lines.
+        epipolar_error_pixels: RANSAC threshold, for a longer side of 2000 pixels.
+        min_inliers: Verified matches of a pair.
+    """
+
+    max_exhaustive: int = 24
+    partners: int = 14
+    grid_reach_steps: int = 2
+    grid_long_steps: tuple[int, int] = (4, 8)
+    block_rows: int = 1024
+    preview_multiplications: float = 2e12
+    preview_min_features: int = 128
+    preview_max_features: int = 1000
+    descriptor_length: float = 512.0
+    max_angle_ratio: float = 0.8
+    max_angle_radians: float = 0.7
+    guided_max_angle_ratio: float = 0.85
+    guided_line_pixels: float = 3.0
+    guided_max_matches: int = 400
+    epipolar_error_pixels: float = 4.0
+    min_inliers: int = 15
+
+
+MATCHING_TUNING = MatchingTuning()
 
 
 @dataclass(frozen=True, eq=False)
 class Match:
-    """What two photographs have in common.
+    """The common features of two photographs.
 
-    first, second: their numbers, first < second. putative: matches before verification.
-    geometry: COLMAP's two-view geometry with the verified matches; None where nothing holds.
+    Attributes:
+        first: Index of the first photograph.
+        second: Index of the second, larger than `first`.
+        putative: Number of matches before verification.
+        geometry: COLMAP's two-view geometry with the verified matches; None if there is none.
     """
 
     first: int
@@ -57,26 +89,35 @@ class Match:
 
     @property
     def inliers(self) -> int:
+        """Number of verified matches."""
         return 0 if self.geometry is None else len(self.geometry.inlier_matches)
 
 
 def choose_pairs(
     features: Sequence[Features],
     matching: Matching,
-    layout: Layout | None,
+    layout: GridLayout | None,
     progress: Progress | None = None,
 ) -> list[Pair]:
     """Pairs (i, j), i < j, to compare, in order.
 
-    "exhaustive": all. "similar": each with the PARTNERS that share most of their largest features. "grid": neighbours
-    of the layout's rows and columns, with some long steps. "positions": the PARTNERS nearest in the layout. "auto":
-    all when there are few, the layout's where there is one, similar ones otherwise.
-    Raises OptionError as `check_matching`.
+    "exhaustive": all pairs. "similar": each photograph with the `partners` that share most of their largest features.
+    "grid": neighbours of the layout's rows and columns, with some long steps. "positions": the `partners` nearest in
+    the layout. "auto": all pairs if there are few, the layout's if there is one, similar photographs otherwise.
+
+    Args:
+        features: Of each photograph.
+        matching: One of these ways.
+        layout: Of the photographs, if known.
+        progress: Called while similar photographs are searched.
+
+    Raises:
+        OptionError: As `check_matching`.
     """
     check_matching(matching, layout)
     count = len(features)
     if matching == "auto":
-        if count <= EXHAUSTIVE:
+        if count <= MATCHING_TUNING.max_exhaustive:
             matching = "exhaustive"
         elif layout is None:
             matching = "similar"
@@ -85,13 +126,21 @@ def choose_pairs(
     if matching == "exhaustive":
         return [(i, j) for i in range(count) for j in range(i + 1, count)]
     if matching == "similar":
-        return _similar(features, progress)
+        return _similar_pairs(features, progress)
     assert layout is not None
-    return _grid_neighbours(layout) if matching == "grid" else _nearest(layout.positions)
+    return _grid_neighbours(layout) if matching == "grid" else _nearest_pairs(layout.positions)
 
 
-def check_matching(matching: str, layout: Layout | None) -> None:
-    """Before any work: OptionError `matching` (no way that is known), `matching-layout` (one that needs a layout)."""
+def check_matching(matching: str, layout: GridLayout | None) -> None:
+    """Check the way of matching before any work.
+
+    Args:
+        matching: A way of matching.
+        layout: Of the photographs, if known.
+
+    Raises:
+        OptionError: `matching`: there is no such way. `matching-layout`: it needs a layout.
+    """
     if matching not in get_args(Matching):
         raise OptionError(
             "matching", f"{matching!r} is no way to match", remedy=f"use one of {', '.join(get_args(Matching))}"
@@ -104,14 +153,14 @@ def check_matching(matching: str, layout: Layout | None) -> None:
         )
 
 
-def _grid_neighbours(layout: Layout) -> list[Pair]:
+def _grid_neighbours(layout: GridLayout) -> list[Pair]:
     node: dict[tuple[int, int], list[int]] = {}
     for index, key in enumerate(zip(layout.rows.tolist(), layout.columns.tolist(), strict=True)):
         node.setdefault(key, []).append(index)
-    near = range(-REACH, REACH + 1)
+    near = range(-MATCHING_TUNING.grid_reach_steps, MATCHING_TUNING.grid_reach_steps + 1)
     steps = {(r, c) for r in near for c in near}
-    steps |= {(s * sign, 0) for s in LONG_STEPS for sign in (-1, 1)} | {
-        (0, s * sign) for s in LONG_STEPS for sign in (-1, 1)
+    steps |= {(s * sign, 0) for s in MATCHING_TUNING.grid_long_steps for sign in (-1, 1)} | {
+        (0, s * sign) for s in MATCHING_TUNING.grid_long_steps for sign in (-1, 1)
     }
     pairs = {
         (i, j)
@@ -124,35 +173,44 @@ def _grid_neighbours(layout: Layout) -> list[Pair]:
     return sorted(pairs)
 
 
-def _nearest(positions: NDArray[np.float64]) -> list[Pair]:
+def _nearest_pairs(positions: NDArray[np.float64]) -> list[Pair]:
     pairs: set[Pair] = set()
     for i, place in enumerate(positions):
         order = np.argsort(((positions - place) ** 2).sum(axis=1), kind="stable")
-        others = [int(j) for j in order if j != i][:PARTNERS]
+        others = [int(j) for j in order if j != i][: MATCHING_TUNING.partners]
         pairs |= {(min(i, j), max(i, j)) for j in others}
     return sorted(pairs)
 
 
-def _similar(features: Sequence[Features], progress: Progress | None) -> list[Pair]:
-    """Each photograph's PARTNERS by matches among a few large features (Wu, *Towards Linear-Time Incremental
-    Structure from Motion*, 3DV 2013), and its neighbours by name, which were often taken one after the other."""
+def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> list[Pair]:
+    """Each photograph's partners by matches among a few large features, and its neighbours by name.
+
+    Wu, *Towards Linear-Time Incremental Structure from Motion*, 3DV 2013. Neighbours by name were often taken in
+    sequence.
+    """
     count = len(features)
     every = [(i, j) for i in range(count) for j in range(i + 1, count)]
-    glanced = int(np.clip(np.sqrt(GLANCE / (256 * max(len(every), 1))), FEWEST_GLANCED, MOST_GLANCED))
-    large = [_as_float(f.descriptors[:glanced]) for f in features]
+    preview = int(
+        np.clip(
+            np.sqrt(MATCHING_TUNING.preview_multiplications / (256 * max(len(every), 1))),
+            MATCHING_TUNING.preview_min_features,
+            MATCHING_TUNING.preview_max_features,
+        )
+    )
+    large = [_as_float(f.descriptors[:preview]) for f in features]
 
-    def shared(i: int) -> list[int]:
+    def count_shared(i: int) -> list[int]:
         return [len(mutual_matches(large[i], large[j])) for j in range(i + 1, count)]
 
     score = np.zeros((count, count), np.int64)
     with threadpool_limits(1, "blas"):
-        rows = track(parallel_stream(shared, range(count)), "similar photographs", count, progress)
+        rows = track(parallel_stream(count_shared, range(count)), "similar photographs", count, progress)
         for i, row in enumerate(rows):
             score[i, i + 1 :] = row
     score += score.T
     pairs = {(i, i + 1) for i in range(count - 1)}
     for i in range(count):
-        best = np.argsort(-score[i], kind="stable")[:PARTNERS]
+        best = np.argsort(-score[i], kind="stable")[: MATCHING_TUNING.partners]
         pairs |= {(min(i, int(j)), max(i, int(j))) for j in best if score[i, j] > 0}
     return sorted(pairs)
 
@@ -164,27 +222,37 @@ def match_pairs(
     seed: int = 0,
     progress: Progress | None = None,
 ) -> list[Match]:
-    """Matches of each pair that hold under one two-view geometry.
+    """Matches of each pair, verified by one two-view geometry.
 
-    cameras: a pycolmap.Camera for each photograph; where both have a prior focal length, the essential matrix is
-    estimated, else the fundamental.
+    If both cameras have a prior focal length the essential matrix is estimated, else the fundamental matrix.
+
+    Args:
+        features: Of each photograph.
+        cameras: A pycolmap.Camera for each photograph.
+        pairs: Pairs (i, j), i < j.
+        seed: Of RANSAC.
+        progress: Called for each pair.
     """
     count = len(features)
 
-    def one(pair: Pair) -> Match:
+    def match(pair: Pair) -> Match:
         i, j = pair
-        return _match(features, cameras, i, j, (seed * 7919 + i * count + j) % 2**31)
+        return _match_pair(features, cameras, i, j, (seed * 7919 + i * count + j) % 2**31)
 
     with threadpool_limits(1, "blas"):
-        return list(track(parallel_stream(one, pairs), "matches", len(pairs), progress))
+        return list(track(parallel_stream(match, pairs), "matches", len(pairs), progress))
 
 
-def _match(features: Sequence[Features], cameras: Sequence[Any], i: int, j: int, seed: int) -> Match:
+def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j: int, seed: int) -> Match:
     a, b = features[i], features[j]
     left, right = _as_float(a.descriptors), _as_float(b.descriptors)
     matches = mutual_matches(left, right)
     geometry = _verify(a, b, cameras[i], cameras[j], matches, seed)
-    if geometry is not None and len(geometry.inlier_matches) < ENOUGH and geometry.F is not None:
+    if (
+        geometry is not None
+        and len(geometry.inlier_matches) < MATCHING_TUNING.guided_max_matches
+        and geometry.F is not None
+    ):
         guided = mutual_matches(left, right, (a.points, b.points, np.asarray(geometry.F)))
         both = np.unique(np.concatenate([guided, np.asarray(geometry.inlier_matches)]), axis=0)
         again = _verify(a, b, cameras[i], cameras[j], _one_to_one(both), seed)
@@ -200,12 +268,18 @@ def _as_float(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:
 def mutual_matches(
     left: NDArray[np.float32],
     right: NDArray[np.float32],
-    lines: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None = None,
+    epipolar: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> NDArray[np.int64]:
-    """(m, 2) rows that are each other's best and clearly better than the second best.
+    """Rows of two descriptor arrays that are each other's best match and clearly better than the second best.
 
-    left, right: (n, 128) descriptors of length 512 in whole numbers.
-    lines: points of both and the fundamental matrix; only features near each other's epipolar lines are compared.
+    Args:
+        left: (n, 128) integer descriptors of norm 512.
+        right: (m, 128) likewise.
+        epipolar: Points of both and the fundamental matrix. Only features near each other's epipolar lines are
+            compared.
+
+    Returns:
+        (k, 2) rows of `left` and `right`.
     """
     if len(left) == 0 or len(right) == 0:
         return np.zeros((0, 2), np.int64)
@@ -214,22 +288,22 @@ def mutual_matches(
     column = np.full(len(right), -1, np.int64)
     column_top = np.full(len(right), -1, np.float32)
     transposed = np.ascontiguousarray(right.T)
-    for start, stop in pieces(len(left), BLOCK):
+    for start, stop in pieces(len(left), MATCHING_TUNING.block_rows):
         similarity = left[start:stop] @ transposed
-        if lines is not None:
-            keep_on_lines(similarity, start, *lines, ON_LINE)
-        best_two(similarity, start, row, top, second, column, column_top)
-    angle = np.arccos(np.clip(top / LENGTH**2, 0, 1))
-    runner = np.arccos(np.clip(second / LENGTH**2, 0, 1))
-    ratio = RATIO if lines is None else GUIDED_RATIO
-    good = (row >= 0) & (angle <= ANGLE) & (angle <= ratio * runner)
+        if epipolar is not None:
+            mask_off_lines(similarity, start, *epipolar, MATCHING_TUNING.guided_line_pixels)
+        find_best_two(similarity, start, row, top, second, column, column_top)
+    angle = np.arccos(np.clip(top / MATCHING_TUNING.descriptor_length**2, 0, 1))
+    runner = np.arccos(np.clip(second / MATCHING_TUNING.descriptor_length**2, 0, 1))
+    ratio = MATCHING_TUNING.max_angle_ratio if epipolar is None else MATCHING_TUNING.guided_max_angle_ratio
+    good = (row >= 0) & (angle <= MATCHING_TUNING.max_angle_radians) & (angle <= ratio * runner)
     chosen = np.flatnonzero(good)
     chosen = chosen[column[row[chosen]] == chosen]
     return np.stack([chosen, row[chosen]], axis=1)
 
 
 def _one_to_one(matches: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Of matches that share a feature, the first."""
+    """The first of the matches that share a feature."""
     _, first = np.unique(matches[:, 0], return_index=True)
     matches = matches[np.sort(first)]
     _, first = np.unique(matches[:, 1], return_index=True)
@@ -238,14 +312,16 @@ def _one_to_one(matches: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _verify(a: Features, b: Features, first: Any, second: Any, matches: NDArray[np.int64], seed: int) -> Any:
     """COLMAP's two-view geometry, or None."""
-    if len(matches) < FEWEST_INLIERS:
+    if len(matches) < MATCHING_TUNING.min_inliers:
         return None
     options = pycolmap.TwoViewGeometryOptions()
-    options.min_num_inliers = FEWEST_INLIERS
+    options.min_num_inliers = MATCHING_TUNING.min_inliers
     options.ransac.random_seed = seed
-    options.ransac.max_error = EPIPOLAR_ERROR * max(first.width, first.height, second.width, second.height, 800) / 2000
+    options.ransac.max_error = (
+        MATCHING_TUNING.epipolar_error_pixels * max(first.width, first.height, second.width, second.height, 800) / 2000
+    )
     options.compute_relative_pose = False
     geometry = pycolmap.estimate_two_view_geometry(
         first, a.points, second, b.points, matches.astype(np.uint32), options
     )
-    return geometry if len(geometry.inlier_matches) >= FEWEST_INLIERS else None
+    return geometry if len(geometry.inlier_matches) >= MATCHING_TUNING.min_inliers else None

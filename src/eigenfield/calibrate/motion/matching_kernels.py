@@ -1,13 +1,4 @@
-"""Kernels of descriptor matching.
-
-`best_two`: of a block of the similarity matrix S = A B^T (rows i from `first`), the largest and second largest entry
-of every row, and the running largest of every column with its row; ties go to the lower index.
-
-`keep_on_lines`: sets to -1, so that `best_two` passes them over, those entries (i, j) whose points do not lie within
-`tolerance` pixels of each other's epipolar lines, l' = F x and l = F^T x' (x, x' homogeneous):
-
-    |x'^T F x| <= tolerance min(|F x|_2D, |F^T x'|_2D).
-"""
+"""Inner loops of descriptor matching."""
 
 from __future__ import annotations
 
@@ -22,7 +13,18 @@ I64 = NDArray[np.int64]
 
 
 @kernel()
-def best_two(similarity: F32, first: int, row: I64, top: F32, second: F32, column: I64, column_top: F32) -> None:
+def find_best_two(similarity: F32, first: int, row: I64, top: F32, second: F32, column: I64, column_top: F32) -> None:
+    """The two largest entries of every row, and the running largest of every column; ties go to the lower index.
+
+    Args:
+        similarity: (b, m) block of the similarity matrix S = A B^T.
+        first: Row of S at which the block begins.
+        row: (n,) column of the largest entry of each row, written.
+        top: (n,) its value, written.
+        second: (n,) the second-largest value, written.
+        column: (m,) row of the largest entry of each column, updated.
+        column_top: (m,) its value, updated.
+    """
     for i in range(similarity.shape[0]):
         best, runner, at = np.float32(-1), np.float32(-1), -1
         for j in range(similarity.shape[1]):
@@ -39,7 +41,20 @@ def best_two(similarity: F32, first: int, row: I64, top: F32, second: F32, colum
 
 
 @kernel()
-def keep_on_lines(similarity: F32, first: int, points1: F64, points2: F64, F: F64, tolerance: float) -> None:
+def mask_off_lines(similarity: F32, first: int, points1: F64, points2: F64, F: F64, tolerance: float) -> None:
+    """Set to -1 the entries whose points do not lie near each other's epipolar lines, so that they never match.
+
+    With l' = F x and l = F^T x' (x, x' homogeneous), an entry stays if |x'^T F x| <= tolerance min(|F x|_2D, |F^T
+    x'|_2D).
+
+    Args:
+        similarity: (b, m) block of the similarity matrix, changed in place.
+        first: Row of the matrix at which the block begins.
+        points1: (n, 2) pixels of the rows' features.
+        points2: (m, 2) pixels of the columns' features.
+        F: (3, 3) fundamental matrix.
+        tolerance: Pixels.
+    """
     count = similarity.shape[1]
     back = np.empty(count)
     for j in range(count):

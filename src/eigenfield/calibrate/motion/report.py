@@ -1,4 +1,4 @@
-"""What structure from motion found, as data for `report.json` and as lines for people."""
+"""The result of structure from motion, as data for `report.json` and as lines for people."""
 
 from __future__ import annotations
 
@@ -7,15 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from eigenfield.calibrate.motion.sfm import Motion
+from eigenfield.calibrate.motion.sfm import SfmResult
 from eigenfield.capture.calibration import printable
 
-SCHEMA = "eigenfield.calibrate/1"
+MOTION_REPORT_SCHEMA = "eigenfield.calibrate/1"
 
 
-def describe(motion: Motion) -> dict[str, Any]:
-    """JSON-able: `schema`, `registered` of `photographs`, `points`, `observations`, `reprojection` (mean and median
-    over the points, pixels), `lenses` (one for each that differs) and `views`, as `ViewReport`."""
+def describe_motion(motion: SfmResult) -> dict[str, Any]:
+    """JSON-able report.
+
+    Its keys are `schema`, `registered` of `photographs`, `points`, `observations`, `reprojection` (mean and median over
+    the points, pixels), `lenses` (one for each that differs) and `views`, as `ViewReport`.
+
+    Args:
+        motion: The result.
+    """
     errors = motion.points.errors
     lenses: dict[str, dict[str, Any]] = {}
     for view in motion.light_field.views:
@@ -27,7 +33,7 @@ def describe(motion: Motion) -> dict[str, Any]:
         }  # fmt: skip
         lenses.setdefault(repr(entry), {**entry, "views": 0})["views"] += 1
     return {
-        "schema": SCHEMA,
+        "schema": MOTION_REPORT_SCHEMA,
         "photographs": len(motion.report),
         "registered": len(motion.light_field),
         "points": len(motion.points),
@@ -38,8 +44,12 @@ def describe(motion: Motion) -> dict[str, Any]:
     }
 
 
-def in_words(report: dict[str, Any]) -> list[str]:
-    """One line a camera, then those that have none and why, then the whole."""
+def report_lines(report: dict[str, Any]) -> list[str]:
+    """One line a camera, then the photographs without a camera and why, then the summary.
+
+    Args:
+        report: Of `describe_motion`.
+    """
     views = report["views"]
     found = [view for view in views if view["registered"]]
     rows = [("camera", "features", "points", "error")]
@@ -53,7 +63,7 @@ def in_words(report: dict[str, Any]) -> list[str]:
     if lost:
         lines.append(f"without a camera: {len(lost)}")
         lines += [f"  {printable(view['name'])}: {view['reason']}" for view in lost]
-    lines += [f"lens of {lens['views']}: {_lens(lens)}" for lens in report["lenses"]]
+    lines += [f"lens of {lens['views']}: {_lens_line(lens)}" for lens in report["lenses"]]
     lines.append(
         f"{report['registered']} of {report['photographs']} photographs registered, {report['points']:,} points, "
         f"reprojection {report['reprojection']['mean']:.3f} px"
@@ -61,7 +71,7 @@ def in_words(report: dict[str, Any]) -> list[str]:
     return lines
 
 
-def _lens(lens: dict[str, Any]) -> str:
+def _lens_line(lens: dict[str, Any]) -> str:
     fx, fy = lens["focal"]
     focal = f"focal {fx:.2f}" if fx == fy else f"focal {fx:.2f} x {fy:.2f}"
     text = f"{lens['width']}x{lens['height']}, {focal}, centre {lens['principal'][0]:.2f}, {lens['principal'][1]:.2f}"

@@ -1,9 +1,9 @@
 """Structure from motion: cameras and sparse points from photographs alone.
 
-    features ─▶ pairs ─▶ verified matches ─▶ incremental mapping ─▶ the natural gauge ─▶ Motion
+    features ─▶ pairs ─▶ verified matches ─▶ incremental mapping ─▶ the natural gauge ─▶ SfmResult
 
-Photographs that find no place are left out and named with the reason. The same photographs, options and seed give the
-same cameras at any number of threads.
+Photographs that cannot be registered are left out and listed with the reason. The same photographs, options and seed
+give the same cameras at any number of threads.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.align import moved_camera, natural_gauge
-from eigenfield.calibrate.lenses import KnownLens, distorted, undistorted
+from eigenfield.calibrate.align import natural_gauge, transform_camera
+from eigenfield.calibrate.lenses import KnownLens, distort_to_pixels, undistort_pixels
+from eigenfield.calibrate.motion.cache import cached_features, cached_matches
 from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import Features
-from eigenfield.calibrate.motion.keep import kept_features, kept_matches
-from eigenfield.calibrate.motion.mapping import SMALLEST_MODEL, Model, map_views
-from eigenfield.calibrate.motion.matching import FEWEST_INLIERS, Match, Matching, check_matching
+from eigenfield.calibrate.motion.mapping import MAPPING_TUNING, SparseModel, map_views
+from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
 from eigenfield.capture.calibration import printable
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.lens import Lens
@@ -37,9 +37,9 @@ from eigenfield.runtime.stages import Stages
 
 log = logging.getLogger("eigenfield.calibrate")
 
-FEWEST_FEATURES = 60  # below, a photograph is called blurred or bare
-NOMINAL_FOCAL = 1.2  # of the longer side, where nothing says a focal length
-NAMED = 5  # names that a line lists
+SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
+SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known
+SFM_MAX_LISTED_NAMES = 5  # in one line
 NO_FEATURES: Features = Features(
     np.zeros((0, 2)), np.zeros(0, np.float32), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8)
 )
@@ -47,13 +47,18 @@ NO_FEATURES: Features = Features(
 
 @dataclass(frozen=True)
 class ViewReport:
-    """What became of one photograph.
+    """The outcome for one photograph.
 
-    registered: whether it has a camera now. reason: why not, for people; code: the same for scripts: "unreadable",
-        "few-features", "few-matches", "apart" (matches only others that have no camera), "no-pose" (matches, but no
-        pose explains them); both empty where it is registered.
-    features: found in it. partners: photographs that it shares verified matches with.
-    observations: points of the scene seen in it. error: mean reprojection error in pixels, None where not registered.
+    Attributes:
+        name: The photograph's name.
+        registered: Whether it has a camera now.
+        code: Why not, for scripts: "unreadable", "few-features", "few-matches", "apart" (it matches only others without
+            a camera), "no-pose" (it has matches, but no pose explains them); "" if it is registered.
+        reason: Why not, for people; "" if it is registered.
+        features: Features found in it.
+        partners: Photographs with which it shares verified matches.
+        observations: Points of the scene seen in it.
+        error: Mean reprojection error in pixels; None if it is not registered.
     """
 
     name: str
@@ -67,14 +72,14 @@ class ViewReport:
 
 
 @dataclass(frozen=True, eq=False)
-class Motion:
+class SfmResult:
     """The result of structure from motion.
 
-    light_field: the registered photographs with cameras and lenses, in the order of the set; those left out are named
-        in its problems. World: `natural_gauge`, the mean of the cameras at the origin, axes as theirs on average, the
-        median distance to the nearest camera the unit.
-    points: what was triangulated; its views count the light field's.
-    report: one entry for each photograph of the set, in order.
+    Attributes:
+        light_field: The registered photographs with cameras and lenses, in the order of the set; `problems` lists the
+            rest. The world is that of `natural_gauge`.
+        points: The triangulated points; their views are those of the light field.
+        report: One entry for each photograph of the set, in order.
     """
 
     light_field: LightField
@@ -91,35 +96,41 @@ def structure_from_motion(
     work: Path | None = None,
     seed: int = 0,
     progress: Progress | None = None,
-) -> Motion:
-    """Find the cameras of `photos`, and points of the scene.
+) -> SfmResult:
+    """Estimate the cameras of photographs, and points of the scene.
 
-    intrinsics: known ones, for all or one for each photograph: they are kept as they are. Without, a focal length and
-        one radial coefficient are estimated for each group of photographs of one size and one EXIF focal length.
-    camera_per_photo: estimate them for each photograph alone.
-    matching: which photographs are compared; see `matching.choose_pairs`.
-    work: a folder that keeps features and matches for the next run.
+    Args:
+        photos: The photographs.
+        intrinsics: Known ones, for all or for each photograph; they are not refined. Without, a focal length and one
+            radial coefficient are estimated for each group of photographs of one size and EXIF focal length.
+        camera_per_photo: Estimate them for each photograph separately.
+        matching: Which photographs are compared; see `choose_pairs`.
+        work: A folder that stores features and matches for the next run.
+        seed: Of RANSAC.
+        progress: Called in every stage.
 
-    Raises CaptureError: `too-few` photographs, `planar-rectified` (a two-plane capture has no perspective in which the
-    cameras could be told), `calibration-failed` (fewer than three fit together; the message says why); OptionError.
+    Raises:
+        CaptureError: `too-few`: too few photographs. `planar-rectified`: a two-plane capture, which has no perspective
+            that determines the cameras. `calibration-failed`: fewer than three fit together; the message says why.
+        OptionError: As `check_matching`; `intrinsics-count`.
     """
-    known = _known(intrinsics, photos)
-    _refuse(photos)
+    known = _check_intrinsics(intrinsics, photos)
+    _check_photographs(photos)
     check_matching(matching, photos.layout)
     stages = None if work is None else Stages(work)
-    found, key = kept_features(stages, photos, progress)
-    flat, features = _flattened([f if isinstance(f, Features) else NO_FEATURES for f in found], known)
+    found, key = cached_features(stages, photos, progress)
+    undistorted, features = _undistort_features([f if isinstance(f, Features) else NO_FEATURES for f in found], known)
     cameras, shared = _cameras(photos.shots, known, camera_per_photo)
     each = [cameras[k] for k in shared]
-    matches = kept_matches(stages, key, photos, flat, each, known, matching, seed, progress)
-    model = map_views([f.points for f in flat], cameras, shared, matches, known is not None, seed, progress)
+    matches = cached_matches(stages, key, photos, undistorted, each, known, matching, seed, progress)
+    model = map_views([f.points for f in undistorted], cameras, shared, matches, known is not None, seed, progress)
     report = _report(photos, found, matches, model)
     if model is None:
-        raise _failed(photos, report)
-    return _motion(photos, features, flat, known, model, report)
+        raise _failure_error(photos, report)
+    return _assemble(photos, features, undistorted, known, model, report)
 
 
-def _known(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
+def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
     if intrinsics is None:
         return None
     known = [intrinsics] * len(photos) if isinstance(intrinsics, KnownLens) else list(intrinsics)
@@ -130,11 +141,11 @@ def _known(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet)
     return known
 
 
-def _refuse(photos: PhotoSet) -> None:
-    if len(photos) < SMALLEST_MODEL:
+def _check_photographs(photos: PhotoSet) -> None:
+    if len(photos) < MAPPING_TUNING.min_views:
         raise CaptureError(
             "too-few",
-            f"holds {len(photos)} photograph{'' if len(photos) == 1 else 's'}, {SMALLEST_MODEL} are needed",
+            f"holds {len(photos)} photograph{'' if len(photos) == 1 else 's'}, {MAPPING_TUNING.min_views} are needed",
             path=photos.root,
             remedy="name a folder with more photographs of the scene",
         )
@@ -147,25 +158,25 @@ def _refuse(photos: PhotoSet) -> None:
         )
 
 
-def _flattened(
+def _undistort_features(
     features: Sequence[Features], known: Sequence[KnownLens] | None
 ) -> tuple[list[Features], list[Features]]:
-    """The features as pinholes see them, and as the photographs show them; those beyond the lens are left out."""
+    """The features as pinholes see them, and as the photographs show them; those beyond the lens are dropped."""
     if known is None:
         return list(features), list(features)
-    flat, seen = [], []
+    undistorted, seen = [], []
     for f, lens in zip(features, known, strict=True):
-        points = undistorted(f.points, lens)
+        points = undistort_pixels(f.points, lens)
         good = np.asarray(np.isfinite(points).all(axis=1))
         seen.append(f.subset(good))
-        flat.append(f.subset(good).at(points[good]))
-    return flat, seen
+        undistorted.append(f.subset(good).with_points(points[good]))
+    return undistorted, seen
 
 
 def _cameras(
     shots: Sequence[Shot], known: Sequence[KnownLens] | None, camera_per_photo: bool
 ) -> tuple[list[Any], list[int]]:
-    """COLMAP's cameras, and each photograph's."""
+    """COLMAP's cameras, and the index of each photograph's."""
     cameras: list[Any] = []
     number: dict[Any, int] = {}
     shared = []
@@ -189,7 +200,7 @@ def _camera(shot: Shot, K: NDArray[np.float64] | None) -> Any:
             model="PINHOLE", width=shot.width, height=shot.height, params=[K[0, 0], K[1, 1], K[0, 2], K[1, 2]]
         )
     else:
-        focal = NOMINAL_FOCAL * max(shot.width, shot.height) if shot.focal is None else shot.focal
+        focal = SFM_NOMINAL_FOCAL_SIDES * max(shot.width, shot.height) if shot.focal is None else shot.focal
         camera = pycolmap.Camera(
             model="SIMPLE_RADIAL",
             width=shot.width,
@@ -200,11 +211,11 @@ def _camera(shot: Shot, K: NDArray[np.float64] | None) -> Any:
     return camera
 
 
-# what became of each photograph
+# the outcome for each photograph
 
 
 def _report(
-    photos: PhotoSet, found: Sequence[Features | CaptureError], matches: Sequence[Match], model: Model | None
+    photos: PhotoSet, found: Sequence[Features | CaptureError], matches: Sequence[Match], model: SparseModel | None
 ) -> list[ViewReport]:
     registered = set() if model is None else set(model.registered)
     partners: list[dict[int, int]] = [{} for _ in photos.shots]
@@ -220,46 +231,47 @@ def _report(
         elif isinstance(features, CaptureError):
             code, reason = "unreadable", str(features)
         else:
-            code, reason = _why(index, count, partners[index], registered, photos.names, model)
+            code, reason = _failure_reason(index, count, partners[index], registered, photos.names, model)
         report.append(ViewReport(shot.name, index in registered, code, reason, count, len(partners[index]), 0, None))
     return report
 
 
-def _why(
+def _failure_reason(
     index: int,
     features: int,
     partners: dict[int, int],
     registered: set[int],
     names: Sequence[str],
-    model: Model | None,
+    model: SparseModel | None,
 ) -> tuple[str, str]:
-    if features < FEWEST_FEATURES:
+    if features < SFM_MIN_FEATURES:
         return "few-features", f"too few features ({features}): blurred, dark, masked or without texture"
     if not partners:
         return (
             "few-matches",
-            f"too few matches: of {features} features fewer than {FEWEST_INLIERS} agree with any other photograph; "
-            "another scene, or taken from too far aside",
+            f"too few matches: of {features} features fewer than {MATCHING_TUNING.min_inliers} agree with any other "
+            "photograph; another scene, or taken from too far aside",
         )
     best = max(partners, key=lambda j: (partners[j], -j))
+    matched = _list_names([names[j] for j in sorted(partners)])
     if not registered & partners.keys():
-        company = next((o for o in (() if model is None else model.others) if index in o), ())
+        company = next((o for o in (() if model is None else model.separate) if index in o), ())
         return "apart", (
-            f"no view to register against: it matches only {_some([names[j] for j in sorted(partners)])}"
+            f"no view to register against: it matches only {matched}"
             + (f", a group of {len(company)} apart from the rest" if company else ", which have no camera either")
         )
     return "no-pose", (
-        f"residual too large: it matches {_some([names[j] for j in sorted(partners)])} (best {printable(names[best])}, "
-        f"{partners[best]} features), but no pose explains enough points"
+        f"residual too large: it matches {matched} (best {printable(names[best])}, {partners[best]} features), but no "
+        "pose explains enough points"
     )
 
 
-def _some(names: Sequence[str]) -> str:
-    shown = ", ".join(printable(name) for name in names[:NAMED])
-    return shown if len(names) <= NAMED else f"{shown} and {len(names) - NAMED} more"
+def _list_names(names: Sequence[str]) -> str:
+    shown = ", ".join(printable(name) for name in names[:SFM_MAX_LISTED_NAMES])
+    return shown if len(names) <= SFM_MAX_LISTED_NAMES else f"{shown} and {len(names) - SFM_MAX_LISTED_NAMES} more"
 
 
-def _failed(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
+def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
     code, number = Counter(entry.code for entry in report).most_common(1)[0]
     of = f"{number} of {len(report)} photographs"
     why, remedy = {
@@ -274,45 +286,48 @@ def _failed(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
         ),
     }.get(code, (f"{of} match others, but no cameras explain the matches", "give the lens with --intrinsics, or take "
                  "more photographs from places further apart"))  # fmt: skip
-    if not code.startswith(("unreadable", "few")) and _perhaps_a_grid(photos):
+    if not code.startswith(("unreadable", "few")) and _may_be_grid(photos):
         remedy = f"if the photographs are a rectified grid, say --grid RxC (rows x columns); else {remedy}"
     return CaptureError(
-        "calibration-failed", f"no {SMALLEST_MODEL} photographs fit together: {why}", path=photos.root, remedy=remedy
+        "calibration-failed",
+        f"no {MAPPING_TUNING.min_views} photographs fit together: {why}",
+        path=photos.root,
+        remedy=remedy,
     )
 
 
-def _perhaps_a_grid(photos: PhotoSet) -> bool:
-    """Whether nothing speaks against a grid: no layout is known, one size, and a number with two factors."""
+def _may_be_grid(photos: PhotoSet) -> bool:
+    """Whether the photographs may be a grid: no layout is known, one size, and a number with two factors."""
     sizes = {(shot.width, shot.height) for shot in photos.shots}
     return (
         photos.layout is None and len(sizes) == 1 and any(len(photos) % k == 0 for k in range(2, 1 + len(photos) // 2))
     )
 
 
-# the result in our own terms
+# COLMAP's model as a light field and sparse points
 
 
-def _motion(
+def _assemble(
     photos: PhotoSet,
     features: Sequence[Features],
-    flat: Sequence[Features],
+    undistorted: Sequence[Features],
     known: Sequence[KnownLens] | None,
-    model: Model,
+    model: SparseModel,
     report: Sequence[ViewReport],
-) -> Motion:
+) -> SfmResult:
     chosen = list(model.registered)
     lenses, cameras = [], []
     for index in chosen:
-        lens, camera = _solved(
+        lens, camera = _solved_camera(
             model.reconstruction.image(index + 1), photos.shots[index], None if known is None else known[index]
         )
         lenses.append(lens)
         cameras.append(camera)
     points = _points(model, chosen, features)
     scale, R, t = natural_gauge(cameras)
-    cameras = [moved_camera(camera, scale, R, t) for camera in cameras]
+    cameras = [transform_camera(camera, scale, R, t) for camera in cameras]
     points = points.moved(scale, R, t)
-    errors = _errors(points, cameras, lenses)
+    errors = _reprojection_errors(points, cameras, lenses)
     points = points.with_errors(errors)
     by_view = np.bincount(points.view, minlength=len(chosen))
     sums = np.bincount(points.view, weights=errors, minlength=len(chosen))
@@ -326,10 +341,10 @@ def _motion(
     problems = [f"{printable(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
     log.info("%d of %d photographs have a camera", len(chosen), len(photos))
     light_field = photos.subset(chosen).calibrated(cameras, [lens.lens for lens in lenses], problems)
-    return Motion(light_field, points, tuple(entries))
+    return SfmResult(light_field, points, tuple(entries))
 
 
-def _solved(image: Any, shot: Shot, known: KnownLens | None) -> tuple[KnownLens, Camera]:
+def _solved_camera(image: Any, shot: Shot, known: KnownLens | None) -> tuple[KnownLens, Camera]:
     if known is None:
         focal, cx, cy, k = (float(v) for v in image.camera.params)
         lens = Lens("brown", (k, 0.0, 0.0, 0.0, 0.0))
@@ -338,7 +353,7 @@ def _solved(image: Any, shot: Shot, known: KnownLens | None) -> tuple[KnownLens,
     return known, Camera.checked(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
 
 
-def _points(model: Model, chosen: Sequence[int], features: Sequence[Features]) -> SparsePoints:
+def _points(model: SparseModel, chosen: Sequence[int], features: Sequence[Features]) -> SparsePoints:
     """COLMAP's points in the order of their numbers."""
     place = {index: position for position, index in enumerate(chosen)}
     ids = sorted(model.reconstruction.point3D_ids())
@@ -359,12 +374,14 @@ def _points(model: Model, chosen: Sequence[int], features: Sequence[Features]) -
     return SparsePoints(positions, colours, np.zeros(len(ids)), rows, where, pixels)
 
 
-def _errors(points: SparsePoints, cameras: Sequence[Camera], lenses: Sequence[KnownLens]) -> NDArray[np.float64]:
-    """(m,) pixels between where each point was seen and where its camera shows it."""
+def _reprojection_errors(
+    points: SparsePoints, cameras: Sequence[Camera], lenses: Sequence[KnownLens]
+) -> NDArray[np.float64]:
+    """(m,) pixels between each observation and the projection of its point."""
     errors = np.zeros(len(points.view))
     for index, (camera, known) in enumerate(zip(cameras, lenses, strict=True)):
         here = points.view == index
         local = points.positions[points.point[here]] @ camera.R.T + camera.t
-        pixels = distorted(local[:, :2] / local[:, 2:], known)
+        pixels = distort_to_pixels(local[:, :2] / local[:, 2:], known)
         errors[here] = np.linalg.norm(pixels - points.pixels[here], axis=1)
     return errors

@@ -1,1 +1,1 @@
-"""Arrays that look one way."""
+"""Planar arrays with one viewing direction."""

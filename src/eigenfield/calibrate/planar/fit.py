@@ -1,4 +1,4 @@
-"""One Gauss-Newton step of cameras towards a texture whose depth is known."""
+"""One Gauss-Newton step of cameras towards a texture with known depth."""
 
 from __future__ import annotations
 
@@ -8,22 +8,30 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.array import PARAMETERS, ArrayModel
+from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ArrayModel
 from eigenfield.calibrate.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.canvas import Canvas
+from eigenfield.stereo.reference_view import ReferenceView
 
-TEXTURED = 2.0  # grey levels a pixel: weaker gradients say nothing of a camera
-POINTS = 60_000  # that cameras are fitted to
-CORRELATED = 100  # residuals that count as one: neighbouring pixels and channels are not independent
+FIT_MIN_GRADIENT_LEVELS = 2.0  # a pixel: weaker gradients do not constrain a camera
+FIT_MAX_POINTS = 60_000  # of a fit
+FIT_CORRELATED_RESIDUALS = 100  # count as one: neighbouring pixels and channels are not independent
 
 
 @dataclass(frozen=True, eq=False)
-class Sight:
-    """What cameras are fitted to: packed pictures (n, H, W), depth buffers (n, H, W) of the views with their bias, and
-    points of the canvas (k, 3) x, y, d with their colours (k, 3)."""
+class PhotometricTarget:
+    """What cameras are fitted to.
 
-    canvas: Canvas
+    Attributes:
+        reference: The view in which the points lie.
+        pictures: (n, H, W) packed pictures of the views.
+        buffers: (n, H, W) their depth buffers.
+        points: (k, 3) x, y, d in the reference view.
+        colours: (k, 3) their colours.
+        bias: Labels behind the depth buffer at which a point still counts as visible.
+    """
+
+    reference: ReferenceView
     pictures: NDArray[np.uint32]
     buffers: NDArray[np.float32]
     points: NDArray[np.float32]
@@ -31,46 +39,64 @@ class Sight:
     bias: float
 
 
-def textured_points(
+def select_textured_points(
     d: NDArray[np.float32], texture: NDArray[np.float32], seen: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """(k, 3) x, y, d of textured points among `seen`, evenly thinned to POINTS, and their colours (k, 3)."""
+    """Points with texture, evenly subsampled to FIT_MAX_POINTS.
+
+    Args:
+        d: (h, w) labels.
+        texture: (h, w, 3) mean texture, grey levels.
+        seen: (h, w) points that may be selected.
+
+    Returns:
+        (k, 3) x, y, d, and (k, 3) colours.
+    """
     grey = texture.mean(axis=-1)
     slope = np.hypot(cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)) / 8
-    good = np.flatnonzero((slope > TEXTURED) & seen)
-    good = good[:: max(1, len(good) // POINTS)]
+    good = np.flatnonzero((slope > FIT_MIN_GRADIENT_LEVELS) & seen)
+    good = good[:: max(1, len(good) // FIT_MAX_POINTS)]
     y, x = np.divmod(good, d.shape[1])
     points = np.stack([x, y, d.ravel()[good]], axis=1).astype(np.float32)
     return points, np.ascontiguousarray(texture.reshape(-1, 3)[good])
 
 
-def camera_step(
+def gauss_newton_step(
     model: ArrayModel,
     views: NDArray[np.int64],
     parameters: NDArray[np.float64],
-    sight: Sight,
+    target: PhotometricTarget,
     count: int,
     tau: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """One Gauss-Newton step of the first `count` parameters of each of `views`.
+    """One Gauss-Newton step of the first `count` parameters of each view.
 
-    Returns the new (len(views), 10) parameters, and the root mean square differences before it, grey levels.
+    Args:
+        model: The array.
+        views: (v,) indices.
+        parameters: (v, 10) before the step.
+        target: What the cameras are fitted to.
+        count: Number of free parameters.
+        tau: Scale of the Cauchy loss, grey levels.
+
+    Returns:
+        (v, 10) parameters, and (v,) root mean square differences before the step, grey levels.
     """
-    channels = sight.pictures.view(np.uint8).reshape(*sight.pictures.shape, 4)
-    matrices = model.matrices(sight.canvas, views, parameters)
-    derivatives = model.derivatives(sight.canvas, views, parameters)
+    channels = target.pictures.view(np.uint8).reshape(*target.pictures.shape, 4)
+    matrices = model.matrices(target.reference, views, parameters)
+    derivatives = model.derivatives(target.reference, views, parameters)
     prior = 1 / model.sigma[:count] ** 2
 
     def step(k: int) -> tuple[NDArray[np.float64], float]:
-        left, right = np.zeros((PARAMETERS, PARAMETERS)), np.zeros(PARAMETERS)
+        left, right = np.zeros((ARRAY_PARAMETERS, ARRAY_PARAMETERS)), np.zeros(ARRAY_PARAMETERS)
         total, seen = normal_equations(
-            channels[k], sight.points, sight.colours, matrices[k], derivatives[k], sight.buffers[k],
-            sight.bias, tau, left, right,
+            channels[k], target.points, target.colours, matrices[k], derivatives[k], target.buffers[k],
+            target.bias, tau, left, right,
         )  # fmt: skip
         moved = parameters[k].copy()
-        # neighbouring pixels and channels are not independent: a hundred of these residuals count as one
         moved[:count] += np.linalg.solve(
-            left[:count, :count] / CORRELATED + np.diag(prior), right[:count] / CORRELATED - moved[:count] * prior
+            left[:count, :count] / FIT_CORRELATED_RESIDUALS + np.diag(prior),
+            right[:count] / FIT_CORRELATED_RESIDUALS - moved[:count] * prior,
         )
         return moved, (total / (3 * seen)) ** 0.5 if seen else np.nan
 

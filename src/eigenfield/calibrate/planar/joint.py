@@ -1,8 +1,8 @@
-"""Cameras and depth of a planar array corrected together, by photo-consistency.
+"""Joint refinement of a planar array's cameras and depth, by photo-consistency.
 
-A nominal grid is never exact, and depth from inexact cameras is blurred. Both are found in turn: the mean texture over
-all views that see a point is what every photograph should show there, and each camera is moved until it does
-(Gauss-Newton); then the depths are searched anew. The array is grown from its centre, where disparities are small.
+A nominal grid is never exact, and depth from inexact cameras is blurred. Both are estimated in alternation. The mean
+texture over all views that see a point is what every photograph should show there. Each camera is moved until it does
+(Gauss-Newton), then depth is estimated again. The array is grown from its centre, where disparities are small.
 """
 
 from __future__ import annotations
@@ -16,56 +16,93 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate.planar.array import PARAMETERS, POSITION, SHIFT, ArrayModel
-from eigenfield.calibrate.planar.fit import Sight, camera_step, textured_points
+from eigenfield.calibrate.planar.array import ARRAY_PARAMETERS, ARRAY_POSITION, ARRAY_SHIFT, ArrayModel
+from eigenfield.calibrate.planar.fit import PhotometricTarget, gauss_newton_step, select_textured_points
 from eigenfield.calibrate.planar.kernels import occlusion_votes
-from eigenfield.calibrate.planar.start import PlanarStart, irregularity, reversed_start
+from eigenfield.calibrate.planar.start import PlanarStart, irregularity, reverse_depth
 from eigenfield.core.camera import Camera
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.canvas import Canvas
 from eigenfield.stereo.estimate import estimate_depth
-from eigenfield.stereo.extend import extended
+from eigenfield.stereo.extend import extend_depth
+from eigenfield.stereo.reference_view import ReferenceView
 from eigenfield.stereo.refine import refine_depth
-from eigenfield.stereo.semiglobal import semi_global
+from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
-from eigenfield.stereo.sweep import MOST, sweep
-from eigenfield.stereo.views import HALVE_PICTURE, halve, pack, unpack
+from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
+from eigenfield.stereo.views import HALF_FROM_FULL_INDEX, halve_pictures, pack_pictures, unpack_pictures
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
 log = logging.getLogger("eigenfield.calibrate")
 
-SEEN = 0.15  # of the views must see a point
-TAU = 15.0  # grey levels: residuals beyond count less (Cauchy)
-BIAS = 0.96  # pixels at the outermost camera by which a buffer may hide a point
-SWEEP_STEP = 1.2  # pixels at the outermost camera between two labels
-SMOOTH = 1.2  # pixels at the outermost camera within which neighbours are one surface
-FINE = 0.6  # likewise, in the last rounds
-SURE = 2.7  # squared grey levels per squared pixel there: curvature of the cost that makes a depth half sure
-DEPTH_STEPS = (0.64, 0.48, 0.48, 0.32, 0.24)  # likewise, of the rounds of refinement
-LAST_STEPS = (0.24, 0.16)  # and of those after the cameras are done
-REGULAR = 0.1  # pixels: cameras this close to a regular grid, or to their calibration, are left as they are
-LOOKING = 0.02  # of the views must see a point for its depth to be its own
-SWEPT = 90  # views of a plane sweep
-VOTERS = 12  # views of a ring that vote on which side is near
-VOTE_GAP = 4.0  # pixels in the outermost voter between two surfaces
-VOTE_CONTRAST = 8.0  # grey levels between them
-VOTE_CLEAR = 1.5  # ratio of the votes; below it both ways are tried
+
+@dataclass(frozen=True)
+class PlanarTuning:
+    """Constants of `refine_planar`. Pixels are those of the outermost camera unless said otherwise.
+
+    Attributes:
+        min_view_fraction: Fraction of the views that must see a point that cameras are fitted to.
+        tau_levels: Scale of the Cauchy loss, grey levels.
+        visibility_bias_pixels: Distance behind the depth buffer at which a point still counts as visible.
+        sweep_step_pixels: Distance between two labels of a sweep.
+        smooth_pixels: Distance within which neighbours are one surface.
+        last_smooth_pixels: The same, in the last rounds.
+        half_confidence: Curvature of the cost, squared grey levels per squared pixel, at which smoothing gives a depth
+            half weight.
+        depth_step_pixels: Steps of the rounds of depth refinement.
+        last_depth_step_pixels: Steps of the rounds after the cameras are final.
+        regular_pixels: Cameras this close to a regular grid, or to their calibration, are not corrected.
+        min_depth_view_fraction: Fraction of the views that must see a point for its depth to be its own.
+        sweep_max_views: Views of a plane sweep.
+        vote_max_views: Views of a ring that vote on which side is near.
+        vote_gap_pixels: Distance between two surfaces in the outermost voter.
+        vote_contrast_levels: Difference of their colours, grey levels.
+        vote_clear_ratio: Ratio of the votes below which both orders are tried.
+    """
+
+    min_view_fraction: float = 0.15
+    tau_levels: float = 15.0
+    visibility_bias_pixels: float = 0.96
+    sweep_step_pixels: float = 1.2
+    smooth_pixels: float = 1.2
+    last_smooth_pixels: float = 0.6
+    half_confidence: float = 2.7
+    depth_step_pixels: tuple[float, ...] = (0.64, 0.48, 0.48, 0.32, 0.24)
+    last_depth_step_pixels: tuple[float, float] = (0.24, 0.16)
+    regular_pixels: float = 0.1
+    min_depth_view_fraction: float = 0.02
+    sweep_max_views: int = 90
+    vote_max_views: int = 12
+    vote_gap_pixels: float = 4.0
+    vote_contrast_levels: float = 8.0
+    vote_clear_ratio: float = 1.5
+
+
+PLANAR_TUNING = PlanarTuning()
 
 
 @dataclass(frozen=True, eq=False)
-class Planar:
+class PlanarArray:
     """A refined planar array.
 
-    model, parameters: the cameras.
-    canvas, d, confidence, texture, count: depth seen from the centre (see `stereo`). low, high: the range of d.
-    error: (n,) root mean square difference of each photograph from the mean texture, grey levels, at textured points.
-    refined: whether positions were corrected; False where a regular grid is as good.
+    Attributes:
+        model: The fixed part of the cameras.
+        parameters: (n, 10) of the cameras.
+        reference: The view of the depth map.
+        d: (h, w) labels (see `stereo`).
+        confidence: (h, w) about 1 / variance of d.
+        texture: (h, w, 3) mean texture, grey levels.
+        count: (h, w) number of views that see each point.
+        error: (n,) root mean square difference of each photograph from the mean texture at textured points, grey
+            levels.
+        low: Lowest label.
+        high: Highest label.
+        refined: Whether positions were corrected; False if a regular grid fits as well.
     """
 
     model: ArrayModel
     parameters: NDArray[np.float64]
-    canvas: Canvas
+    reference: ReferenceView
     d: NDArray[np.float32]
     confidence: NDArray[np.float32]
     texture: NDArray[np.float32]
@@ -76,8 +113,8 @@ class Planar:
     refined: bool
 
 
-class _Joint:
-    """What the steps change: the parameters of all cameras and the depth map of the canvas."""
+class _JointRefinement:
+    """The state of the refinement: the parameters of all cameras and the depth map of the reference view."""
 
     def __init__(self, pictures: NDArray[np.uint32], start: PlanarStart) -> None:
         self.pictures = pictures
@@ -86,12 +123,12 @@ class _Joint:
         self.parameters = start.parameters.copy()
         self.centre = start.centre
         self.low, self.high = start.low, start.high
-        self.reach = self.reach_of(np.arange(len(pictures)))
+        self.extent = self.extent_of(np.arange(len(pictures)))
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
-        self.canvas = self.model.canvas(margin)
-        self.half = halve(pictures)
-        shape = self.canvas.shape
+        self.reference = self.model.reference_view(margin)
+        self.half_size = halve_pictures(pictures)
+        shape = self.reference.shape
         self.d = np.zeros(shape, np.float32)
         self.confidence = np.zeros(shape, np.float32)
         self.texture = np.zeros((*shape, 3), np.float32)
@@ -99,14 +136,14 @@ class _Joint:
         self.error = np.full(len(pictures), np.nan)
         self._buffers: NDArray[np.float32] | None = None
 
-    def chosen(self, views: NDArray[np.int64], pictures: NDArray[np.uint32]) -> NDArray[np.uint32]:
-        """A copy only where it is not all of them."""
+    def subset(self, views: NDArray[np.int64], pictures: NDArray[np.uint32]) -> NDArray[np.uint32]:
+        """The pictures of some views, copied only if these are not all."""
         return pictures if len(views) == len(pictures) else pictures[views]
 
     def matrices(self, views: NDArray[np.int64]) -> NDArray[np.float64]:
-        return self.model.matrices(self.canvas, views, self.parameters[views])
+        return self.model.matrices(self.reference, views, self.parameters[views])
 
-    def look(
+    def update_texture(
         self, views: NDArray[np.int64], pictures: NDArray[np.uint32]
     ) -> tuple[NDArray[np.float64], NDArray[np.float32]]:
         """Visibility and mean texture over `views`, from the present cameras and depth."""
@@ -116,42 +153,56 @@ class _Joint:
             self._buffers = None
             self._buffers = np.zeros((len(views), height, width), np.float32)
         buffers = depth_buffers(matrices, self.d, (height, width), out=self._buffers)
-        self.texture, self.count = mean_texture(pictures, matrices, self.d, buffers, BIAS / self.reach)
+        self.texture, self.count = mean_texture(
+            pictures, matrices, self.d, buffers, PLANAR_TUNING.visibility_bias_pixels / self.extent
+        )
         return matrices, buffers
 
-    def first_depth(self, views: NDArray[np.int64], coarser: float = 1.0) -> None:
-        """Plane sweep at half resolution and semi-global optimisation."""
-        small = self.canvas.halved()
-        matrices = HALVE_PICTURE @ self.model.matrices(small, views, self.parameters[views])
-        step = min(coarser * SWEEP_STEP / self.reach_of(views), (self.high - self.low) / 64)
+    def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0) -> None:
+        """Plane sweep at half resolution and semi-global matching."""
+        small = self.reference.at_half_resolution()
+        matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
+        step = min(coarser * PLANAR_TUNING.sweep_step_pixels / self.extent_of(views), (self.high - self.low) / 64)
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
-        reference, known = _framed(unpack(self.half[self.centre]), small.shape)
-        cost = sweep(self.half[views], matrices, small.shape, labels, reference=reference, known=known, unseen=MOST)
+        reference, known = _pad_to_reference(unpack_pictures(self.half_size[self.centre]), small.shape)
+        cost = plane_sweep(
+            self.half_size[views],
+            matrices,
+            small.shape,
+            labels,
+            reference=reference,
+            known=known,
+            unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
+        )
         guide = cv2.cvtColor(reference, cv2.COLOR_RGB2GRAY).astype(np.float32)
-        d, _ = semi_global(cost, guide, labels)
-        self.d = np.asarray(cv2.resize(d, self.canvas.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)
+        d, _ = semi_global_matching(cost, guide, labels)
+        self.d = np.asarray(cv2.resize(d, self.reference.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)
         log.info("sweep: %d views, %d labels", len(views), len(labels))
 
-    def reach_of(self, views: NDArray[np.int64]) -> float:
+    def extent_of(self, views: NDArray[np.int64]) -> float:
         return float(max(np.linalg.norm(self.start.places[views], axis=1).max(), 1.0))
 
-    def move_cameras(
+    def refine_cameras(
         self,
         views: NDArray[np.int64],
         count: int,
         rounds: int,
         *,
         pictures: NDArray[np.uint32] | None = None,
-        tau: float = TAU,
+        tau: float = PLANAR_TUNING.tau_levels,
         fixed: bool = True,
     ) -> None:
         """Gauss-Newton of the first `count` parameters of each camera against the mean texture."""
-        shown = self.chosen(views, self.pictures if pictures is None else pictures)
+        shown = self.subset(views, self.pictures if pictures is None else pictures)
         for _ in range(rounds):
-            _, buffers = self.look(views, shown)
-            points = textured_points(self.d, self.texture, self.count > max(2, SEEN * len(views)))
-            sight = Sight(self.canvas, shown, buffers, *points, BIAS / self.reach)
-            moved, self.error[views] = camera_step(self.model, views, self.parameters[views], sight, count, tau)
+            _, buffers = self.update_texture(views, shown)
+            points = select_textured_points(
+                self.d, self.texture, self.count > max(2, PLANAR_TUNING.min_view_fraction * len(views))
+            )
+            target = PhotometricTarget(
+                self.reference, shown, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / self.extent
+            )
+            moved, self.error[views] = gauss_newton_step(self.model, views, self.parameters[views], target, count, tau)
             keep = self.parameters[self.centre].copy()
             self.parameters[views] = moved
             if fixed:
@@ -160,151 +211,177 @@ class _Joint:
         error = np.nanmedian(self.error[views])
         log.info("cameras: %d views, %d parameters, %.2f grey levels", len(views), count, error)
 
-    def measure(self, views: NDArray[np.int64]) -> None:
-        """How far each photograph is from the mean texture, cameras as they are."""
-        pictures = self.chosen(views, self.pictures)
-        _, buffers = self.look(views, pictures)
-        points = textured_points(self.d, self.texture, self.count > max(2, SEEN * len(views)))
-        sight = Sight(self.canvas, pictures, buffers, *points, BIAS / self.reach)
-        _, self.error[views] = camera_step(self.model, views, self.parameters[views], sight, 2, TAU)
+    def measure_errors(self, views: NDArray[np.int64]) -> None:
+        """The error of each photograph against the mean texture, with unchanged cameras."""
+        pictures = self.subset(views, self.pictures)
+        _, buffers = self.update_texture(views, pictures)
+        points = select_textured_points(
+            self.d, self.texture, self.count > max(2, PLANAR_TUNING.min_view_fraction * len(views))
+        )
+        target = PhotometricTarget(
+            self.reference, pictures, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / self.extent
+        )
+        _, self.error[views] = gauss_newton_step(
+            self.model, views, self.parameters[views], target, 2, PLANAR_TUNING.tau_levels
+        )
 
     def fix_gauge(self, views: NDArray[np.int64]) -> None:
-        """Shifts in proportion to positions are an offset of depth; the mean step is one."""
+        """Remove the gauge freedom: shifts in proportion to positions are an offset of depth; the mean step is one."""
         if self.start.given:
-            return  # the priors hold it
-        p, s = self.parameters[views, POSITION], self.parameters[views, SHIFT]
+            return  # the priors fix it
+        p, s = self.parameters[views, ARRAY_POSITION], self.parameters[views, ARRAY_SHIFT]
         offset = (p * s).sum() / (p * p).sum()
-        self.parameters[views, SHIFT] = s - offset * p
-        planned = self.start.parameters[views, POSITION]
+        self.parameters[views, ARRAY_SHIFT] = s - offset * p
+        planned = self.start.parameters[views, ARRAY_POSITION]
         scale = (p * planned).sum() / (planned * planned).sum()
-        self.parameters[views, POSITION] = p / scale
+        self.parameters[views, ARRAY_POSITION] = p / scale
         self.d = ((self.d - offset) * scale).astype(np.float32)
         self.low, self.high = (self.low - offset) * scale, (self.high - offset) * scale
 
-    def refine_depth(self, views: NDArray[np.int64], step: float, smooth: float = SMOOTH) -> None:
-        pictures = self.chosen(views, self.pictures)
-        matrices, buffers = self.look(views, pictures)
-        apart = smooth / self.reach
+    def refine_depth(self, views: NDArray[np.int64], step: float, smooth: float = PLANAR_TUNING.smooth_pixels) -> None:
+        pictures = self.subset(views, self.pictures)
+        matrices, buffers = self.update_texture(views, pictures)
+        apart = smooth / self.extent
         d, confidence = refine_depth(
-            pictures, matrices, self.d, step / self.reach, buffers=buffers, texture=self.texture,
-            bias=BIAS / self.reach, depth=apart,
+            pictures, matrices, self.d, step / self.extent, buffers=buffers, texture=self.texture,
+            bias=PLANAR_TUNING.visibility_bias_pixels / self.extent, depth_scale=apart,
         )  # fmt: skip
-        half = SURE * self.reach**2
-        self.d, self.confidence = smooth_depth(d, confidence, self.texture, half=half, depth=apart), confidence
+        half = PLANAR_TUNING.half_confidence * self.extent**2
+        self.d = smooth_depth(d, confidence, self.texture, half_confidence=half, depth_scale=apart)
+        self.confidence = confidence
         self.extend(len(views))
 
     def extend(self, views: int) -> None:
-        """Outside the photographs' common part, where (too) few look, depth is drawn on from inside."""
-        self.d = extended(self.d, self.count >= max(2, LOOKING * views), self.low, self.high)
+        """Extrapolate depth outside the photographs' common part, where too few views look."""
+        self.d = extend_depth(
+            self.d, self.count >= max(2, PLANAR_TUNING.min_depth_view_fraction * views), self.low, self.high
+        )
 
 
 def refine_planar(
     photographs: NDArray[np.uint8], start: PlanarStart, *, exact: bool = False, progress: Progress | None = None
-) -> Planar:
-    """Estimate depth, and correct cameras unless they are `exact`.
+) -> PlanarArray:
+    """Estimate depth, and correct cameras unless they are exact.
 
-    photographs: (n, H, W, 3). The result has near and far the right way round: where `start` does not know, occlusion
-    decides.
+    The result has near and far in the right order: if `start` does not know it, occlusion decides.
+
+    Args:
+        photographs: (n, H, W, 3) uint8.
+        start: The array before refinement.
+        exact: Do not correct the cameras.
+        progress: Called for each step.
     """
-    pictures = pack(photographs)
-    joint = _Joint(pictures, start)
+    pictures = pack_pictures(photographs)
+    joint = _JointRefinement(pictures, start)
     rings = _rings(start.places)
-    total = len(rings) + len(DEPTH_STEPS) + 1
+    total = len(rings) + len(PLANAR_TUNING.depth_step_pixels) + 1
     report = progress or (lambda stage, done, of: None)
     report("cameras and depth", 0, total)
-    joint.first_depth(rings[0], 2.0)
+    joint.sweep_depth(rings[0], 2.0)
     if not start.known_signs and _is_reversed(joint, rings[:2]):
         log.info("near and far are exchanged: the array runs the other way")
-        joint = _Joint(pictures, reversed_start(start))
-        joint.first_depth(rings[0], 2.0)
+        joint = _JointRefinement(pictures, reverse_depth(start))
+        joint.sweep_depth(rings[0], 2.0)
     if not exact:
-        exact = not _correct(joint, rings, report, total)
+        exact = not _correct_cameras(joint, rings, report, total)
     everything = np.arange(len(pictures))
     if exact:
-        depth = estimate_depth(pictures, joint.matrices(everything), joint.canvas.shape, (joint.low, joint.high))
+        depth = estimate_depth(pictures, joint.matrices(everything), joint.reference.shape, (joint.low, joint.high))
         joint.d, joint.confidence = depth.d, depth.confidence
-        joint.look(everything, pictures)
+        joint.update_texture(everything, pictures)
         joint.extend(len(pictures))
-    joint.measure(everything)
+    joint.measure_errors(everything)
     report("cameras and depth", total, total)
-    return Planar(
-        joint.model, joint.parameters, joint.canvas, joint.d, joint.confidence, joint.texture, joint.count,
+    return PlanarArray(
+        joint.model, joint.parameters, joint.reference, joint.d, joint.confidence, joint.texture, joint.count,
         joint.error, joint.low, joint.high, not exact,
     )  # fmt: skip
 
 
-def _correct(joint: _Joint, rings: Sequence[NDArray[np.int64]], report: Progress, total: int) -> bool:
-    """Correct cameras and depth in turn, from the inner rings outwards, then all together.
+def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]], report: Progress, total: int) -> bool:
+    """Correct cameras and depth in alternation, from the inner rings outwards, then all together.
 
-    False, and nothing done, where the cameras are a regular grid's or their calibration's.
+    False, and nothing changed, if the cameras already fit a regular grid or their calibration.
     """
     pictures = joint.pictures
-    blurred = np.stack(parallel_map(_blurred, pictures))
+    blurred = np.stack(parallel_map(_blur, pictures))
     old: NDArray[np.int64] | None = None
     for number, views in enumerate(rings):
         if old is not None:
             _extrapolate(joint, old, np.setdiff1d(views, old))
-        joint.move_cameras(views, 4, 3, pictures=blurred, tau=2 * TAU)
-        joint.move_cameras(views, 4, 2)
-        joint.first_depth(_thinned(views), 2.0 if number == 0 else 1.0)
-        joint.move_cameras(views, 4, 2)
+        joint.refine_cameras(views, 4, 3, pictures=blurred, tau=2 * PLANAR_TUNING.tau_levels)
+        joint.refine_cameras(views, 4, 2)
+        joint.sweep_depth(_subsample(views), 2.0 if number == 0 else 1.0)
+        joint.refine_cameras(views, 4, 2)
         if number == min(1, len(rings) - 1) and _is_regular(joint, views):
             return False
-        joint.look(views, joint.chosen(views, pictures))
+        joint.update_texture(views, joint.subset(views, pictures))
         joint.extend(len(views))
         old = views
         report("cameras and depth", number + 1, total)
     everything = np.arange(len(pictures))
-    for number, step in enumerate(DEPTH_STEPS):
+    for number, step in enumerate(PLANAR_TUNING.depth_step_pixels):
         joint.refine_depth(everything, step)
-        joint.move_cameras(everything, 6 if number == 0 else PARAMETERS, 2, fixed=number == 0)
+        joint.refine_cameras(everything, 6 if number == 0 else ARRAY_PARAMETERS, 2, fixed=number == 0)
         report("cameras and depth", len(rings) + number + 1, total)
-    for step in LAST_STEPS:
-        joint.refine_depth(everything, step, FINE)
+    for step in PLANAR_TUNING.last_depth_step_pixels:
+        joint.refine_depth(everything, step, PLANAR_TUNING.last_smooth_pixels)
     return True
 
 
-def _is_regular(joint: _Joint, views: NDArray[np.int64]) -> bool:
-    """Whether correcting the cameras of `views` found nothing to correct; then they are put back."""
+def _is_regular(joint: _JointRefinement, views: NDArray[np.int64]) -> bool:
+    """Whether refinement found nothing to correct in the cameras of `views`; their parameters are then restored."""
     moved = irregularity(joint.parameters, joint.start, views)
     log.info("cameras leave the %s by %.3f px", "calibration" if joint.start.given else "grid", moved)
-    if moved >= REGULAR:
+    if moved >= PLANAR_TUNING.regular_pixels:
         return False
     joint.parameters[:] = joint.start.parameters
     return True
 
 
 def register_views(
-    planar: Planar,
+    planar: PlanarArray,
     known: NDArray[np.int64],
     photographs: NDArray[np.uint8],
     new: NDArray[np.int64],
     positions: NDArray[np.float64],
     bases: Sequence[Camera] | None = None,
-) -> Planar:
-    """The array with views that took no part in it, each fitted to its texture and depth by its own photograph alone.
+) -> PlanarArray:
+    """The array with further views, each fitted to the array's texture and depth by its own photograph alone.
 
-    known, new: indices of the array's views and of the others among all n. photographs: (len(new), H, W, 3).
-    positions: (n, 2) of all views, any unit: new cameras start on the affine grid of the known. bases: of all n, where
-    cameras were given.
+    Args:
+        planar: The refined array.
+        known: Indices of its views among all n.
+        photographs: (v, H, W, 3) uint8 of the new views.
+        new: (v,) their indices among all n.
+        positions: (n, 2) of all views in any unit: new cameras start on the affine grid of the known ones.
+        bases: Of all n, if cameras were given.
     """
     before, after = (np.hstack([positions[i], np.ones((len(i), 1))]) for i in (known, new))
-    parameters = np.zeros((len(positions), PARAMETERS))
+    parameters = np.zeros((len(positions), ARRAY_PARAMETERS))
     parameters[known] = planar.parameters
     parameters[new, :4] = after @ np.linalg.lstsq(before, planar.parameters[:, :4], rcond=None)[0]
     model = replace(planar.model, bases=tuple(bases or planar.model.bases[:1] * len(positions)))
     error = np.full(len(positions), np.nan)
     error[known] = planar.error
-    sharp = pack(photographs)
-    soft = np.stack(parallel_map(_blurred, sharp))
-    reach = max(1.0, float(np.linalg.norm(planar.parameters[:, POSITION], axis=1).max()))
-    points = textured_points(planar.d, planar.texture, planar.count > max(2, SEEN * len(known)))
-    for pictures, count, tau, rounds in ((soft, 4, 2 * TAU, 3), (sharp, 4, TAU, 2), (sharp, PARAMETERS, TAU, 3)):
+    sharp = pack_pictures(photographs)
+    soft = np.stack(parallel_map(_blur, sharp))
+    extent = max(1.0, float(np.linalg.norm(planar.parameters[:, ARRAY_POSITION], axis=1).max()))
+    points = select_textured_points(
+        planar.d, planar.texture, planar.count > max(2, PLANAR_TUNING.min_view_fraction * len(known))
+    )
+    for pictures, count, tau, rounds in (
+        (soft, 4, 2 * PLANAR_TUNING.tau_levels, 3),
+        (sharp, 4, PLANAR_TUNING.tau_levels, 2),
+        (sharp, ARRAY_PARAMETERS, PLANAR_TUNING.tau_levels, 3),
+    ):
         for _ in range(rounds):
-            matrices = model.matrices(planar.canvas, new, parameters[new])
+            matrices = model.matrices(planar.reference, new, parameters[new])
             buffers = depth_buffers(matrices, planar.d, pictures.shape[1:3])
-            sight = Sight(planar.canvas, pictures, buffers, *points, BIAS / reach)
-            parameters[new], error[new] = camera_step(model, new, parameters[new], sight, count, tau)
+            target = PhotometricTarget(
+                planar.reference, pictures, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / extent
+            )
+            parameters[new], error[new] = gauss_newton_step(model, new, parameters[new], target, count, tau)
     return replace(planar, model=model, parameters=parameters, error=error)
 
 
@@ -320,76 +397,82 @@ def _rings(places: NDArray[np.float64]) -> list[NDArray[np.int64]]:
     return rings
 
 
-def _thinned(views: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Of many views an evenly spread part: a sweep does not gain from more."""
-    return views[:: -(-len(views) // SWEPT)]
+def _subsample(views: NDArray[np.int64]) -> NDArray[np.int64]:
+    """An evenly spread subset of many views: a sweep does not gain from more."""
+    return views[:: -(-len(views) // PLANAR_TUNING.sweep_max_views)]
 
 
-def _extrapolate(joint: _Joint, old: NDArray[np.int64], new: NDArray[np.int64]) -> None:
-    """New cameras start on the affine grid that the old ones fit."""
+def _extrapolate(joint: _JointRefinement, old: NDArray[np.int64], new: NDArray[np.int64]) -> None:
+    """Start new cameras on the affine grid that the old ones fit."""
     if joint.start.given:
         return
     before, after = (np.hstack([joint.start.places[i], np.ones((len(i), 1))]) for i in (old, new))
     joint.parameters[new, :4] = after @ np.linalg.lstsq(before, joint.parameters[old, :4], rcond=None)[0]
 
 
-def _is_reversed(joint: _Joint, rings: Sequence[NDArray[np.int64]]) -> bool:
-    """Whether the surface of smaller d is what shows where two meet in one pixel of a view of these rings."""
-    margin = joint.canvas.margin
+def _is_reversed(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]]) -> bool:
+    """Whether the surface of smaller d occludes the other where two meet in one pixel of a view of these rings."""
+    margin = joint.reference.margin
     height, width = joint.pictures.shape[1:3]
     inner = np.ascontiguousarray(joint.d[margin : margin + height, margin : margin + width])
-    narrow = replace(joint.canvas, camera=joint.model.reference, margin=0)
-    reference = unpack(joint.pictures[joint.centre])
+    narrow = replace(joint.reference, camera=joint.model.reference, margin=0)
+    reference = unpack_pictures(joint.pictures[joint.centre])
     larger = smaller = 0
     for number, ring in enumerate(rings):
         views = ring if number == 0 else np.setdiff1d(ring, rings[number - 1])
         views = views[views != joint.centre]
-        views = views[:: max(1, len(views) // VOTERS)]
+        views = views[:: max(1, len(views) // PLANAR_TUNING.vote_max_views)]
         matrices = joint.model.matrices(narrow, views, joint.parameters[views])
-        gap = VOTE_GAP / joint.reach_of(views)
+        gap = PLANAR_TUNING.vote_gap_pixels / joint.extent_of(views)
 
         def votes(k: int, views=views, matrices=matrices, gap=gap) -> tuple[int, int]:  # type: ignore[no-untyped-def]
             near, far = np.full((height, width), -1, np.int64), np.full((height, width), -1, np.int64)
-            picture = unpack(joint.pictures[views[k]])
-            return occlusion_votes(picture, reference, matrices[k], inner, gap, VOTE_CONTRAST, near, far)
+            picture = unpack_pictures(joint.pictures[views[k]])
+            return occlusion_votes(
+                picture, reference, matrices[k], inner, gap, PLANAR_TUNING.vote_contrast_levels, near, far
+            )
 
         counts = np.sum(parallel_map(votes, range(len(views))), axis=0)
         larger, smaller = larger + int(counts[0]), smaller + int(counts[1])
     log.info("occlusion: %d pixels say that larger disparities are nearer, %d the reverse", larger, smaller)
     voted = smaller > larger
-    if max(larger, smaller) >= VOTE_CLEAR * max(1, min(larger, smaller)):
+    if max(larger, smaller) >= PLANAR_TUNING.vote_clear_ratio * max(1, min(larger, smaller)):
         return voted
-    ways = (joint.start, reversed_start(joint.start))
+    ways = (joint.start, reverse_depth(joint.start))
     forward, backward = (_inner_error(joint.pictures, start, rings) for start in ways)
-    log.info("grey levels that are left over: %.2f, with near and far exchanged %.2f", forward, backward)
+    log.info("remaining error: %.2f grey levels, with near and far exchanged %.2f", forward, backward)
     if (backward < forward) != voted:
         log.warning("occlusion hardly tells near from far: look at the result; name the photographs' own --format")
     return backward < forward
 
 
 def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequence[NDArray[np.int64]]) -> float:
-    """How far the photographs of `rings` stay from their mean texture once cameras and depth were corrected: occluded
-    points are left out, so that the wrong order of near and far leaves more."""
-    joint = _Joint(pictures, start)
-    joint.first_depth(rings[0], 2.0)
-    joint.move_cameras(rings[0], 4, 3)
-    joint.first_depth(rings[0])
+    """The remaining error of the photographs of `rings` after cameras and depth were corrected.
+
+    Occluded points are left out, so that the wrong order of near and far leaves a larger error.
+    """
+    joint = _JointRefinement(pictures, start)
+    joint.sweep_depth(rings[0], 2.0)
+    joint.refine_cameras(rings[0], 4, 3)
+    joint.sweep_depth(rings[0])
     for before, views in itertools.pairwise(rings):
-        joint.move_cameras(before, 4, 2)
+        joint.refine_cameras(before, 4, 2)
         _extrapolate(joint, before, np.setdiff1d(views, before))
-        joint.move_cameras(views, 4, 2)
-        joint.first_depth(views)
-    joint.move_cameras(rings[-1], 4, 2)
-    joint.measure(rings[-1])
+        joint.refine_cameras(views, 4, 2)
+        joint.sweep_depth(views)
+    joint.refine_cameras(rings[-1], 4, 2)
+    joint.measure_errors(rings[-1])
     return float(np.nanmean(joint.error[rings[-1]]))
 
 
-def _blurred(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    return pack(np.asarray(cv2.GaussianBlur(unpack(picture), (0, 0), 2.0), np.uint8)[None])[0]
+def _blur(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    return pack_pictures(np.asarray(cv2.GaussianBlur(unpack_pictures(picture), (0, 0), 2.0), np.uint8)[None])[0]
 
 
-def _framed(picture: NDArray[np.uint8], shape: tuple[int, int]) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """The picture in the middle of a canvas, its edges drawn out, and where it is itself."""
+def _pad_to_reference(
+    picture: NDArray[np.uint8], shape: tuple[int, int]
+) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
+    """The picture in the middle of the reference view with its edges replicated, and the mask of its own pixels."""
     top, left = (shape[0] - picture.shape[0]) // 2, (shape[1] - picture.shape[1]) // 2
     bottom, right = shape[0] - picture.shape[0] - top, shape[1] - picture.shape[1] - left
     known = np.zeros(shape, np.bool_)

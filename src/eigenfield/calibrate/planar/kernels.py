@@ -1,4 +1,4 @@
-"""Kernels of camera refinement."""
+"""Inner loops of camera refinement."""
 
 from __future__ import annotations
 
@@ -8,8 +8,13 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel(inline=True)
-def bilinear(picture, x, y):  # type: ignore[no-untyped-def]
-    """The three channels of an (H, W, 3) picture at index coordinates inside it."""
+def bilinear_rgb(picture, x, y):  # type: ignore[no-untyped-def]
+    """The three channels of a picture, bilinearly interpolated.
+
+    Args:
+        picture: (H, W, 3).
+        x, y: Index coordinates inside it.
+    """
     i, j = int(x), int(y)
     fx, fy = np.float32(x - i), np.float32(y - j)
     one = np.float32(1)
@@ -26,8 +31,22 @@ def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias
     """Gauss-Newton sums of one camera over points with known colours.
 
     With e = T - I(pi(p)) in each channel, J = grad I dpi/dtheta and Cauchy weights w = 1 / (1 + e^2 / tau^2):
-    left = sum w J J^T, right = sum w J e. A point counts where the depth buffer shows nothing nearer than it by more
-    than `bias`. points: (n, 3) x, y, d. Returns the sum of e^2 over channels and the number of points.
+    left = sum w J J^T, right = sum w J e. A point counts unless the depth buffer is nearer by more than `bias`.
+
+    Args:
+        picture: (H, W, 4) uint8.
+        points: (k, 3) x, y, d.
+        colours: (k, 3) T, grey levels.
+        matrix: (3, 4) of the camera.
+        derivatives: (10, 3, 4) of the matrix by each parameter.
+        buffer: (H, W) depth buffer.
+        bias: Labels.
+        tau: Grey levels.
+        left: (10, 10), added to.
+        right: (10,), added to.
+
+    Returns:
+        The sum of e^2 over channels, and the number of points.
     """
     height, width = picture.shape[0], picture.shape[1]
     count = derivatives.shape[0]
@@ -46,9 +65,9 @@ def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias
             continue
         if buffer[int(v + 0.5), int(u + 0.5)] > d + bias:
             continue
-        here = bilinear(picture, u, v)
-        east, west = bilinear(picture, u + half, v), bilinear(picture, u - half, v)
-        south, north = bilinear(picture, u, v + half), bilinear(picture, u, v - half)
+        here = bilinear_rgb(picture, u, v)
+        east, west = bilinear_rgb(picture, u + half, v), bilinear_rgb(picture, u - half, v)
+        south, north = bilinear_rgb(picture, u, v + half), bilinear_rgb(picture, u, v - half)
         for p in range(count):
             m = derivatives[p]
             dz = m[2, 0] * x + m[2, 1] * y + m[2, 2] * d + m[2, 3]
@@ -75,12 +94,22 @@ def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias
 
 @kernel()
 def occlusion_votes(picture, reference, matrix, d, gap, contrast, near, far):  # type: ignore[no-untyped-def]
-    """Which of two surfaces shows where both project to one pixel of `picture`.
+    """Which of two surfaces is visible where both project to one pixel of a picture.
 
-    reference: (h, w, 3), the picture that d belongs to (no margin). near, far: (H, W) int64 scratch, -1.
-    Every pixel of `picture` notes the reference pixels of largest and smallest d that land on it. Where these differ
-    by more than `gap` in d and `contrast` grey levels in colour, and one is clearly closer to what is seen, it gets a
-    vote. Returns the votes for the larger d and for the smaller.
+    Every pixel records the reference pixels of largest and smallest d that project onto it. It votes where these differ
+    by more than `gap` in d and `contrast` in colour, and one is clearly closer to the observed colour.
+
+    Args:
+        picture: (H, W, 3) uint8.
+        reference: (h, w, 3) uint8, the picture that d belongs to, without margin.
+        matrix: (3, 4) from (x, y, d, 1) to index coordinates of the picture.
+        d: (h, w) labels.
+        gap: Labels.
+        contrast: Grey levels.
+        near, far: (H, W) int64 scratch, filled with -1.
+
+    Returns:
+        The votes for the larger d and for the smaller.
     """
     height, width = near.shape
     rows, columns = d.shape

@@ -1,13 +1,13 @@
-"""How a planar array stood, from how points move between its photographs.
+"""The positions of a planar array's cameras, from how points move between its photographs.
 
-A planar array that looks one way moves a point of the central photograph by
+A planar array with one viewing direction moves a point of the central photograph by
 
     u_v = s_v - d p_v,
 
-p_v the camera's position in the array's plane in steps (x right, y down), d the point's disparity for one step, s_v a
-shift of the whole picture (principal point, small rotation). Over many points and views that is a matrix of rank one
-beside a constant: positions, shifts and disparities come out together, up to the sign of (p, d) - which only occlusion
-tells - and to an offset of d, which moves s by a multiple of p.
+with p_v the camera's position in the array's plane in steps (x right, y down), d the point's disparity for one step,
+and s_v a shift of the whole picture (principal point, small rotation). Over many points and views that is a matrix of
+rank one plus a constant. Positions, shifts and disparities are determined together, up to the sign of (p, d), which
+only occlusion reveals, and to an offset of d, which moves s by a multiple of p.
 """
 
 from __future__ import annotations
@@ -24,24 +24,25 @@ F64 = NDArray[np.float64]
 
 log = logging.getLogger("eigenfield.calibrate")
 
-FEWEST_POINTS = 20
-FEWEST_VIEWS = 2  # that a point must be found in besides the central one
-ROUNDS = 60
-NOISE = 1.0  # pixels; residuals beyond count less (Cauchy)
-OUTLIER = 3.0  # pixels
-EXPLAINED = 0.25  # of the larger motions may be left over: else the views stand elsewhere than their names say
+PARALLAX_MIN_POINTS = 20
+PARALLAX_MIN_VIEWS = 2  # in which a point must be found, besides the central one
+PARALLAX_ROUNDS = 60
+PARALLAX_NOISE_PIXELS = 1.0  # scale of the Cauchy loss
+PARALLAX_OUTLIER_PIXELS = 3.0
+PARALLAX_MAX_UNEXPLAINED_FRACTION = 0.25  # of the larger motions: otherwise the names of the views give wrong positions
 
 
 @dataclass(frozen=True, eq=False)
 class Parallax:
     """The rank-one model of the tracks.
 
-    steps: (2, 2), maps nominal positions (relative to the central camera) to positions p in steps, x right, y down.
-    shifts: (2, 2), maps nominal positions to shifts s in pixels: what is left of them is jitter.
-    disparity: (k,) of the points, NaN where unreliable.
-    residual: pixels, the median distance of the tracks from the model with regular positions.
-    support: number of reliable points.
-    agreeing: (v,) share of those found in each view that move there as the model says, NaN for views with too few.
+    Attributes:
+        steps: (2, 2) maps nominal positions (relative to the central camera) to positions p in steps, x right, y down.
+        shifts: (2, 2) maps nominal positions to shifts s in pixels; the remainder is jitter.
+        disparity: (k,) of the points; NaN where unreliable.
+        residual: Median distance of the tracks from the model with regular positions, pixels.
+        support: Number of reliable points.
+        agreeing: (v,) fraction of those found in each view that move as the model says; NaN for views with too few.
     """
 
     steps: F64
@@ -53,33 +54,41 @@ class Parallax:
 
 
 def measure_parallax(tracks: Tracks, nominal: F64) -> Parallax | None:
-    """Fit the model to tracks with nominal positions (v, 2), relative to the central camera, in nominal steps.
+    """Fit the model to tracks; None if the tracks are too few or do not move.
 
-    A line of cameras is allowed. None where the tracks are too few or do not move.
+    A line of cameras is allowed.
+
+    Args:
+        tracks: Of the central photograph.
+        nominal: (v, 2) positions relative to the central camera, in nominal steps.
     """
     moved = tracks.found - tracks.points
     seen = np.isfinite(moved[..., 0])
-    enough = seen.sum(axis=0) > FEWEST_VIEWS
+    enough = seen.sum(axis=0) > PARALLAX_MIN_VIEWS
     moved, seen = moved[:, enough], seen[:, enough]
-    if enough.sum() < FEWEST_POINTS:
+    if enough.sum() < PARALLAX_MIN_POINTS:
         return None
     weights = seen.astype(np.float64)
     moved = np.where(seen[..., None], moved, 0.0)
     steps = np.eye(2)
     shifts = np.zeros((2, 2))
-    used = np.abs(nominal).max(axis=0) > 0  # a line of cameras says nothing of the other direction
-    d = _first_disparity(moved, weights, nominal)
-    for _ in range(ROUNDS):
+    used = np.abs(nominal).max(axis=0) > 0  # a line of cameras does not constrain the other direction
+    d = _initial_disparity(moved, weights, nominal)
+    for _ in range(PARALLAX_ROUNDS):
         steps, shifts = _fit_positions(moved, weights, nominal, d, used)
         d = _fit_disparity(moved, weights, nominal, steps, shifts)
-        residual = _residual(moved, nominal, steps, shifts, d)
-        weights = np.where(seen, 1 / (1 + (residual / NOISE) ** 2), 0.0)
+        residual = _model_residual(moved, nominal, steps, shifts, d)
+        weights = np.where(seen, 1 / (1 + (residual / PARALLAX_NOISE_PIXELS) ** 2), 0.0)
     residual = np.where(seen, residual, np.nan)
-    good = (np.nanmedian(residual, axis=0) < OUTLIER) & ((residual < OUTLIER).sum(axis=0) > FEWEST_VIEWS)
+    good = (np.nanmedian(residual, axis=0) < PARALLAX_OUTLIER_PIXELS) & (
+        (residual < PARALLAX_OUTLIER_PIXELS).sum(axis=0) > PARALLAX_MIN_VIEWS
+    )
     moves = np.where(seen, np.linalg.norm(moved, axis=-1), np.nan)[:, good]
-    if good.sum() >= FEWEST_POINTS and np.nanmedian(residual[:, good]) > EXPLAINED * np.nanpercentile(moves, 75):
+    if good.sum() >= PARALLAX_MIN_POINTS and np.nanmedian(
+        residual[:, good]
+    ) > PARALLAX_MAX_UNEXPLAINED_FRACTION * np.nanpercentile(moves, 75):
         return None
-    if good.sum() < FEWEST_POINTS or not np.isfinite(steps).all() or np.abs(np.diag(steps)[used]).min() < 1e-3:
+    if good.sum() < PARALLAX_MIN_POINTS or not np.isfinite(steps).all() or np.abs(np.diag(steps)[used]).min() < 1e-3:
         return None
     # gauge: the mean length of a step is one, the first axis keeps its sign
     first = 0 if used[0] else 1
@@ -87,19 +96,19 @@ def measure_parallax(tracks: Tracks, nominal: F64) -> Parallax | None:
     disparity = np.full(len(enough), np.nan)
     disparity[np.flatnonzero(enough)[good]] = d[good] * scale
     found = seen[:, good].sum(axis=1)
-    near = (residual[:, good] < OUTLIER).sum(axis=1)
-    agreeing = np.where(found >= FEWEST_POINTS, near / np.maximum(found, 1), np.nan)
+    near = (residual[:, good] < PARALLAX_OUTLIER_PIXELS).sum(axis=1)
+    agreeing = np.where(found >= PARALLAX_MIN_POINTS, near / np.maximum(found, 1), np.nan)
     return Parallax(steps / scale, shifts, disparity, float(np.nanmedian(residual[:, good])), int(good.sum()), agreeing)
 
 
-def _first_disparity(moved: F64, weights: F64, nominal: F64) -> F64:
-    """Least squares over the axis on which more was seen, the shift of each view taken as its median motion."""
+def _initial_disparity(moved: F64, weights: F64, nominal: F64) -> F64:
+    """Least squares over the axis with more motion; the shift of each view is its median motion."""
     axis = 0 if np.abs(nominal[:, 0]).sum() >= np.abs(nominal[:, 1]).sum() else 1
     result = np.zeros(moved.shape[1])
     total = np.full(moved.shape[1], 1e-9)
     for motion, weight, place in zip(moved[..., axis], weights, nominal[:, axis], strict=True):
         inside = weight > 0
-        if abs(place) < 0.5 or inside.sum() < FEWEST_POINTS:
+        if abs(place) < 0.5 or inside.sum() < PARALLAX_MIN_POINTS:
             continue
         result -= weight * place * (motion - np.median(motion[inside]))
         total += weight * place * place
@@ -125,7 +134,7 @@ def _fit_positions(moved: F64, weights: F64, nominal: F64, d: F64, used: NDArray
     solved = np.linalg.lstsq(left, right, rcond=1e-12)[0].T  # (image axis, unknowns)
     steps, shifts = np.zeros((2, 2)), np.zeros((2, 2))
     steps[:, used], shifts[:, used] = solved[:, :a], solved[:, a:]
-    # an offset of d is a multiple of `steps` in `shifts`: take it out, the disparities follow in the next fit
+    # an offset of d is a multiple of `steps` in `shifts`: remove it, the disparities follow in the next fit
     offset = (steps * shifts).sum() / max((steps * steps).sum(), 1e-12)
     return steps, shifts - offset * steps
 
@@ -136,6 +145,6 @@ def _fit_disparity(moved: F64, weights: F64, nominal: F64, steps: F64, shifts: F
     return over / np.maximum(weights.T @ (p * p).sum(axis=1), 1e-9)
 
 
-def _residual(moved: F64, nominal: F64, steps: F64, shifts: F64, d: F64) -> F64:
+def _model_residual(moved: F64, nominal: F64, steps: F64, shifts: F64, d: F64) -> F64:
     p, s = nominal @ steps.T, nominal @ shifts.T
     return np.linalg.norm(moved - s[:, None] + d[None, :, None] * p[:, None], axis=-1)

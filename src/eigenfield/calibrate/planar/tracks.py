@@ -1,4 +1,4 @@
-"""Points of the central photograph found again in the photographs around it."""
+"""Points of the central photograph, matched in the photographs around it."""
 
 from __future__ import annotations
 
@@ -11,17 +11,18 @@ from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map
 
-FEATURES = 2500  # SIFT features a photograph
-LONGEST = 1024  # side in pixels that features are looked for on
-RATIO = 0.85  # of the best to the second best descriptor distance
+TRACK_MAX_FEATURES = 2500  # SIFT features in a photograph
+TRACK_MAX_SEARCH_PIXELS = 1024  # longer side at which features are detected
+TRACK_MAX_DISTANCE_RATIO = 0.85  # of the best to the second-best descriptor distance
 
 
 @dataclass(frozen=True, eq=False)
 class Tracks:
-    """Where points of one photograph are in others.
+    """Positions of one photograph's points in others.
 
-    points: (k, 2) pixels in the central photograph.
-    found: (v, k, 2) pixels in the others, NaN where a point was not found.
+    Attributes:
+        points: (k, 2) pixels in the central photograph.
+        found: (v, k, 2) pixels in the others; NaN where a point was not found.
     """
 
     points: NDArray[np.float64]
@@ -29,25 +30,28 @@ class Tracks:
 
 
 def find_tracks(pictures: Sequence[NDArray[np.uint8]], centre: int) -> Tracks:
-    """SIFT features of `pictures[centre]`, each with its mutual best match in every picture; (H, W, 3) each.
+    """SIFT features of the central picture, each with its mutual best match in every picture.
 
-    Rows of `found` are in the order of `pictures`, the central one holding the points themselves. Pixels have their
-    centres at +0.5.
+    Pixel centres are at +0.5.
+
+    Args:
+        pictures: v of (H, W, 3).
+        centre: Index of the central picture, whose row of `found` holds the points themselves.
     """
     height, width = pictures[centre].shape[:2]
-    scale = min(1.0, LONGEST / max(height, width))
+    scale = min(1.0, TRACK_MAX_SEARCH_PIXELS / max(height, width))
     features = parallel_map(lambda picture: _features(picture, scale), pictures)
     points, descriptors = features[centre]
     found = np.full((len(pictures), len(points), 2), np.nan)
     if len(points) >= 2:
 
-        def matched(index: int) -> None:
+        def match(index: int) -> None:
             others, theirs = features[index]
             if len(others) >= 2:
-                here, there = _mutual(descriptors, theirs)
+                here, there = _mutual_matches(descriptors, theirs)
                 found[index, here] = others[there]
 
-        parallel_map(matched, range(len(pictures)))
+        parallel_map(match, range(len(pictures)))
         found[centre] = points
     return Tracks(points, found)
 
@@ -56,7 +60,7 @@ def _features(picture: NDArray[np.uint8], scale: float) -> tuple[NDArray[np.floa
     grey = cv2.cvtColor(np.ascontiguousarray(picture), cv2.COLOR_RGB2GRAY)
     if scale < 1:
         grey = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    sift = cv2.SIFT.create(nfeatures=FEATURES, contrastThreshold=0.015, enable_precise_upscale=True)
+    sift = cv2.SIFT.create(nfeatures=TRACK_MAX_FEATURES, contrastThreshold=0.015, enable_precise_upscale=True)
     keys, descriptors = sift.detectAndCompute(grey, None)
     if descriptors is None or not keys:
         return np.zeros((0, 2)), np.zeros((0, 128), np.float32)
@@ -66,12 +70,12 @@ def _features(picture: NDArray[np.uint8], scale: float) -> tuple[NDArray[np.floa
     return (positions[order] + 0.5) / scale, root[order].astype(np.float32)
 
 
-def _mutual(a: NDArray[np.float32], b: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Indices of mutual best matches that also stand out from the second best."""
+def _mutual_matches(a: NDArray[np.float32], b: NDArray[np.float32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Indices of mutual best matches that are clearly better than the second best."""
     matcher = cv2.BFMatcher(cv2.NORM_L2)
     forth = np.array([[m[0].trainIdx, m[0].distance, m[1].distance] for m in matcher.knnMatch(a, b, k=2)])
     back = np.array([m[0].trainIdx for m in matcher.knnMatch(b, a, k=1)])
     here = np.arange(len(a))
     there = forth[:, 0].astype(np.int64)
-    good = (back[there] == here) & (forth[:, 1] < RATIO * forth[:, 2])
+    good = (back[there] == here) & (forth[:, 1] < TRACK_MAX_DISTANCE_RATIO * forth[:, 2])
     return here[good], there[good]

@@ -28,7 +28,7 @@ from eigenfield.capture.arrangement import (
     told_by,
 )
 from eigenfield.capture.calibration import LARGEST, Calibration, Entry, Intrinsics
-from eigenfield.capture.layout import Layout
+from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.readers.text import SIDE_LIMIT, text
 from eigenfield.core.errors import CaptureError
 
@@ -112,7 +112,7 @@ def _square(numbers: list[int], folder: Path) -> tuple[int, int]:
     return side, side
 
 
-def _entry(path: Path, layout: Layout, index: int, parameters: Parameters) -> Entry:
+def _entry(path: Path, layout: GridLayout, index: int, parameters: Parameters) -> Entry:
     x = (layout.columns[index] - (parameters.columns - 1) / 2) * parameters.baseline
     y = (layout.rows[index] - (parameters.rows - 1) / 2) * parameters.baseline
     f, width, height = parameters.focal, parameters.width, parameters.height

@@ -25,7 +25,7 @@ from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, luma_of, spread_cameras
 from eigenfield.encoding.geometry.simplify_relief import LEFT
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy import DEFAULT_TRIANGLES, simplified, welded
+from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, simplify_mesh, weld_vertices
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.encode")
@@ -79,7 +79,7 @@ class _Points:
 
 def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observations, price: float) -> int | None:
     """The number of triangles, by `proxy.simplified`, at which bytes and errors together are least; None where those
-    that it has, or DEFAULT_TRIANGLES, are.
+    that it has, or PROXY_DEFAULT_TRIANGLES, are.
 
     Args:
         mesh: to be simplified.
@@ -102,15 +102,15 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observa
         return None  # one camera tells no depth
     times = len({view.time for view in views})  # a texel is seen about as often at each
     price *= share * times * float(np.median(seen)) * TRIANGLE_BYTES
-    plain = welded(mesh)
-    best = most = min(len(plain.faces), DEFAULT_TRIANGLES)
+    plain = weld_vertices(mesh)
+    best = most = min(len(plain.faces), PROXY_DEFAULT_TRIANGLES)
     least, count = price * most, float(most)
     # Fewer than of a mesh that is worse may still be better
     while (count := count / FINER) >= FEWEST and price * count < least:
         if count >= len(plain.faces):  # more went than was asked for
             continue
         try:
-            plain = simplified(plain, int(count))
+            plain = simplify_mesh(plain, int(count))
         except ProxyError:  # nothing is left
             break
         cost = price * len(plain.faces) + LEFT * share * _loss(plain, views, looked)

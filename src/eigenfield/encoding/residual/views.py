@@ -12,7 +12,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.encoding.residual.colour import to_difference
 from eigenfield.gltf.layout_residual import residual_frames
-from eigenfield.rendering import Picture, Shots, camera_colour, camera_weights, renderer_of
+from eigenfield.rendering import Picture, RenderJob, camera_colour, camera_weights, renderer_of
 
 
 def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
@@ -74,16 +74,16 @@ def captured_samples(scene: Scene, index: int) -> int | None:
     return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.rig.cameras[index])
 
 
-def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """`Shots.pixels` of a captured camera with its residual. Raises OptionError `residual` where the shots are not
+def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """`RenderJob.pixels` of a captured camera with its residual. Raises OptionError `residual` where the job is not
     drawn as those that it was taken from."""
-    scene = shots.scene
+    scene = job.scene
     changed = {
-        "resolution": shots.resolution is not None,
-        "filter": shots.filter != "bicubic",
-        "textures": shots.textures is not None,
-        "samples": shots.samples is not None,
-        "renderer": shots.renderer != "software",
+        "resolution": job.resolution is not None,
+        "filter": job.filter != "bicubic",
+        "textures": job.textures is not None,
+        "samples": job.samples is not None,
+        "renderer": job.renderer != "software",
     }
     for name, given in changed.items():
         if given:
@@ -92,9 +92,9 @@ def captured_pixels(shots: Shots, index: int, difference: NDArray[np.float32]) -
                 f"--{name} draws other pictures than the residual belongs to",
                 remedy="leave one of them out",
             )
-    shots = replace(shots, samples=captured_samples(scene, index))
-    picture = shots.picture(scene.rig.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
-    return shots.pixels_of(corrected(picture, difference, shots.background or (0.0,)))
+    job = replace(job, samples=captured_samples(scene, index))
+    picture = job.picture(scene.rig.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
+    return job.pixels_of(corrected(picture, difference, job.background or (0.0,)))
 
 
 def surface_colours(picture: Picture, background: Sequence[float] = (0.0,)) -> NDArray[np.float32]:

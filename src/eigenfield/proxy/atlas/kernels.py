@@ -1,4 +1,4 @@
-"""Counting how often an atlas is covered."""
+"""Inner loops that count how often texels of an atlas are covered."""
 
 from __future__ import annotations
 
@@ -12,10 +12,16 @@ from eigenfield.runtime.jit import kernel
 def count_layers(
     corners: NDArray[np.float64], faces: NDArray[np.int32], margin: float, layers: NDArray[np.uint8]
 ) -> None:
-    """corners (n, 2) in texels; layers (H, W) uint8, out: in how many triangles each texel's centre lies, by more than
-    `margin` texels from every edge, saturating at 255."""
+    """Count in how many triangles each texel's centre lies.
+
+    Args:
+        corners: (n, 2) vertices in texels.
+        faces: (m, 3).
+        margin: Texels by which a centre must lie inside every edge.
+        layers: (H, W) uint8, added to; saturates at 255.
+    """
     for f in range(faces.shape[0]):
-        touch(corners, faces[f], margin, layers, True)
+        cover_triangle(corners, faces[f], margin, layers, True)
 
 
 @kernel()
@@ -27,22 +33,36 @@ def claim_texels(
     layers: NDArray[np.uint8],
     claimed: NDArray[np.bool_],
 ) -> None:
-    """claimed (m,) bool, out: triangles that lie on no texel of those claimed before, in the given order; layers as in
-    `count_layers`, of the claimed ones."""
+    """Select triangles that cover no texel of those selected before.
+
+    Args:
+        corners: (n, 2) vertices in texels.
+        faces: (m, 3).
+        order: Order in which triangles are tried.
+        margin: Texels by which a centre must lie inside every edge.
+        layers: (H, W) uint8, as in `count_layers`, of the selected triangles.
+        claimed: (m,) bool, set for the selected triangles.
+    """
     for f in order:
-        if touch(corners, faces[f], margin, layers, False) == 0:
-            touch(corners, faces[f], margin, layers, True)
+        if cover_triangle(corners, faces[f], margin, layers, False) == 0:
+            cover_triangle(corners, faces[f], margin, layers, True)
             claimed[f] = True
 
 
 @kernel()
-def touch(
+def cover_triangle(
     corners: NDArray[np.float64], face: NDArray[np.int32], margin: float, layers: NDArray[np.uint8], add: bool
 ) -> int:
-    """The most layers on the texels whose centre lies in the triangle, by more than `margin` from its edges, before one
-    more is added to them (if `add`).
+    """The most layers on the texels whose centre lies in a triangle, before the triangle is added.
 
-    A point p is at the signed distance ((b - a) x (p - a)) / |b - a| from the edge a b.
+    A point p has the signed distance ((b - a) x (p - a)) / |b - a| from the edge a b.
+
+    Args:
+        corners: (n, 2) vertices in texels.
+        face: (3,) vertices of the triangle.
+        margin: Texels by which a centre must lie inside every edge.
+        layers: (H, W) uint8.
+        add: Whether the triangle is added to `layers`.
     """
     height, width = layers.shape
     x0, y0 = corners[face[0]]

@@ -1,4 +1,4 @@
-"""Is a mesh's UV layout an atlas, and how good a one?"""
+"""Whether a mesh's UV layout is a valid atlas, and its quality."""
 
 from __future__ import annotations
 
@@ -11,24 +11,25 @@ from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
 from eigenfield.imaging.graph import vertex_components
 from eigenfield.proxy.atlas.kernels import count_layers
 
-MEASURE_SIDE = 2048  # raster on which overlap and fill are counted
-MARGIN = 0.05  # texels of that raster: UVs are often printed with six digits
-BORDER = 5e-4  # UVs may lie this far outside 0..1 (half a texel at 1024): they are clipped
-OVERLAP_TOLERANCE = 0.005  # of the covered texels may lie in two triangles
-FLAT_TOLERANCE = 0.01  # of the surface may have UV triangles without area
+ATLAS_RASTER_TEXELS = 2048  # side of the raster on which overlap and fill are counted
+ATLAS_MARGIN_TEXELS = 0.05  # of that raster: UVs are often printed with six digits
+ATLAS_BORDER_UV = 5e-4  # UVs up to this far outside 0..1 (half a texel at 1024) are clipped
+ATLAS_MAX_OVERLAP_FRACTION = 0.005  # covered texels in more than one triangle
+ATLAS_MAX_FLAT_FRACTION = 0.01  # surface whose UV triangles have no area
 
 
 @dataclass(frozen=True)
 class AtlasStatistics:
-    """What an atlas costs and gives.
+    """Quality measures of an atlas.
 
-    charts: pieces that hang together by vertices.
-    fill: part of the unit square that is covered.
-    overlap: part of the covered texels that lie in more than one triangle.
-    flat: part of the surface, by area, whose UV triangles have no area.
-    stretch: L2 stretch of Sander et al. ("Texture Mapping Progressive Meshes", 2001), 1 at best: how unevenly texels
-        are spread, in size and in direction.
-    anisotropy: mean of the ratio of the singular values of the map, weighted by area; 1 where it is conformal.
+    Attributes:
+        charts: Number of charts, connected by vertices.
+        fill: Fraction of the unit square that is covered.
+        overlap: Fraction of the covered texels that lie in more than one triangle.
+        flat: Fraction of the surface, by area, whose UV triangles have no area.
+        stretch: L2 stretch of Sander et al. ("Texture Mapping Progressive Meshes", 2001), 1 at best: how unevenly
+            texels are distributed, in size and in direction.
+        anisotropy: Mean ratio of the singular values of the map, weighted by area; 1 where it is conformal.
     """
 
     charts: int
@@ -46,14 +47,17 @@ class AtlasStatistics:
 
 
 def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
-    """Measure the UV layout of a mesh; UVs must be there, finite and about in 0..1.
+    """Measure the UV layout of a mesh.
 
     The singular values of the map from UV to the surface are those of Ss = dP/du, St = dP/dv of each triangle.
+
+    Args:
+        mesh: With finite UVs, about in 0..1.
     """
     assert mesh.uv is not None
     uv = mesh.uv.astype(np.float64)
-    layers = np.zeros((MEASURE_SIDE, MEASURE_SIDE), np.uint8)
-    count_layers(uv * MEASURE_SIDE, mesh.faces, MARGIN, layers)
+    layers = np.zeros((ATLAS_RASTER_TEXELS, ATLAS_RASTER_TEXELS), np.uint8)
+    count_layers(uv * ATLAS_RASTER_TEXELS, mesh.faces, ATLAS_MARGIN_TEXELS, layers)
     covered, doubled = int((layers > 0).sum()), int((layers > 1).sum())
     q = uv[mesh.faces]
     p = mesh.vertices[mesh.faces].astype(np.float64)
@@ -89,8 +93,13 @@ def _stretch(
 
 
 def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
-    """L2 stretch of Sander et al., as in `AtlasStatistics`, of any layout; infinite where a triangle has no area in
-    it."""
+    """L2 stretch of Sander et al., as in `AtlasStatistics`; infinite if a triangle has no area in the layout.
+
+    Args:
+        vertices: (n, 3).
+        uv: (n, 2) layout.
+        faces: (m, 3).
+    """
     p, q = vertices[faces], uv[faces]
     surface, signed = triangle_areas(p), signed_areas(q)
     if (signed == 0).any() or surface.sum() == 0:
@@ -99,31 +108,43 @@ def l2_stretch(vertices: NDArray[np.float64], uv: NDArray[np.float64], faces: ND
 
 
 def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
-    """(m,) which chart each triangle is in: triangles that share a vertex are in one."""
+    """(m,) index of the chart of each triangle: triangles that share a vertex are in one chart.
+
+    Args:
+        mesh: The mesh.
+    """
     label = vertex_components(mesh.faces, len(mesh.vertices))
     _, chart = np.unique(label[mesh.faces[:, 0]], return_inverse=True)
     return chart.astype(np.int32)
 
 
 def chart_sizes(mesh: Mesh) -> NDArray[np.int64]:
-    """(charts,) number of triangles of each."""
+    """(charts,) number of triangles of each chart.
+
+    Args:
+        mesh: The mesh.
+    """
     return np.bincount(chart_labels(mesh))
 
 
 def atlas_fault(mesh: Mesh) -> str | None:
-    """Why the mesh's own UVs are no atlas, as the end of a sentence; None if they are one."""
+    """Why the mesh's own UVs are no atlas, as the end of a sentence; None if they are one.
+
+    Args:
+        mesh: The mesh.
+    """
     if mesh.uv is None:
         return "there are none"
     if not np.isfinite(mesh.uv).all():
         return "some are NaN or infinite"
     low, high = mesh.uv.min(axis=0), mesh.uv.max(axis=0)
-    if low.min() < -BORDER or high.max() > 1 + BORDER:
+    if low.min() < -ATLAS_BORDER_UV or high.max() > 1 + ATLAS_BORDER_UV:
         return f"they tile: they reach from {low.min():.4g} to {high.max():.4g}, outside 0..1"
     if (high - low).min() <= 1e-6:
         return "they all lie on one point or line"
     statistics = atlas_statistics(mesh)
-    if statistics.flat > FLAT_TOLERANCE:
+    if statistics.flat > ATLAS_MAX_FLAT_FRACTION:
         return f"{statistics.flat:.1%} of the surface has no area in them"
-    if statistics.overlap > OVERLAP_TOLERANCE:
+    if statistics.overlap > ATLAS_MAX_OVERLAP_FRACTION:
         return f"{statistics.overlap:.1%} of the covered texels lie in more than one triangle"
     return None

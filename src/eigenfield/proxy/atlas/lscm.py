@@ -1,8 +1,8 @@
-"""Least-squares conformal maps (Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation",
-2002).
+"""Least-squares conformal maps.
 
-The scale and turn of the map, which the paper fixes by pinning two vertices at a price in distortion near them, are
-fixed by the boundary as a whole: Mullen et al., "Spectral Conformal Parameterization" (2008).
+Lévy et al., "Least Squares Conformal Maps for Automatic Texture Atlas Generation", 2002. The paper fixes the scale and
+rotation of the map by pinning two vertices, which distorts the map near them. Here the whole boundary fixes them:
+Mullen et al., "Spectral Conformal Parameterization", 2008.
 """
 
 from __future__ import annotations
@@ -15,44 +15,59 @@ from scipy.sparse.linalg import splu
 from eigenfield.core.mesh import signed_areas, triangle_areas
 from eigenfield.imaging.graph import face_edges
 
-SHIFT = 1e-9  # of the mean diagonal: keeps the factorisation regular
-ITERATIONS = 12  # of inverse iteration; the wanted pair of eigenvalues is far below the rest
-SMALLEST = 1e-12  # of the mean area: triangles below this say nothing about angles
+LSCM_DIAGONAL_SHIFT = 1e-9  # relative to the mean diagonal: keeps the factorisation regular
+LSCM_ITERATIONS = 12  # of inverse iteration; the desired pair of eigenvalues is far below the rest
+LSCM_MIN_AREA_RATIO = 1e-12  # smaller triangles, relative to the mean, do not determine angles
 
 
 def conformal_map(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
-    """(n, 2) coordinates in the plane of a chart's (n, 3) vertices, its faces (m, 3) of positive area on the whole.
+    """The conformal map of a chart to the plane.
 
-    Least conformal energy sum |W_1 u_1 + W_2 u_2 + W_3 u_3|^2 / (2 area) over the triangles, u = x + i y, W_k the edge
-    opposite corner k as a complex number in the triangle's own plane (equation 4 of Lévy et al.), among maps whose
-    boundary has spread 1 about its middle. The total area is that of the surface. Every vertex must be in a face.
+    It has the least conformal energy sum |W_1 u_1 + W_2 u_2 + W_3 u_3|^2 / (2 area) over the triangles, u = x + i y,
+    W_k the edge opposite corner k as a complex number in the triangle's own plane (equation 4 of Lévy et al.), among
+    maps whose boundary has variance 1 about its mean. The total area is that of the surface.
+
+    Args:
+        vertices: (n, 3); each is in a face.
+        faces: (m, 3), of positive total area.
+
+    Returns:
+        (n, 2) coordinates.
     """
     energy = conformal_energy(vertices, faces)
     n = len(vertices)
-    rim = boundary_vertices(faces, n)
-    mass = np.tile(rim, 2).astype(np.float64)
+    boundary = boundary_vertices(faces, n)
+    mass = np.tile(boundary, 2).astype(np.float64)
     size = float(energy.diagonal().mean()) or 1.0
-    solve = splu((energy + SHIFT * size * diags_array(np.ones(2 * n))).tocsc()).solve
-    z = _start(vertices, rim)
-    for _ in range(ITERATIONS):
+    solve = splu((energy + LSCM_DIAGONAL_SHIFT * size * diags_array(np.ones(2 * n))).tocsc()).solve
+    z = _initial_map(vertices, boundary)
+    for _ in range(LSCM_ITERATIONS):
         z = solve(mass * z).reshape(2, n)
-        z -= z[:, rim].mean(axis=1, keepdims=True)
-        z = (z / np.sqrt((z[:, rim] ** 2).sum())).reshape(-1)
+        z -= z[:, boundary].mean(axis=1, keepdims=True)
+        z = (z / np.sqrt((z[:, boundary] ** 2).sum())).reshape(-1)
     uv = z.reshape(2, n).T
     area = signed_areas(uv[faces])
-    if area.sum() < 0:  # the energy of a mirrored map is as large as can be; this is for maps that collapsed
+    if area.sum() < 0:  # a mirrored map has maximal energy; this is for maps that collapsed
         uv = uv * (1, -1)
     total = max(abs(float(area.sum())), 1e-300)
     return np.ascontiguousarray(uv * np.sqrt(float(triangle_areas(vertices[faces]).sum()) / total))
 
 
 def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> csr_array:
-    """(2 n, 2 n) matrix of the energy, for (x_1 .. x_n, y_1 .. y_n): zero for a map that turns and scales only."""
+    """Matrix of the energy for (x_1 .. x_n, y_1 .. y_n): zero for similarities.
+
+    Args:
+        vertices: (n, 3).
+        faces: (m, 3).
+
+    Returns:
+        (2 n, 2 n) symmetric.
+    """
     p = vertices[faces]
     along, side = p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]
     length = np.linalg.norm(along, axis=1)
     twice = 2 * triangle_areas(vertices[faces])
-    good = twice > SMALLEST * max(float(twice.mean()), 1e-300)
+    good = twice > LSCM_MIN_AREA_RATIO * max(float(twice.mean()), 1e-300)
     length, along, side, twice, f = length[good], along[good], side[good], twice[good], faces[good].astype(np.int64)
     x2, y2 = (along * side).sum(axis=1) / length, twice / length
     corner = np.stack([np.zeros_like(x2), length + 0j, x2 + 1j * y2], axis=1)
@@ -68,17 +83,22 @@ def conformal_energy(vertices: NDArray[np.float64], faces: NDArray[np.int32]) ->
 
 
 def boundary_vertices(faces: NDArray[np.int32], n: int) -> NDArray[np.bool_]:
-    """(n,) on an edge of one triangle only; all of them where there is none (a closed surface)."""
+    """(n,) vertices on an edge of only one triangle; all vertices of a closed surface.
+
+    Args:
+        faces: (m, 3).
+        n: Number of vertices.
+    """
     ends, edge = face_edges(faces)
-    rim = np.zeros(n, np.bool_)
-    rim[ends[np.bincount(edge)[edge] == 1]] = True
-    return rim if rim.any() else np.ones(n, np.bool_)
+    boundary = np.zeros(n, np.bool_)
+    boundary[ends[np.bincount(edge)[edge] == 1]] = True
+    return boundary if boundary.any() else np.ones(n, np.bool_)
 
 
-def _start(vertices: NDArray[np.float64], rim: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Two principal directions of the boundary, signs fixed: not orthogonal to the answer, and always the same."""
-    centred = vertices - vertices[rim].mean(axis=0)
-    _, _, directions = np.linalg.svd(centred[rim], full_matrices=False)
+def _initial_map(vertices: NDArray[np.float64], boundary: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Two principal directions of the boundary with fixed signs: not orthogonal to the solution, and deterministic."""
+    centred = vertices - vertices[boundary].mean(axis=0)
+    _, _, directions = np.linalg.svd(centred[boundary], full_matrices=False)
     directions = directions[:2]
     largest = np.argmax(np.abs(directions), axis=1)
     directions = directions * np.sign(directions[[0, 1], largest])[:, None]

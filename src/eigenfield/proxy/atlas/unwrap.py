@@ -1,7 +1,7 @@
-"""A mesh with an atlas: its own where it has one, else a new one.
+"""A mesh with an atlas: its own if it is valid, else a new one.
 
 xatlas cuts charts by the planarity and compactness of groups of triangles. They are laid out by least-squares conformal
-maps (`lscm`), sized by how densely the photographs see them (`lscm_charts`), and packed by xatlas again.
+maps (`lscm`), scaled by the resolution of the photographs (`lscm_charts`), and packed by xatlas.
 """
 
 from __future__ import annotations
@@ -18,19 +18,19 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
 from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.layout import OVERLAP_TOLERANCE, atlas_fault, atlas_statistics, chart_labels
+from eigenfield.proxy.atlas.layout import ATLAS_MAX_OVERLAP_FRACTION, atlas_fault, atlas_statistics, chart_labels
 from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.child import run_child
 from eigenfield.proxy.meshes.read import is_sliver
 
 log = logging.getLogger("eigenfield.proxy")
 
-DEFAULT_TRIANGLES = 30_000
-FEWEST_TRIANGLES = 4
-LOST_TOLERANCE = 0.01  # of the surface may be in no chart
+PROXY_DEFAULT_TRIANGLES = 30_000
+UNWRAP_MIN_TRIANGLES = 4
+UNWRAP_MAX_LOST_FRACTION = 0.01  # of the surface, in no chart
 
 
-def unwrapped(
+def unwrap_mesh(
     mesh: Mesh,
     *,
     triangles: int | None = None,
@@ -39,13 +39,20 @@ def unwrapped(
 ) -> Mesh:
     """The mesh with a valid atlas (see `atlas_fault`), one UV a vertex.
 
-    cameras: give each new chart an area in proportion to how densely these see it (`chart_scales`); None: all alike.
-    triangles: simplify to this many at most; None keeps a mesh that has an atlas as it is, and simplifies others to
-    DEFAULT_TRIANGLES. A simplified mesh gets new charts. Raises OptionError `triangles`; ProxyError `proxy-unwrap`.
+    Args:
+        mesh: With or without UVs.
+        triangles: Simplify to at most this many. None keeps a mesh with an atlas as it is, and simplifies others to
+            PROXY_DEFAULT_TRIANGLES. A simplified mesh gets new charts.
+        cameras: Give each new chart an area in proportion to their resolution (`chart_scales`). None: all charts alike.
+        progress: Called for each step.
+
+    Raises:
+        OptionError: `triangles`: too few.
+        ProxyError: `proxy-unwrap`: the mesh cannot be unwrapped.
     """
-    if triangles is not None and triangles < FEWEST_TRIANGLES:
+    if triangles is not None and triangles < UNWRAP_MIN_TRIANGLES:
         raise OptionError(
-            "triangles", f"{triangles} triangles were asked for", remedy=f"ask for {FEWEST_TRIANGLES} or more"
+            "triangles", f"{triangles} triangles were asked for", remedy=f"ask for {UNWRAP_MIN_TRIANGLES} or more"
         )
     fault = atlas_fault(mesh)
     if fault is None and (triangles is None or len(mesh.faces) <= triangles):
@@ -55,23 +62,27 @@ def unwrapped(
         log.info("the mesh's own atlas is given up for fewer triangles")
     elif mesh.uv is not None:
         log.warning("the mesh's own texture coordinates are no atlas: %s; new charts are cut", fault)
-    plain = welded(mesh)
-    limit = DEFAULT_TRIANGLES if triangles is None else triangles
+    plain = weld_vertices(mesh)
+    limit = PROXY_DEFAULT_TRIANGLES if triangles is None else triangles
     if len(plain.faces) > limit:
-        plain = simplified(plain, limit)
+        plain = simplify_mesh(plain, limit)
         log.warning("the mesh is simplified from %d to %d triangles", len(mesh.faces), len(plain.faces))
-    result = _new_atlas(plain, cameras, progress)
+    result = _make_atlas(plain, cameras, progress)
     statistics = atlas_statistics(result)
     log.info("atlas: %s", statistics)
-    if statistics.overlap > OVERLAP_TOLERANCE:
+    if statistics.overlap > ATLAS_MAX_OVERLAP_FRACTION:
         log.warning("the new charts overlap by %.1f%%: expect ghosts there", 100 * statistics.overlap)
     return result
 
 
-def welded(mesh: Mesh) -> Mesh:
-    """Vertices at the same place to the bit made one, UVs dropped: undoes the doubling along the seams of an atlas."""
+def weld_vertices(mesh: Mesh) -> Mesh:
+    """Merge vertices at identical positions and drop UVs: undoes the duplication along the seams of an atlas.
+
+    Args:
+        mesh: The mesh.
+    """
     vertices, first, index = np.unique(mesh.vertices, axis=0, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # in the order in which they came
+    order = np.argsort(first)  # keep the order of first occurrence
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))
     faces = rank[index.reshape(-1)][mesh.faces].astype(np.int32)
@@ -79,11 +90,19 @@ def welded(mesh: Mesh) -> Mesh:
     return Mesh(vertices[order], faces[whole])
 
 
-def simplified(mesh: Mesh, triangles: int) -> Mesh:
-    """At most about `triangles` of them, by quadric edge collapse (fast-simplification); without UVs."""
+def simplify_mesh(mesh: Mesh, triangles: int) -> Mesh:
+    """The mesh with at most about `triangles` triangles, by quadric edge collapse, without UVs.
+
+    Args:
+        mesh: The mesh.
+        triangles: How many.
+
+    Raises:
+        ProxyError: `proxy-degenerate`: nothing is left.
+    """
     from fast_simplification import simplify
 
-    centre, scale = _frame(mesh)
+    centre, scale = _normalisation(mesh)
     points, faces = simplify(
         (mesh.vertices.astype(np.float64) - centre) / scale, mesh.faces.astype(np.int64), target_count=triangles
     )
@@ -100,7 +119,7 @@ def simplified(mesh: Mesh, triangles: int) -> Mesh:
     return Mesh(vertices[used], index.reshape(kept.shape).astype(np.int32))
 
 
-def _frame(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
+def _normalisation(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
     """Centre and mean edge length: thresholds of the libraries are absolute, meant for numbers near 1."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
@@ -108,11 +127,11 @@ def _frame(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
     return (low + high) / 2, float(edges.mean()) or 1.0
 
 
-def _new_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
+def _make_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
     if progress is not None:
         progress("atlas", 0, 3)
-    centre, scale = _frame(mesh)
-    cut = _taken_up(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, progress, 0))
+    centre, scale = _normalisation(mesh)
+    cut = _apply_xatlas(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, progress, 0))
     if progress is not None:
         progress("atlas", 1, 3)
     laid = conformal_charts(cut)
@@ -123,7 +142,7 @@ def _new_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress 
         uv *= chart_scales(laid, cameras)[_chart_of_vertex(laid, label)][:, None]
     if progress is not None:
         progress("atlas", 2, 3)
-    packed = _taken_up(laid, _run_xatlas(uv, laid.faces, label, progress, 2))
+    packed = _apply_xatlas(laid, _run_xatlas(uv, laid.faces, label, progress, 2))
     if progress is not None:
         progress("atlas", 3, 3)
     return packed
@@ -135,8 +154,8 @@ def _chart_of_vertex(mesh: Mesh, label: NDArray[np.int32]) -> NDArray[np.int32]:
     return result
 
 
-def _taken_up(mesh: Mesh, answer: bytes) -> Mesh:
-    """The mesh as xatlas gives it back: vertices doubled along seams, UVs in 0..1 at one scale along both axes."""
+def _apply_xatlas(mesh: Mesh, answer: bytes) -> Mesh:
+    """The mesh as xatlas returns it: vertices duplicated along seams, UVs in 0..1 at one scale along both axes."""
     stream = io.BytesIO(answer)
     origin, corners, texels, laid_out, size = (np.load(stream, allow_pickle=False) for _ in range(5))
     uv = (texels * (size / size.max())).astype(np.float32)  # xatlas divides each axis by its own size
@@ -144,7 +163,7 @@ def _taken_up(mesh: Mesh, answer: bytes) -> Mesh:
     held = laid_out[faces].all(axis=1)
     if not held.all():
         area = triangle_areas(mesh.vertices[origin][faces].astype(np.float64))
-        if not held.any() or area[~held].sum() > LOST_TOLERANCE * area.sum():
+        if not held.any() or area[~held].sum() > UNWRAP_MAX_LOST_FRACTION * area.sum():
             raise ProxyError(
                 "proxy-unwrap",
                 f"no chart could be found for {int((~held).sum())} of {len(faces)} triangles",
@@ -167,8 +186,10 @@ def _run_xatlas(
     progress: Progress | None,
     done: int,
 ) -> bytes:
-    """What `xatlas_process.py` answers to (n, 3) positions, or (n, 2) layouts of charts; it is ended when the waiting
-    is (Ctrl-C, or an exception from `progress`, which hears of `done` steps of three meanwhile)."""
+    """The answer of `xatlas_process.py` to (n, 3) positions or (n, 2) layouts of charts.
+
+    Ctrl-C or an exception from `progress`, which meanwhile reports `done` steps of three, ends the process.
+    """
     labels = np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32)
     return run_child(
         Path(__file__).with_name("xatlas_process.py"), [points.astype(np.float32), faces.astype(np.uint32), labels],

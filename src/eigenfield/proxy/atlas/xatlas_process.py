@@ -1,7 +1,7 @@
-"""The process in which xatlas works: a mesh comes in on standard input, its atlas goes out on standard output.
+"""The process that runs xatlas: a mesh comes in on standard input, its atlas goes out on standard output.
 
-Run as a script, with nothing of this package imported: xatlas takes minutes on a large mesh, says nothing, cannot be
-interrupted, and ends the process on some meshes. What is sent each way is a row of NumPy arrays (`numpy.save`).
+It runs as a script that imports nothing of this package. xatlas takes minutes on a large mesh, is silent, cannot be
+interrupted, and crashes on some meshes. Both messages are sequences of NumPy arrays (`numpy.save`).
 """
 
 from __future__ import annotations
@@ -13,34 +13,37 @@ import sys
 import numpy as np
 import xatlas
 
-RESOLUTION = 1024  # the packing's goal; packed charts end up on one about 1.7 times as large
-PADDING = (4, 7)  # texels between charts on that: at least, and with few charts ..
-PADDING_SHARE = 0.1  # .. of the side of a chart of mean size
-MOST_TRIED = 400  # charts: up to here every place in the atlas is tried (in steps of 4), above random ones
-LARGEST = 0.2  # of the surface: one chart that winds about the whole background would leave half of the atlas empty
-MAX_COST = 8.0  # of growing a chart; xatlas' 2 cuts a noisy mesh into more pieces at no gain in stretch
+XATLAS_RESOLUTION_TEXELS = 1024  # target of the packing; the result is about 1.7 times as large
+XATLAS_PADDING_TEXELS = (4, 7)  # between charts: at least, and at most
+XATLAS_PADDING_FRACTION = 0.1  # padding of few charts, in sides of a chart of mean size
+XATLAS_MAX_BRUTE_FORCE_CHARTS = 400  # up to here every place in the atlas is tried (in steps of 4), above random ones
+XATLAS_MAX_CHART_FRACTION = 0.2  # of the surface: one chart around the background would waste half of the atlas
+XATLAS_MAX_CHART_COST = 8.0  # of growing a chart; the default of 2 cuts a noisy mesh into more charts
 
 
 def main() -> None:
+    """Read the mesh, cut or pack its charts, and write the atlas."""
     answer = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever xatlas prints must not get into the answer
+    os.dup2(2, 1)  # what xatlas prints must not get into the answer
     message = io.BytesIO(sys.stdin.buffer.read())
     points, faces, chart = (np.load(message, allow_pickle=False) for _ in range(3))
     options = xatlas.PackOptions()
-    options.resolution, options.padding, options.bilinear = RESOLUTION, PADDING[0], True
+    options.resolution, options.padding, options.bilinear = XATLAS_RESOLUTION_TEXELS, XATLAS_PADDING_TEXELS[0], True
     atlas = xatlas.Atlas()
     if points.shape[1] == 3:  # a surface: cut it into charts
         charts = xatlas.ChartOptions()
-        charts.max_cost = MAX_COST
+        charts.max_cost = XATLAS_MAX_CHART_COST
         p = points[faces].astype(np.float64)
         areas = np.linalg.norm(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]), axis=1) / 2
-        charts.max_chart_area = LARGEST * float(areas.sum())
+        charts.max_chart_area = XATLAS_MAX_CHART_FRACTION * float(areas.sum())
         atlas.add_mesh(points, faces)
         atlas.generate(charts, options)
     else:  # charts that are laid out: only pack them, at the sizes they have
         count = len(np.unique(chart))
-        options.padding = int(np.clip(PADDING_SHARE * RESOLUTION / np.sqrt(count), *PADDING))
-        options.bruteForce = options.blockAlign = count <= MOST_TRIED
+        options.padding = int(
+            np.clip(XATLAS_PADDING_FRACTION * XATLAS_RESOLUTION_TEXELS / np.sqrt(count), *XATLAS_PADDING_TEXELS)
+        )
+        options.bruteForce = options.blockAlign = count <= XATLAS_MAX_BRUTE_FORCE_CHARTS
         atlas.add_uv_mesh(points, faces, chart[:, None])
         atlas.generate(pack_options=options)
     origin, corners, uv = atlas.get_mesh(0)

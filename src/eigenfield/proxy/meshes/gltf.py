@@ -1,7 +1,7 @@
-"""glTF 2.0 and GLB: all triangles of the scene, node transforms applied.
+"""glTF 2.0 and GLB: all triangles of the scene, with node transforms applied.
 
-trimesh reads TEXCOORD_0 only of primitives with a material, and a material only with its pictures. So every primitive
-is given one empty material, and materials, textures and pictures are taken out before trimesh sees the file.
+trimesh reads TEXCOORD_0 only of primitives with a material, and a material only with its images. Every primitive is
+therefore given one empty material, and materials, textures and images are removed before trimesh sees the file.
 """
 
 from __future__ import annotations
@@ -20,19 +20,28 @@ from eigenfield.proxy.meshes.polygons import check_range
 
 log = logging.getLogger("eigenfield.proxy")
 
-_MAGIC, _JSON = 0x46546C67, 0x4E4F534A
+_GLB_MAGIC, _GLB_JSON_CHUNK = 0x46546C67, 0x4E4F534A
 
 
 def read_gltf(
     data: bytes, suffix: str, path: Path
 ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
-    """(n, 3) positions, (m, 3) faces and, if every primitive has them, (n, 2) UVs with v down."""
+    """All triangles of a scene.
+
+    Args:
+        data: The file.
+        suffix: ".gltf" or ".glb".
+        path: Of the file, for external buffers and messages.
+
+    Returns:
+        (n, 3) positions, (m, 3) faces and, if every primitive has them, (n, 2) UVs with v down.
+    """
     import trimesh
     from trimesh.resolvers import FilePathResolver
 
     glb = suffix == ".glb"
     scene = trimesh.load_scene(
-        io.BytesIO(_without_materials(data) if glb else _stripped(data)),
+        io.BytesIO(_strip_glb(data) if glb else _strip_materials(data)),
         file_type=suffix[1:],
         resolver=FilePathResolver(str(path)),
         process=False,
@@ -64,22 +73,22 @@ def read_gltf(
     return np.concatenate(vertices), np.concatenate(faces), None if without else np.concatenate(uvs)
 
 
-def _without_materials(data: bytes) -> bytes:
-    """The GLB with its JSON chunk `_stripped`."""
+def _strip_glb(data: bytes) -> bytes:
+    """The GLB with its JSON chunk stripped of materials."""
     magic, version, length = struct.unpack_from("<III", data, 0)
     size, kind = struct.unpack_from("<II", data, 12)
-    if magic != _MAGIC or version != 2 or kind != _JSON:
+    if magic != _GLB_MAGIC or version != 2 or kind != _GLB_JSON_CHUNK:
         raise ValueError("no glTF 2.0 header")
     if length > len(data) or 20 + size > length:
         raise ValueError(f"{length} bytes announced, {len(data)} found")
-    text = _stripped(data[20 : 20 + size])
+    text = _strip_materials(data[20 : 20 + size])
     text += b" " * (-len(text) % 4)
     rest = data[20 + size : length]
-    head = struct.pack("<IIIII", _MAGIC, 2, 20 + len(text) + len(rest), len(text), _JSON)
+    head = struct.pack("<IIIII", _GLB_MAGIC, 2, 20 + len(text) + len(rest), len(text), _GLB_JSON_CHUNK)
     return head + text + rest
 
 
-def _stripped(text: bytes) -> bytes:
+def _strip_materials(text: bytes) -> bytes:
     tree: dict[str, Any] = json.loads(text)
     for key in ("images", "textures", "samplers", "extensions"):
         tree.pop(key, None)

@@ -1,7 +1,7 @@
 """Wavefront OBJ: geometry and texture coordinates, nothing else.
 
-Read here and not by trimesh (5.2), which takes index 0 for the first vertex, counts relative indices from the end of
-the file, gives UVs up silently when one index is out of range, and cuts the mesh apart where the material changes.
+trimesh (5.2) is not used here. It takes index 0 for the first vertex, counts relative indices from the end of the file,
+silently drops UVs if one index is out of range, and splits the mesh where the material changes.
 """
 
 from __future__ import annotations
@@ -10,25 +10,33 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
-from eigenfield.proxy.meshes.polygons import Polygons, split_seams, triangulate
+from eigenfield.proxy.meshes.polygons import Polygons, split_seams, triangulate_polygons
 
 
 def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64] | None]:
-    """(n, 3) positions, (m, 3) faces and, if every corner has one, (n, 2) UVs with v down.
+    """Geometry and texture coordinates of an OBJ file.
 
-    Raises ProxyError `proxy-index-range`, `proxy-unreadable` with the number of the line.
+    Args:
+        data: The file.
+
+    Returns:
+        (n, 3) positions, (m, 3) faces and, if every corner has one, (n, 2) UVs with v down.
+
+    Raises:
+        ProxyError: `proxy-index-range`, with the number of the line.
+        ValueError: Damaged data, with the number of the line.
     """
     positions: list[tuple[float, float, float]] = []
     texels: list[tuple[float, float]] = []
     corners: list[tuple[int, int]] = []  # vertex and texture coordinate, counted from 0; -1: none
     sizes: list[int] = []
-    largest = [(0, 0), (0, 0)]  # the highest vertex and texture coordinate named, and where
+    largest = [(0, 0), (0, 0)]  # the highest vertex and texture coordinate index, and its line
     if b"\0" in data:
         raise ValueError("binary data")
     lines = enumerate(data.decode("utf-8", errors="replace").splitlines(), 1)
     for number, text in lines:
         line = text
-        while line.endswith("\\"):  # a statement that goes on in the next line
+        while line.endswith("\\"):  # a statement that continues in the next line
             line = line[:-1] + next(lines, (0, ""))[1]
         words = line.split()
         try:
@@ -70,8 +78,8 @@ def read_obj(data: bytes) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArr
     table = np.array(corners, np.int64).reshape(-1, 2)
     polygons = Polygons(table[:, 0], np.array(sizes, np.int64))
     if len(table) == 0 or (table[:, 1] < 0).any():
-        return vertices, triangulate(polygons, None)[0], None
-    origin, faces, uv = split_seams(*triangulate(polygons, np.array(texels, np.float64)[table[:, 1]]))
+        return vertices, triangulate_polygons(polygons, None)[0], None
+    origin, faces, uv = split_seams(*triangulate_polygons(polygons, np.array(texels, np.float64)[table[:, 1]]))
     return vertices[origin], faces, uv
 
 

@@ -1,4 +1,4 @@
-"""Polygons into triangles, and one UV a vertex: vertices are doubled where a seam gives them several."""
+"""Triangulation of polygons, and one UV a vertex: vertices are duplicated where a seam gives them several."""
 
 from __future__ import annotations
 
@@ -12,26 +12,40 @@ from eigenfield.core.errors import ProxyError
 
 
 class Polygons(NamedTuple):
-    """Polygons end to end: corners (c,) vertex indices, sizes (p,) how many belong to each."""
+    """Polygons, stored one after the other.
+
+    Attributes:
+        corners: (c,) vertex indices.
+        sizes: (p,) number of corners of each polygon.
+    """
 
     corners: NDArray[np.int64]
     sizes: NDArray[np.int64]
 
     @staticmethod
     def from_rows(rows: Sequence[Any] | NDArray[Any]) -> Polygons:
-        """Of lists of vertex indices, (p, k) if all are alike."""
+        """Polygons from lists of vertex indices.
+
+        Args:
+            rows: One list a polygon, or (p, k) if all have k corners.
+        """
         if isinstance(rows, np.ndarray) and rows.ndim == 2:
             return Polygons(rows.reshape(-1).astype(np.int64), np.full(len(rows), rows.shape[1], np.int64))
         sizes = np.array([len(row) for row in rows], np.int64)
         return Polygons(np.concatenate([np.asarray(row) for row in rows]).astype(np.int64), sizes)
 
 
-def triangulate(
+def triangulate_polygons(
     polygons: Polygons, uv: NDArray[np.float64] | None
 ) -> tuple[NDArray[np.int64], NDArray[np.float64] | None]:
-    """Fans from each polygon's first corner: (m, 3) vertices, and (m, 3, 2) UVs from (c, 2), one a corner.
+    """Triangle fans from each polygon's first corner; polygons with fewer than three corners give none.
 
-    Polygons with fewer than three corners give nothing.
+    Args:
+        polygons: The polygons.
+        uv: (c, 2) UVs of the corners, if any.
+
+    Returns:
+        (m, 3) vertices, and (m, 3, 2) UVs of the corners.
     """
     first = np.cumsum(polygons.sizes) - polygons.sizes
     count = np.maximum(polygons.sizes - 2, 0)
@@ -44,9 +58,14 @@ def triangulate(
 def split_seams(
     faces: NDArray[np.int64], uv: NDArray[np.float64] | None
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """(m, 3) vertices and (m, 3, 2) UVs a corner, to one UV a vertex.
+    """One UV a vertex from one UV a corner.
 
-    Returns origin (n,), the vertex that each new one copies, rising; the new (m, 3) faces; and (n, 2) UVs.
+    Args:
+        faces: (m, 3) vertices.
+        uv: (m, 3, 2) UVs of the corners.
+
+    Returns:
+        (n,) the vertex that each new one copies, increasing; the new (m, 3) faces; and (n, 2) UVs.
     """
     assert uv is not None
     _, texel = np.unique(uv.reshape(-1, 2), axis=0, return_inverse=True)
@@ -56,7 +75,15 @@ def split_seams(
 
 
 def check_range(indices: NDArray[np.int64], count: int) -> None:
-    """Raise ProxyError `proxy-index-range` unless all indices are in [0, count)."""
+    """Check that all indices are in [0, count).
+
+    Args:
+        indices: Vertex indices.
+        count: Number of vertices.
+
+    Raises:
+        ProxyError: `proxy-index-range`.
+    """
     wrong = indices[(indices < 0) | (indices >= count)]
     if len(wrong):
         raise ProxyError(

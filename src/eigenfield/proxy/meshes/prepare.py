@@ -1,4 +1,4 @@
-"""From a mesh file and the cameras to the proxy that `encode` works on."""
+"""From a mesh file and the cameras to the proxy that `encode` uses."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.atlas.unwrap import unwrapped
-from eigenfield.proxy.meshes.read import Raw, checked, read_mesh
+from eigenfield.proxy.atlas.unwrap import unwrap_mesh
+from eigenfield.proxy.meshes.read import RawMesh, check_mesh, read_mesh
 
-THUMBNAIL = 64  # side of the pictures on which a mesh is looked for whose vertices all lie outside
+PREPARE_THUMBNAIL_PIXELS = 64  # side of the pictures in which a mesh is searched whose vertices all lie outside
 
 
 def prepare_proxy(
@@ -29,33 +29,49 @@ def prepare_proxy(
 ) -> Mesh:
     """Read (or check) a mesh, make sure that a camera sees it, and give it an atlas.
 
-    triangles: see `unwrapped`, or what says so of the mesh that was read. Raises ProxyError: what `read_mesh` and
-    `unwrapped` raise, and `proxy-not-seen`.
+    Args:
+        path_or_mesh: A mesh file, or a mesh.
+        cameras: All cameras.
+        triangles: As in `unwrap_mesh`, or a function that returns it for the mesh.
+        progress: Called for each step.
+
+    Raises:
+        ProxyError: As `read_mesh` and `unwrap_mesh`; `proxy-not-seen`: no camera sees the mesh.
+        OptionError: As `unwrap_mesh`.
     """
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
     mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
     check_seen(mesh, cameras, path)
     try:
         count = triangles(mesh) if callable(triangles) else triangles
-        return unwrapped(mesh, triangles=count, cameras=cameras, progress=progress)
+        return unwrap_mesh(mesh, triangles=count, cameras=cameras, progress=progress)
     except ProxyError as error:
         raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from error
 
 
 def _from_memory(mesh: Mesh) -> Mesh:
     uv = None if mesh.uv is None else np.asarray(mesh.uv, np.float64)
-    return checked(Raw(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv), None)
+    return check_mesh(RawMesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv), None)
 
 
 def check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None:
-    """Raise ProxyError `proxy-not-seen` unless some of the mesh is in some camera's frame."""
+    """Check that some of the mesh is in some camera's frame.
+
+    Args:
+        mesh: The mesh.
+        cameras: All cameras.
+        path: Of the mesh file, for the message.
+
+    Raises:
+        ProxyError: `proxy-not-seen`.
+    """
     behind = 0
     for camera in cameras:
         pixels, depth = camera.project(mesh.vertices)
-        if _inside(pixels, depth, camera).any():
+        if _inside_frame(pixels, depth, camera).any():
             return
         behind += not (depth > 0).any()
-    if any(_drawn(mesh, camera) for camera in cameras):
+    if any(_covers_pixels(mesh, camera) for camera in cameras):
         return
     if behind == len(cameras):
         where = f"lies behind all {len(cameras)} cameras"
@@ -72,13 +88,15 @@ def check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None
     )
 
 
-def _inside(pixels: NDArray[np.float64], depth: NDArray[np.float64], camera: Camera) -> NDArray[np.bool_]:
+def _inside_frame(pixels: NDArray[np.float64], depth: NDArray[np.float64], camera: Camera) -> NDArray[np.bool_]:
     x, y = pixels[:, 0], pixels[:, 1]
     return (depth > 0) & (x > 0) & (x < camera.width) & (y > 0) & (y < camera.height)
 
 
-def _drawn(mesh: Mesh, camera: Camera) -> bool:
-    return bool((rasterise_view(mesh, camera.resized(THUMBNAIL, THUMBNAIL)).face >= 0).any())
+def _covers_pixels(mesh: Mesh, camera: Camera) -> bool:
+    return bool(
+        (rasterise_view(mesh, camera.resized(PREPARE_THUMBNAIL_PIXELS, PREPARE_THUMBNAIL_PIXELS)).face >= 0).any()
+    )
 
 
 def _point(position: NDArray[np.float64]) -> str:

@@ -1,7 +1,7 @@
-"""Reading a mesh file: the door at which UVs are turned to our convention and what cannot be used is refused.
+"""Reading a mesh file: UVs are converted to our convention, and unusable meshes are refused.
 
 Texture coordinates have v up in OBJ and PLY and v down in glTF; here v is down. PLY, glTF, STL and OFF are parsed by
-trimesh, OBJ by `obj.py`. Materials and pictures are never looked at.
+trimesh, OBJ by `obj.py`. Materials and images are ignored.
 """
 
 from __future__ import annotations
@@ -19,18 +19,24 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.proxy.meshes.gltf import read_gltf
 from eigenfield.proxy.meshes.obj import read_obj
-from eigenfield.proxy.meshes.polygons import Polygons, check_range, split_seams, triangulate
+from eigenfield.proxy.meshes.polygons import Polygons, check_range, split_seams, triangulate_polygons
 
 log = logging.getLogger("eigenfield.proxy")
 
-SUFFIXES = (".ply", ".obj", ".glb", ".gltf", ".stl", ".off")
-SLIVER = 1e-9  # area over the square of the longest edge: below it a triangle is a line
-COARSE = 1e-5  # float32 spacing over the mesh's extent: above it positions are noticeably rounded
-UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
+MESH_SUFFIXES = (".ply", ".obj", ".glb", ".gltf", ".stl", ".off")
+MESH_SLIVER_RATIO = 1e-9  # area over the square of the longest edge: below, a triangle is degenerate
+MESH_MAX_ROUNDING_RATIO = 1e-5  # float32 spacing over the mesh's extent: above, rounding is noticeable
+PLY_UV_NAMES = (("s", "t"), ("u", "v"), ("texture_u", "texture_v"))
 
 
-class Raw(NamedTuple):
-    """A mesh as a file has it: (n, 3) float64, (m, 3) int64, and (n, 2) float64 or None, v down."""
+class RawMesh(NamedTuple):
+    """A mesh as a file stores it.
+
+    Attributes:
+        vertices: (n, 3) float64.
+        faces: (m, 3) int64.
+        uv: (n, 2) float64, v down, or None.
+    """
 
     vertices: NDArray[np.float64]
     faces: NDArray[np.int64]
@@ -40,21 +46,25 @@ class Raw(NamedTuple):
 def read_mesh(path: str | os.PathLike[str]) -> Mesh:
     """Read a PLY, OBJ, GLB/glTF, STL or OFF file.
 
-    The mesh has the file's own UVs (atlas or not: see `unwrapped`), one UV a vertex, vertices doubled on seams; all
-    geometries of a glTF scene in one, node transforms applied; polygons cut into triangles; neither vertices without a
-    triangle nor triangles without area (the log counts these).
+    The mesh has the file's own UVs (a valid atlas or not: see `unwrap_mesh`), one a vertex, with vertices duplicated on
+    seams. All geometries of a glTF scene are joined, with node transforms applied. Polygons are triangulated. Unused
+    vertices and degenerate triangles are dropped; the log counts these.
 
-    Raises ProxyError: `proxy-missing`, `proxy-format`, `proxy-unreadable`, `proxy-empty`, `proxy-no-faces`,
-    `proxy-index-range`, `proxy-not-finite`, `proxy-degenerate`.
+    Args:
+        path: The file.
+
+    Raises:
+        ProxyError: `proxy-missing`, `proxy-format`, `proxy-unreadable`, `proxy-empty`, `proxy-no-faces`,
+            `proxy-index-range`, `proxy-not-finite` or `proxy-degenerate`.
     """
     file = Path(path)
     suffix = file.suffix.lower()
-    if suffix not in SUFFIXES:
+    if suffix not in MESH_SUFFIXES:
         raise ProxyError(
             "proxy-format",
             f"meshes ending in {suffix or 'nothing'} are not read",
             path=file,
-            remedy=f"convert it to one of {', '.join(SUFFIXES)}",
+            remedy=f"convert it to one of {', '.join(MESH_SUFFIXES)}",
         )
     if file.is_dir() or not file.exists():
         what = "is a folder" if file.is_dir() else "does not exist"
@@ -68,16 +78,16 @@ def read_mesh(path: str | os.PathLike[str]) -> Mesh:
             path=file,
             remedy="check the file and its permissions",
         ) from error
-    return checked(_parse(data, suffix, file), file)
+    return check_mesh(_parse(data, suffix, file), file)
 
 
-def _parse(data: bytes, suffix: str, file: Path) -> Raw:
-    """What a parser throws at a damaged file is of any kind: here, and only here, all of it becomes a ProxyError."""
+def _parse(data: bytes, suffix: str, file: Path) -> RawMesh:
+    """A parser may raise anything on a damaged file; this is the only place that turns it into a ProxyError."""
     try:
         if suffix == ".obj":
-            return Raw(*read_obj(data))
+            return RawMesh(*read_obj(data))
         if suffix in (".glb", ".gltf"):
-            return Raw(*read_gltf(data, suffix, file))
+            return RawMesh(*read_gltf(data, suffix, file))
         if suffix == ".ply":
             return _read_ply(data)
         return _read_plain(data, suffix)
@@ -93,11 +103,10 @@ def _parse(data: bytes, suffix: str, file: Path) -> Raw:
         ) from error
 
 
-def _read_ply(data: bytes) -> Raw:
+def _read_ply(data: bytes) -> RawMesh:
     """UVs a vertex (`s t`, `u v`, `texture_u texture_v`) or a list `texcoord` a face, as MeshLab writes them.
 
-    Taken from trimesh's parsed elements, not from the mesh that it makes of them: that one joins nearly equal UVs and
-    changes the order of the vertices.
+    They come from trimesh's parsed elements, not from its mesh, which merges nearly equal UVs and reorders vertices.
     """
     from trimesh.exchange.ply import load_ply
 
@@ -110,12 +119,12 @@ def _read_ply(data: bytes) -> Raw:
     elements = loaded["metadata"]["_ply_raw"]
     vertex, face = elements.get("vertex", {}), elements.get("face", {})
     if not vertex.get("length"):
-        return Raw(np.zeros((0, 3)), np.zeros((0, 3), np.int64), None)
+        return RawMesh(np.zeros((0, 3)), np.zeros((0, 3), np.int64), None)
     vertices = np.stack([np.ravel(vertex["data"][axis]) for axis in "xyz"], axis=1).astype(np.float64)
     if len(vertices) != vertex["length"]:
         raise ValueError(f"{vertex['length']} vertices announced, {len(vertices)} found")
     if not face.get("length"):
-        return Raw(vertices, np.zeros((0, 3), np.int64), None)
+        return RawMesh(vertices, np.zeros((0, 3), np.int64), None)
     names = _names(face["data"])
     indices = _rows(face["data"], next((n for n in ("vertex_indices", "vertex_index") if n in names), names[0]))
     if len(indices) != face["length"]:
@@ -126,15 +135,15 @@ def _read_ply(data: bytes) -> Raw:
         if all(len(uv) == 2 * len(row) for uv, row in zip(corners, indices, strict=True)):
             uv = np.concatenate([np.asarray(row, np.float64) for row in corners]).reshape(-1, 2)
             check_range(polygons.corners, len(vertices))
-            origin, faces, uv = split_seams(*triangulate(polygons, uv))
-            return Raw(vertices[origin], faces, _flipped(uv))
+            origin, faces, uv = split_seams(*triangulate_polygons(polygons, uv))
+            return RawMesh(vertices[origin], faces, _flip_v(uv))
         log.warning("texture coordinates of some faces only: ignored")
-    faces, _ = triangulate(polygons, None)
-    for u, v in UV_NAMES:
+    faces, _ = triangulate_polygons(polygons, None)
+    for u, v in PLY_UV_NAMES:
         if u in _names(vertex["data"]) and v in _names(vertex["data"]):
             uv = np.stack([np.ravel(vertex["data"][n]) for n in (u, v)], axis=1).astype(np.float64)
-            return Raw(vertices, faces, _flipped(uv))
-    return Raw(vertices, faces, None)
+            return RawMesh(vertices, faces, _flip_v(uv))
+    return RawMesh(vertices, faces, None)
 
 
 def _names(data: Any) -> tuple[str, ...]:
@@ -142,32 +151,40 @@ def _names(data: Any) -> tuple[str, ...]:
 
 
 def _rows(data: Any, name: str) -> Any:
-    """Lists of one element, a row each: trimesh keeps binary ones as a field "f1" beside their length "f0"."""
+    """Lists of one element, one a row: trimesh stores binary ones as a field "f1" beside their length "f0"."""
     column = data[name]
     return column["f1"] if getattr(column.dtype, "names", None) else column
 
 
-def _read_plain(data: bytes, suffix: str) -> Raw:
-    """STL and OFF: no UVs; an STL's corners are joined where they are equal to the bit."""
+def _read_plain(data: bytes, suffix: str) -> RawMesh:
+    """STL and OFF, which have no UVs; identical corners of an STL are merged."""
     from trimesh.exchange.off import load_off
     from trimesh.exchange.stl import load_stl
 
     loaded = (load_off if suffix == ".off" else load_stl)(io.BytesIO(data))
     if "vertices" not in loaded or "faces" not in loaded:
         raise ValueError("no single mesh in it")
-    raw = Raw(np.asarray(loaded["vertices"], np.float64), np.asarray(loaded["faces"], np.int64), None)
+    raw = RawMesh(np.asarray(loaded["vertices"], np.float64), np.asarray(loaded["faces"], np.int64), None)
     if suffix == ".off":
         return raw
     vertices, index = np.unique(raw.vertices, axis=0, return_inverse=True)
-    return Raw(vertices, index.reshape(-1)[raw.faces], None)
+    return RawMesh(vertices, index.reshape(-1)[raw.faces], None)
 
 
-def _flipped(uv: NDArray[np.float64]) -> NDArray[np.float64]:
+def _flip_v(uv: NDArray[np.float64]) -> NDArray[np.float64]:
     return uv * (1.0, -1.0) + (0.0, 1.0)
 
 
-def checked(raw: Raw, path: Path | None) -> Mesh:
-    """A float32 mesh of what can be used of `raw`; see `read_mesh` for what is raised."""
+def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
+    """The usable part of a mesh, as float32.
+
+    Args:
+        raw: As read from a file.
+        path: Of the file, for messages.
+
+    Raises:
+        ProxyError: See `read_mesh`.
+    """
     vertices, faces, uv = raw
     if len(vertices) == 0:
         raise ProxyError("proxy-empty", "has no vertices", path=path, remedy="export it again")
@@ -203,22 +220,27 @@ def checked(raw: Raw, path: Path | None) -> Mesh:
     if len(kept) < len(faces):
         log.warning("%s: %d of %d triangles have no area: dropped", path or "mesh", len(faces) - len(kept), len(faces))
     used = np.unique(kept)
-    renamed = np.searchsorted(used, kept).astype(np.int32)
-    return Mesh(single[used], renamed, None if uv is None else uv[used].astype(np.float32))
+    renumbered = np.searchsorted(used, kept).astype(np.int32)
+    return Mesh(single[used], renumbered, None if uv is None else uv[used].astype(np.float32))
 
 
 def is_sliver(vertices: NDArray[np.float32], faces: NDArray[Any]) -> NDArray[np.bool_]:
-    """(m,) whether a triangle has no area, as far as float32 corners can tell."""
+    """(m,) whether a triangle is degenerate at float32 precision.
+
+    Args:
+        vertices: (n, 3).
+        faces: (m, 3).
+    """
     corners = vertices[faces].astype(np.float64)
     sides = corners - np.roll(corners, 1, axis=1)
     longest = (sides**2).sum(axis=2).max(axis=1)
-    return np.asarray(triangle_areas(corners) <= SLIVER * longest)
+    return np.asarray(triangle_areas(corners) <= MESH_SLIVER_RATIO * longest)
 
 
 def _warn_of_rounding(vertices: NDArray[np.float32], path: Path | None) -> None:
     extent = float(np.ptp(vertices.astype(np.float64), axis=0).max())
     spacing = float(np.spacing(np.abs(vertices).max()))
-    if spacing > COARSE * extent > 0:
+    if spacing > MESH_MAX_ROUNDING_RATIO * extent > 0:
         log.warning(
             "%s: vertices lie far from the origin for their extent of %g and are rounded to %g; move mesh and cameras "
             "nearer to it",

@@ -1,4 +1,4 @@
-"""Writing a mesh: PLY, its UVs as `s t` with v up, or binary glTF."""
+"""Writing a mesh: PLY, with UVs as `s t` and v up, or binary glTF."""
 
 from __future__ import annotations
 
@@ -16,9 +16,15 @@ from eigenfield.runtime.files import write_bytes
 
 
 def write_ply(mesh: Mesh, path: Path, *, overwrite: bool = False) -> None:
-    """Little-endian PLY. UVs that are multiples of 2^-24 come back to the bit, as positions always do.
+    """Write a little-endian PLY. Positions, and UVs that are multiples of 2^-24, are restored exactly.
 
-    Raises OutputError.
+    Args:
+        mesh: The mesh.
+        path: The file.
+        overwrite: Replace an existing file.
+
+    Raises:
+        OutputError: The file cannot be written.
     """
     names = ["x", "y", "z"] + (["s", "t"] if mesh.uv is not None else [])
     table = mesh.vertices
@@ -40,7 +46,17 @@ def write_ply(mesh: Mesh, path: Path, *, overwrite: bool = False) -> None:
 
 
 def write_mesh(mesh: Mesh, path: Path, *, overwrite: bool = False) -> None:
-    """The mesh as .ply or .glb, by the name's ending. Raises OptionError `mesh-suffix`, OutputError."""
+    """Write a mesh as .ply or .glb, by the name's ending.
+
+    Args:
+        mesh: The mesh.
+        path: The file.
+        overwrite: Replace an existing file.
+
+    Raises:
+        OptionError: `mesh-suffix`.
+        OutputError: The file cannot be written.
+    """
     check_mesh_name(path)
     if path.suffix.lower() == ".ply":
         write_ply(mesh, path, overwrite=overwrite)
@@ -49,13 +65,20 @@ def write_mesh(mesh: Mesh, path: Path, *, overwrite: bool = False) -> None:
 
 
 def check_mesh_name(path: Path) -> None:
-    """Raise OptionError `mesh-suffix` unless `write_mesh` can write a file of this name."""
+    """Check that `write_mesh` can write a file of this name.
+
+    Args:
+        path: The file.
+
+    Raises:
+        OptionError: `mesh-suffix`.
+    """
     if path.suffix.lower() not in (".ply", ".glb"):
         raise OptionError("mesh-suffix", f"{path.name} is neither .ply nor .glb", remedy="name one of these")
 
 
 def _glb(mesh: Mesh) -> bytes:
-    """glTF 2.0 in one binary chunk, coordinates as they are (the cameras' world)."""
+    """glTF 2.0 in one binary chunk, with coordinates in the cameras' world."""
     parts: list[tuple[str, Any, dict[str, Any]]] = [
         (
             "POSITION",

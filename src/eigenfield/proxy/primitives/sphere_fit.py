@@ -1,9 +1,9 @@
 """A sphere from its outline in several photographs.
 
-The outline of a sphere in a pinhole camera is the picture of a cone: with the centre's direction u and distance n in
+The outline of a sphere in a pinhole camera is the image of a cone. With the centre's direction u and distance n in
 camera axes, its half angle is rho = arcsin(R / n), and its rays are cos(rho) u + sin(rho) (e1 cos t + e2 sin t). The
-sphere is fitted, by Nelder and Mead's simplex, so that colours just within and just without the outline differ most;
-every step is capped, so that neither a strong edge of the background nor a caustic outweighs the rest.
+fit maximises the colour difference across the outline, by the Nelder-Mead simplex. Every step is capped, so that
+neither a strong edge of the background nor a caustic outweighs the rest.
 """
 
 from __future__ import annotations
@@ -22,32 +22,68 @@ from eigenfield.core.errors import OptionError, ProxyError
 from eigenfield.core.observations import Observations, of_cameras
 from eigenfield.core.progress import Progress, track
 from eigenfield.imaging.sampling import distances_to, farthest_points
-from eigenfield.proxy.primitives.shapes import Sphere
+from eigenfield.proxy.primitives.shapes import SpherePrimitive
 
 log = logging.getLogger("eigenfield.proxy")
 
-MOST_VIEWS = 25
-LONGEST = 1024  # pixels of a picture's longer side
-ANGLES = np.radians(np.arange(0, 360, 3.0))
-CAP = 0.35  # sum of three channels' differences that counts as a full step
-SCALES = (2.5, 1.2)  # pixels that pictures are blurred by, one after the other
-REACH = 1.4  # the two sides of the outline lie this many blurs apart from it
-DEPTHS = 64  # tried without a depth
-SHIFTS = (-0.2, -0.1, 0.0, 0.1, 0.2)  # of the box's radius, by which its middle may be off
-GROWTHS = (0.85, 0.95, 1.05, 1.15)  # and its radius
-CIRCLES = 8  # the best in the reference view, each tried at all depths
-STARTS = 5  # the best of those, taken on
-FINALISTS = 2  # of these, taken to the finest scale with all photographs
-COARSE_VIEWS = 9  # photographs that starts are judged by
-PRIOR = 1.0  # cost of the squared deviation from the box, in parts of its size
-SEARCH = 5.0  # pixels on both sides of the outline in which its step is looked for
-SEEN = 0.3  # of the outline that a view must have in its frame to be asked
-CLEAR = 0.06  # mean step below which there is no outline
+
+@dataclass(frozen=True)
+class SphereFitTuning:
+    """Constants of `fit_sphere`.
+
+    Attributes:
+        max_views: Photographs that take part.
+        max_side_pixels: Longer side of the pictures.
+        max_step: Sum of three channels' differences that counts as a full step.
+        blur_sigma_pixels: Blurs of the pictures, from coarse to fine.
+        side_distance_blurs: Distance of the two sides from the outline, in blurs.
+        swept_depths: Depths tried if none is known.
+        start_shifts: Shifts of the start's middle, in units of the box's radius.
+        start_growths: Factors of its radius.
+        start_circles: Best circles of the reference view, each tried at all depths.
+        starts: Best of those, optimised further.
+        finalists: Best of these, optimised at the finest scale with all photographs.
+        coarse_views: Photographs with which starts are compared.
+        box_weight: Cost of the squared deviation from the box, in units of its size.
+        search_pixels: Distance on both sides of the outline in which its step is searched.
+        min_outline_fraction: Fraction of the outline that a view must have in its frame.
+        min_contrast: Mean step below which there is no outline.
+    """
+
+    max_views: int = 25
+    max_side_pixels: int = 1024
+    max_step: float = 0.35
+    blur_sigma_pixels: tuple[float, float] = (2.5, 1.2)
+    side_distance_blurs: float = 1.4
+    swept_depths: int = 64
+    start_shifts: tuple[float, ...] = (-0.2, -0.1, 0.0, 0.1, 0.2)
+    start_growths: tuple[float, ...] = (0.85, 0.95, 1.05, 1.15)
+    start_circles: int = 8
+    starts: int = 5
+    finalists: int = 2
+    coarse_views: int = 9
+    box_weight: float = 1.0
+    search_pixels: float = 5.0
+    min_outline_fraction: float = 0.3
+    min_contrast: float = 0.06
+
+
+SPHERE_FIT_TUNING = SphereFitTuning()
+
+SPHERE_OUTLINE_ANGLES_RADIANS = np.radians(np.arange(0, 360, 3.0))
 
 
 @dataclass(frozen=True)
-class Region:
-    """A box in one view: the view's name as given, left, top, width, height in pixels of the photograph."""
+class ViewRegion:
+    """A box in one view, in pixels of the photograph.
+
+    Attributes:
+        view: The view's name as given.
+        x: Left border.
+        y: Top border.
+        width: Pixels.
+        height: Pixels.
+    """
 
     view: str
     x: float
@@ -60,19 +96,23 @@ class Region:
 class SphereFit:
     """A fitted sphere.
 
-    residual: median distance, pixels, of the strongest colour step from the outline, within 5 pixels, all views.
-    contrast: the mean capped step across the outline, 0..1. views: how many photographs took part.
+    Attributes:
+        sphere: The sphere.
+        residual: Median distance of the strongest colour step from the outline, within 5 pixels, over all views, in
+            pixels.
+        contrast: Mean capped step across the outline, 0..1.
+        views: Number of photographs that took part.
     """
 
-    sphere: Sphere
+    sphere: SpherePrimitive
     residual: float
     contrast: float
     views: int
 
 
 @dataclass(frozen=True, eq=False)
-class _Looks:
-    """Cameras (V, ...), their pictures at each of SCALES, and how much smaller these are than the photographs."""
+class _BlurredViews:
+    """Cameras (V, ...), their pictures at each blur, and the scale of these against the photographs."""
 
     K: NDArray[np.float64]
     R: NDArray[np.float64]
@@ -83,12 +123,19 @@ class _Looks:
     def __len__(self) -> int:
         return len(self.blurred)
 
-    def first(self, count: int) -> _Looks:
-        return _Looks(self.K[:count], self.R[:count], self.t[:count], self.blurred[:count], self.scale[:count])
+    def first(self, count: int) -> _BlurredViews:
+        return _BlurredViews(self.K[:count], self.R[:count], self.t[:count], self.blurred[:count], self.scale[:count])
 
 
-def parse_region(text: str) -> Region:
-    """`VIEW:X,Y,W,H`. Raises OptionError `fit-sphere`."""
+def parse_region(text: str) -> ViewRegion:
+    """A region from its text form.
+
+    Args:
+        text: `VIEW:X,Y,W,H`.
+
+    Raises:
+        OptionError: `fit-sphere`.
+    """
     view, colon, rest = text.rpartition(":")
     try:
         numbers = [float(part) for part in rest.split(",")]
@@ -102,13 +149,18 @@ def parse_region(text: str) -> Region:
         )
     if numbers[2] <= 0 or numbers[3] <= 0:
         raise OptionError("fit-sphere", f"{text!r}: the box is empty", remedy="give a width and a height above 0")
-    return Region(view, *numbers)
+    return ViewRegion(view, *numbers)
 
 
-def find_view(region: Region, names: Sequence[str]) -> int:
-    """The index of the region's view: by its name, else by the file's name, with or without its ending, if one fits.
+def find_view(region: ViewRegion, names: Sequence[str]) -> int:
+    """The index of the region's view: by its name, else by its unique file name with or without the ending.
 
-    Raises OptionError `fit-sphere-view`.
+    Args:
+        region: The region.
+        names: Of all views.
+
+    Raises:
+        OptionError: `fit-sphere-view`.
     """
     for shorten in (str, lambda name: name.rpartition("/")[2], lambda name: name.rpartition("/")[2].rpartition(".")[0]):
         fitting = [index for index, name in enumerate(names) if shorten(name) == region.view]
@@ -123,25 +175,26 @@ def find_view(region: Region, names: Sequence[str]) -> int:
 
 def fit_sphere(
     view: int,
-    region: Region,
+    region: ViewRegion,
     cameras: Sequence[Camera],
     observations: Observations,
     *,
     depth: float | None = None,
     progress: Progress | None = None,
 ) -> SphereFit:
-    """The sphere whose outline lies in `region` of one view, from up to 25 photographs spread over the array.
+    """The sphere whose outline lies in a region of one view, from up to 25 photographs spread over the array.
 
     Args:
-        view: number of the camera that shows the region.
-        region: the box around the sphere.
-        cameras: of the observations.
-        observations: at any times: the sphere stands still.
-        depth: of the sphere's middle along the view's axis, as far as it is known; without it depths are swept.
-        progress: reports the photographs that are read.
+        view: Index of the camera that shows the region.
+        region: The box around the sphere.
+        cameras: Of the observations.
+        observations: At any times: the sphere does not move.
+        depth: Of the sphere's centre along the view's axis, approximately; without it depths are swept.
+        progress: Called for each photograph.
 
-    Raises OptionError `fit-sphere-region` for a box outside the view, ProxyError `fit-sphere-outline` where no outline
-    is found.
+    Raises:
+        OptionError: `fit-sphere-region`: the box lies outside the view.
+        ProxyError: `fit-sphere-outline`: no outline is found.
     """
     camera = cameras[view]
     middle = np.array([region.x + region.width / 2, region.y + region.height / 2])
@@ -151,44 +204,53 @@ def fit_sphere(
             f"the box's middle {middle[0]:g}, {middle[1]:g} lies outside the view of {camera.width}x{camera.height}",
             remedy="give the box in pixels of that photograph, its top-left corner first",
         )
-    chosen = _spread(view, cameras)
-    looks = _looks(chosen, cameras, observations, progress)
+    chosen = _choose_views(view, cameras)
+    views = _blur_views(chosen, cameras, observations, progress)
     baseline = float(np.median([np.linalg.norm(cameras[i].centre - camera.centre) for i in chosen[1:]]))
-    frame = _Frame(camera, baseline)
+    frame = _ReferenceFrame(camera, baseline)
     start = np.array([*middle, (region.width + region.height) / 4])
     size = np.array([region.width, region.height])
-    box = _Box(start, size)
-    few = looks.first(COARSE_VIEWS)
-    starts = _starts(_depths(frame, depth), frame, few, box)
-    coarse = sorted((_minimise(p, frame, few, 0, box) for p in starts), key=lambda fit: fit[1])
-    fine = [_minimise(p, frame, looks, len(SCALES) - 1, box) for p, _ in coarse[:FINALISTS]]
+    box = _SearchBox(start, size)
+    coarse_views = views.first(SPHERE_FIT_TUNING.coarse_views)
+    starts = _start_candidates(_start_parallaxes(frame, depth), frame, coarse_views, box)
+    coarse = sorted((_minimise(p, frame, coarse_views, 0, box) for p in starts), key=lambda fit: fit[1])
+    fine = [
+        _minimise(p, frame, views, len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1, box)
+        for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]
+    ]
     best = min(fine, key=lambda fit: fit[1])[0]
     sphere = frame.sphere(best)
-    contrast = _contrast(sphere, looks, len(SCALES) - 1)
-    if not contrast > CLEAR:
+    contrast = _contrast(sphere, views, len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1)
+    if not contrast > SPHERE_FIT_TUNING.min_contrast:
         raise ProxyError(
             "fit-sphere-outline",
             f"no outline of a sphere is found around {middle[0]:g}, {middle[1]:g} (mean step {contrast:.3f})",
             remedy="draw the box tightly around the sphere, in a view that shows all of it",
         )
-    fit = SphereFit(sphere, _residual(sphere, looks), contrast, len(looks))
+    fit = SphereFit(sphere, _outline_residual(sphere, views), contrast, len(views))
     log.info("%s: outline within %.2f px in %d views", sphere, fit.residual, fit.views)
     return fit
 
 
-def outline(sphere: Sphere, camera: Camera, grow: float = 0.0) -> NDArray[np.float64]:
-    """(n, 2) pixels of a sphere's outline, `grow` pixels outside it; NaN where the camera stands in the sphere."""
-    return _outlines(sphere, camera.K[None], camera.R[None], camera.t[None], (grow,))[0, 0]
+def sphere_outline(sphere: SpherePrimitive, camera: Camera, grow: float = 0.0) -> NDArray[np.float64]:
+    """(n, 2) pixels of a sphere's outline; NaN if the camera stands in the sphere.
+
+    Args:
+        sphere: The sphere.
+        camera: The camera.
+        grow: Pixels outside the outline.
+    """
+    return _sphere_outlines(sphere, camera.K[None], camera.R[None], camera.t[None], (grow,))[0, 0]
 
 
-def _outlines(
-    sphere: Sphere,
+def _sphere_outlines(
+    sphere: SpherePrimitive,
     K: NDArray[np.float64],
     R: NDArray[np.float64],
     t: NDArray[np.float64],
     grows: Sequence[float],
 ) -> NDArray[np.float64]:
-    """(V, G, n, 2) of V cameras, each outline grown by G numbers of pixels."""
+    """(V, G, n, 2) outlines in V cameras, each grown by G numbers of pixels."""
     local = R @ np.array(sphere.centre) + t
     n = np.linalg.norm(local, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -199,45 +261,53 @@ def _outlines(
         e1 = np.cross(u, level)
         e1 /= np.linalg.norm(e1, axis=1, keepdims=True)
         e2 = np.cross(u, e1)
-        ring = np.cos(ANGLES)[:, None] * e1[:, None] + np.sin(ANGLES)[:, None] * e2[:, None]
+        ring = (
+            np.cos(SPHERE_OUTLINE_ANGLES_RADIANS)[:, None] * e1[:, None]
+            + np.sin(SPHERE_OUTLINE_ANGLES_RADIANS)[:, None] * e2[:, None]
+        )
         rays = np.cos(rho)[..., None, None] * u[:, None, None] + np.sin(rho)[..., None, None] * ring[:, None]
         pixels = rays @ K.transpose(0, 2, 1)[:, None]
         return np.asarray(np.where(rays[..., 2:] > 0, pixels[..., :2] / pixels[..., 2:], np.nan))
 
 
 @dataclass(frozen=True, eq=False)
-class _Box:
-    """Where the outline is looked for: the circle (x, y, radius) inside the box, and the box's width and height."""
+class _SearchBox:
+    """Where the outline is searched: the circle (x, y, radius) inside the box, and the box's width and height."""
 
     circle: NDArray[np.float64]
     size: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class _Frame:
-    """Four numbers in pixels: the outline's middle and radius in the reference view, and the parallax of its depth over
-    the typical distance to the other cameras."""
+class _ReferenceFrame:
+    """Parameters of a sphere, four numbers in pixels.
+
+    They are the outline's middle and radius in the reference view, and the parallax of its depth over the typical
+    distance to the other cameras.
+    """
 
     camera: Camera
     baseline: float
 
-    def sphere(self, p: NDArray[np.float64]) -> Sphere:
+    def sphere(self, p: NDArray[np.float64]) -> SpherePrimitive:
         focal = self.camera.K[0, 0]
         depth = focal * self.baseline / max(p[3], 1e-9)
         ray = np.linalg.inv(self.camera.K) @ np.array([p[0], p[1], 1.0])
         local = depth * ray
         angle = np.arctan(max(p[2], 1e-3) / focal * ray[2] / float(ray @ ray) ** 0.5)
         x, y, z = (self.camera.R.T @ (local - self.camera.t)).tolist()
-        return Sphere((x, y, z), float(np.sin(angle) * np.linalg.norm(local)))
+        return SpherePrimitive((x, y, z), float(np.sin(angle) * np.linalg.norm(local)))
 
 
-def _spread(view: int, cameras: Sequence[Camera]) -> list[int]:
-    """The view and others that look the same way, each as far as possible from those before."""
+def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
+    """The view and others with a similar direction, each as far as possible from those before."""
     axis = cameras[view].R[2]
     facing = np.array([camera.R[2] @ axis > 0.3 for camera in cameras])
     centres = np.array([camera.centre for camera in cameras])
     distance = distances_to(centres)
-    chosen = farthest_points(lambda index: np.where(facing, distance(index), -1), view, MOST_VIEWS).tolist()
+    chosen = farthest_points(
+        lambda index: np.where(facing, distance(index), -1), view, SPHERE_FIT_TUNING.max_views
+    ).tolist()
     if len(chosen) < 2:
         raise ProxyError(
             "fit-sphere-outline", "no other camera looks the same way as that view", remedy="fit it in another view"
@@ -245,25 +315,29 @@ def _spread(view: int, cameras: Sequence[Camera]) -> list[int]:
     return chosen
 
 
-def _looks(
+def _blur_views(
     chosen: Sequence[int], cameras: Sequence[Camera], observations: Observations, progress: Progress | None
-) -> _Looks:
+) -> _BlurredViews:
     some = of_cameras(observations, chosen)
     small, blurred, scales = [], [], []
     for index in track(range(len(some)), "fit sphere", len(some), progress):
         camera, pixels = cameras[chosen[some.camera_of(index)]], some.photograph(index).pixels
-        scale = min(1.0, LONGEST / max(camera.width, camera.height))
+        scale = min(1.0, SPHERE_FIT_TUNING.max_side_pixels / max(camera.width, camera.height))
         small.append(camera.resized(max(1, round(camera.width * scale)), max(1, round(camera.height * scale))))
         if scale < 1:
             size = (small[-1].width, small[-1].height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.float32)
-        blurred.append(tuple(np.asarray(cv2.GaussianBlur(pixels, (0, 0), s), np.float32) for s in SCALES))
+        blurred.append(
+            tuple(
+                np.asarray(cv2.GaussianBlur(pixels, (0, 0), s), np.float32) for s in SPHERE_FIT_TUNING.blur_sigma_pixels
+            )
+        )
         scales.append(scale)
     K, R, t = (np.stack([getattr(camera, name) for camera in small]) for name in ("K", "R", "t"))
-    return _Looks(K, R, t, tuple(blurred), np.array(scales))
+    return _BlurredViews(K, R, t, tuple(blurred), np.array(scales))
 
 
-def _sampled(picture: NDArray[np.float32], at: NDArray[np.float64]) -> NDArray[np.float32]:
+def _sample_colours(picture: NDArray[np.float32], at: NDArray[np.float64]) -> NDArray[np.float32]:
     """(a, b, 3) colours at pixels (a, b, 2); NaN outside."""
     height, width = picture.shape[:2]
     inside = (at[..., 0] >= 1) & (at[..., 0] <= width - 1) & (at[..., 1] >= 1) & (at[..., 1] <= height - 1)
@@ -273,80 +347,101 @@ def _sampled(picture: NDArray[np.float32], at: NDArray[np.float64]) -> NDArray[n
     return np.where(inside[..., None], np.asarray(colours, np.float32), np.float32(np.nan))
 
 
-def _steps(looks: _Looks, level: int, sphere: Sphere, grow: float = 0.0, cap: float = CAP) -> NDArray[np.float64]:
+def _colour_steps(
+    views: _BlurredViews,
+    level: int,
+    sphere: SpherePrimitive,
+    grow: float = 0.0,
+    cap: float = SPHERE_FIT_TUNING.max_step,
+) -> NDArray[np.float64]:
     """(V, n) capped colour steps across the outline, `grow` pixels outside it; NaN where it leaves the picture."""
-    reach = REACH * SCALES[level]
-    sides = _outlines(sphere, looks.K, looks.R, looks.t, (grow + reach, grow - reach))
-    steps = np.empty((len(looks), len(ANGLES)))
-    for row, pictures, at in zip(steps, looks.blurred, sides, strict=True):
-        outer, inner = _sampled(pictures[level], at)
+    reach = SPHERE_FIT_TUNING.side_distance_blurs * SPHERE_FIT_TUNING.blur_sigma_pixels[level]
+    sides = _sphere_outlines(sphere, views.K, views.R, views.t, (grow + reach, grow - reach))
+    steps = np.empty((len(views), len(SPHERE_OUTLINE_ANGLES_RADIANS)))
+    for row, pictures, at in zip(steps, views.blurred, sides, strict=True):
+        outer, inner = _sample_colours(pictures[level], at)
         row[:] = np.abs(outer - inner).sum(axis=1, dtype=np.float64)
     return np.minimum(steps, cap)
 
 
-def _cost(p: NDArray[np.float64], frame: _Frame, looks: _Looks, level: int, box: _Box) -> float:
-    """Minus the mean step, and the price of leaving the box."""
+def _cost(p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox) -> float:
+    """The negative mean step, plus the penalty for leaving the box."""
     off = np.append((p[:2] - box.circle[:2]) / box.size, np.log(max(p[2], 1e-3) / box.circle[2]))
-    return PRIOR * float(off @ off) - _contrast(frame.sphere(p), looks, level)
+    return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(frame.sphere(p), views, level)
 
 
-def _contrast(sphere: Sphere, looks: _Looks, level: int) -> float:
-    """The mean step over the views that see some of the outline; 0 where fewer than two (of several) do."""
-    steps = _steps(looks, level, sphere)
+def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> float:
+    """The mean step over the views that see enough of the outline; 0 if fewer than two (of several) do."""
+    steps = _colour_steps(views, level, sphere)
     there = ~np.isnan(steps)
-    enough = there.mean(axis=1) > SEEN
-    if int(enough.sum()) < min(2, len(looks)):
+    enough = there.mean(axis=1) > SPHERE_FIT_TUNING.min_outline_fraction
+    if int(enough.sum()) < min(2, len(views)):
         return 0.0
     return float((np.where(there, steps, 0).sum(axis=1)[enough] / there.sum(axis=1)[enough]).mean())
 
 
 def _minimise(
-    p: NDArray[np.float64], frame: _Frame, looks: _Looks, level: int, box: _Box
+    p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox
 ) -> tuple[NDArray[np.float64], float]:
-    return _simplex(lambda q: _cost(q, frame, looks, level, box), p, SCALES[level], 250, 1e-5)
+    return _simplex(
+        lambda q: _cost(q, frame, views, level, box), p, SPHERE_FIT_TUNING.blur_sigma_pixels[level], 250, 1e-5
+    )
 
 
 def _simplex(
-    cost: Callable[[NDArray[np.float64]], float], p: NDArray[np.float64], step: float, most: int, tolerance: float
+    cost: Callable[[NDArray[np.float64]], float],
+    p: NDArray[np.float64],
+    step: float,
+    max_iterations: int,
+    tolerance: float,
 ) -> tuple[NDArray[np.float64], float]:
-    """Where Nelder and Mead's simplex ends that starts `step` wide at p, and the cost there."""
+    """The result of a Nelder-Mead simplex that starts `step` wide at p, and its cost."""
     simplex = p + np.vstack([np.zeros(len(p)), step * np.eye(len(p))])
-    options = {"initial_simplex": simplex, "maxiter": most, "xatol": 0.02, "fatol": tolerance}
+    options = {"initial_simplex": simplex, "maxiter": max_iterations, "xatol": 0.02, "fatol": tolerance}
     found = minimize(cost, p, method="Nelder-Mead", options=options)  # type: ignore[call-overload]
     return np.asarray(found.x, np.float64), float(found.fun)
 
 
-def _depths(frame: _Frame, depth: float | None) -> NDArray[np.float64]:
+def _start_parallaxes(frame: _ReferenceFrame, depth: float | None) -> NDArray[np.float64]:
     """Parallaxes to start from: evenly up to the picture's size, or around a known depth."""
     if depth is not None:
         return frame.camera.K[0, 0] * frame.baseline / depth * np.linspace(0.85, 1.15, 13)
     nearest = 0.6 * max(frame.camera.width, frame.camera.height)
-    return nearest * (np.arange(DEPTHS) + 0.5) / DEPTHS
+    return nearest * (np.arange(SPHERE_FIT_TUNING.swept_depths) + 0.5) / SPHERE_FIT_TUNING.swept_depths
 
 
-def _starts(depths: NDArray[np.float64], frame: _Frame, looks: _Looks, box: _Box) -> list[NDArray[np.float64]]:
+def _start_candidates(
+    depths: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, box: _SearchBox
+) -> list[NDArray[np.float64]]:
     """The best circles of the reference view near the box, each at its best depths; the best of all these."""
     x, y, r = box.circle
     typical = float(np.median(depths))
-    alone = looks.first(1)
+    alone = views.first(1)
 
     def outline(p: NDArray[np.float64]) -> float:
         return _cost(np.append(p, typical), frame, alone, 0, box)
 
-    grid = [np.array([x + dx * r, y + dy * r, g * r]) for dx in SHIFTS for dy in SHIFTS for g in GROWTHS]
-    fits = [_simplex(outline, p, SCALES[0], 60, 1e-4) for p in grid]
+    grid = [
+        np.array([x + dx * r, y + dy * r, g * r])
+        for dx in SPHERE_FIT_TUNING.start_shifts
+        for dy in SPHERE_FIT_TUNING.start_shifts
+        for g in SPHERE_FIT_TUNING.start_growths
+    ]
+    fits = [_simplex(outline, p, SPHERE_FIT_TUNING.blur_sigma_pixels[0], 60, 1e-4) for p in grid]
     near = np.full(3, 0.03 * r)
-    circles = _distinct(np.array([cost for _, cost in fits]), np.array([fit for fit, _ in fits]), near, CIRCLES)
+    circles = _best_distinct(
+        np.array([cost for _, cost in fits]), np.array([fit for fit, _ in fits]), near, SPHERE_FIT_TUNING.start_circles
+    )
     solid = np.array([[*circle, w] for circle in circles for w in depths])
-    costs = np.array([_cost(p, frame, looks, 0, box) for p in solid])
+    costs = np.array([_cost(p, frame, views, 0, box) for p in solid])
     step = 1.5 * float(np.diff(depths).max())
-    return _distinct(costs, solid, np.append(near, step), STARTS)
+    return _best_distinct(costs, solid, np.append(near, step), SPHERE_FIT_TUNING.starts)
 
 
-def _distinct(
+def _best_distinct(
     costs: NDArray[np.float64], candidates: NDArray[np.float64], near: NDArray[np.float64], count: int
 ) -> list[NDArray[np.float64]]:
-    """The best few, none within `near` of a better one in all numbers."""
+    """The best few, none within `near` of a better one in all parameters."""
     chosen: list[NDArray[np.float64]] = []
     for index in np.argsort(costs, kind="stable"):
         if all((np.abs(candidates[index] - other) > near).any() for other in chosen):
@@ -356,10 +451,10 @@ def _distinct(
     return chosen
 
 
-def _residual(sphere: Sphere, looks: _Looks) -> float:
-    level = len(SCALES) - 1
-    offsets = np.arange(-SEARCH, SEARCH + 0.25, 0.25)
-    steps = np.array([_steps(looks, level, sphere, float(offset), 3.0) for offset in offsets])
+def _outline_residual(sphere: SpherePrimitive, views: _BlurredViews) -> float:
+    level = len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1
+    offsets = np.arange(-SPHERE_FIT_TUNING.search_pixels, SPHERE_FIT_TUNING.search_pixels + 0.25, 0.25)
+    steps = np.array([_colour_steps(views, level, sphere, float(offset), 3.0) for offset in offsets])
     there = ~np.isnan(steps).any(axis=0)
-    off = np.abs(offsets[np.where(np.isnan(steps), -1, steps).argmax(axis=0)]) / looks.scale[:, None]
+    off = np.abs(offsets[np.where(np.isnan(steps), -1, steps).argmax(axis=0)]) / views.scale[:, None]
     return float(np.median(off[there])) if there.any() else float("nan")

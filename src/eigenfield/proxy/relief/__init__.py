@@ -1,1 +1,1 @@
-"""Layered reliefs: depth maps seen from one camera, as a mesh."""
+"""Layered reliefs: depth maps of one camera, as a mesh."""

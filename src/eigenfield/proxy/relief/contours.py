@@ -1,9 +1,9 @@
 """Where a depth map is cut: chains of points between pixels, straightened.
 
-A side between two neighbouring pixels is cut where one of them is valid and the other is not, or where their depths
-differ by more than a threshold. The chain runs through the middles of cut sides, from the centre of one 2 x 2 cell to
-the next; cells with other than two cut sides are its ends and junctions. The middles lie within half a pixel of the
-true edge and on both sides of it evenly, so that a line fitted to many of them is known to a fraction of a pixel.
+The edge between two neighbouring pixels is cut if only one of them is valid, or if their depths differ by more than a
+threshold. The chain runs through the middles of cut edges, from the centre of one 2 x 2 cell to the next. Cells with
+other than two cut edges are its ends and junctions. The middles lie within half a pixel of the true contour, evenly on
+both sides, so that a line fitted to many of them is accurate to a fraction of a pixel.
 """
 
 from __future__ import annotations
@@ -14,15 +14,24 @@ from scipy.linalg import solveh_banded
 
 from eigenfield.proxy.relief.kernels import split_chain
 
-ANCHOR = 1e-3  # weight of where the knots were in the fit of a chain: decides where the fit leaves them free
-FIT_LIMIT = 0.75  # pixels by which the fit may move a knot
-WINDOW = 10  # points of the chain by which a corner may be found late
+CONTOUR_ANCHOR_WEIGHT = 1e-3  # of a knot's old position: decides where the fit leaves it free
+CONTOUR_MAX_KNOT_SHIFT_PIXELS = 0.75  # by the fit
+CONTOUR_CORNER_WINDOW_POINTS = 10  # of the chain, by which a corner may be detected late
 
 
-def cut_sides(
+def find_cut_edges(
     d: NDArray[np.float32], valid: NDArray[np.bool_], cut: float
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """(h, w - 1) sides between horizontal neighbours that are cut, and (h - 1, w) between vertical ones."""
+    """Which edges between neighbouring pixels are cut.
+
+    Args:
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        cut: Difference of labels at which an edge is cut.
+
+    Returns:
+        (h, w - 1) between horizontal neighbours, and (h - 1, w) between vertical ones.
+    """
     beside = (valid[:, 1:] != valid[:, :-1]) | (
         valid[:, 1:] & valid[:, :-1] & (np.abs(d[:, 1:] - d[:, :-1]) > np.float32(cut))
     )
@@ -30,10 +39,15 @@ def cut_sides(
     return beside, below
 
 
-def contour_chains(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
-    """Chains of (x, y) index coordinates, each (n, 2); closed ones end where they begin. In a fixed order."""
+def trace_contours(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
+    """Chains of (x, y) index coordinates, each (n, 2), in a fixed order; closed ones end where they begin.
+
+    Args:
+        beside: (h, w - 1) cut edges between horizontal neighbours.
+        below: (h - 1, w) cut edges between vertical neighbours.
+    """
     h, w = below.shape[0] + 1, beside.shape[1] + 1
-    links = _links(beside, below)
+    links = _node_links(beside, below)
     neighbours: dict[int, list[int]] = {}
     for a, b in links.tolist():
         neighbours.setdefault(a, []).append(b)
@@ -52,7 +66,7 @@ def contour_chains(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> list[
             used.update(((here, chain[-1]), (chain[-1], here)))
         chains.append(chain)
 
-    for node in [*starts, *sorted(neighbours)]:  # what is left after the starts are closed loops
+    for node in [*starts, *sorted(neighbours)]:  # the rest after the starts are closed loops
         for step in neighbours[node]:
             if (node, step) not in used:
                 follow(node, step)
@@ -68,8 +82,8 @@ def contour_chains(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> list[
     return [place(np.array(chain, np.int64)) for chain in chains]
 
 
-def _links(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """(n, 2) nodes that hang together: sides between columns first, then sides between rows, then cells."""
+def _node_links(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> NDArray[np.int64]:
+    """(n, 2) connected nodes: edges between columns first, then edges between rows, then cells."""
     h, w = below.shape[0] + 1, beside.shape[1] + 1
     first_below, first_cell = h * (w - 1), h * (w - 1) + (h - 1) * w
     row, column = np.mgrid[: h - 1, : w - 1]
@@ -91,18 +105,22 @@ def _links(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> NDArray[np.in
     return np.concatenate([through, single]).astype(np.int64)
 
 
-def straightened(chain: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
-    """A polyline with a line for each run of the chain that is straight within `tolerance` pixels, its joints moved to
-    where it fits all points best. The ends stay."""
+def straighten_chain(chain: NDArray[np.float64], tolerance: float) -> NDArray[np.float64]:
+    """A polyline with one line for each straight run of the chain, fitted to all points; the ends stay.
+
+    Args:
+        chain: (n, 2) points.
+        tolerance: Pixels within which a run is straight.
+    """
     if len(chain) < 4:
         return chain
     kept = np.zeros(len(chain), np.bool_)
-    split_chain(chain, tolerance, WINDOW, kept)
+    split_chain(chain, tolerance, CONTOUR_CORNER_WINDOW_POINTS, kept)
     knots = np.flatnonzero(kept)
-    return _fitted(chain, knots)
+    return _fit_knots(chain, knots)
 
 
-def _fitted(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.float64]:
+def _fit_knots(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.float64]:
     """Least squares of a piecewise linear curve with given knots: hat functions of the length along the chain."""
     found = chain[knots]
     inner = len(knots) - 2
@@ -113,11 +131,11 @@ def _fitted(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.
     start, stop = along[knots[part]], along[knots[part + 1]]
     t = (along - start) / (stop - start)
     n = len(knots)
-    diagonal = np.bincount(part, (1 - t) ** 2, n) + np.bincount(part + 1, t**2, n) + ANCHOR
+    diagonal = np.bincount(part, (1 - t) ** 2, n) + np.bincount(part + 1, t**2, n) + CONTOUR_ANCHOR_WEIGHT
     beside = np.bincount(part, t * (1 - t), n)[:-1]
     right = (
         np.stack([np.bincount(part, (1 - t) * c, n) + np.bincount(part + 1, t * c, n) for c in chain.T], axis=1)
-        + ANCHOR * chain[knots]
+        + CONTOUR_ANCHOR_WEIGHT * chain[knots]
     )
     right[1] -= beside[0] * found[0]
     right[-2] -= beside[-1] * found[-1]
@@ -126,5 +144,5 @@ def _fitted(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.
     solved = solveh_banded(bands, right[1:-1]) if inner > 1 else right[1:-1] / bands[1]  # LAPACK wants two rows
     moved = solved - found[1:-1]
     far = np.linalg.norm(moved, axis=1, keepdims=True)
-    found[1:-1] += moved * np.minimum(1, FIT_LIMIT / np.maximum(far, 1e-12))
+    found[1:-1] += moved * np.minimum(1, CONTOUR_MAX_KNOT_SHIFT_PIXELS / np.maximum(far, 1e-12))
     return found

@@ -1,7 +1,6 @@
-"""A triangulated sheet against its depth map: pixels of triangles, errors, insertion; contours and packing on the
-raster.
+"""Inner loops of reliefs: pixels of triangles, errors against the depth map, insertion, contours, and packing.
 
-Greedy insertion as in Garland and Heckbert ("Fast polygonal approximation of terrains and height fields", 1995).
+Greedy insertion: Garland and Heckbert, "Fast polygonal approximation of terrains and height fields", 1995.
 """
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
@@ -10,57 +9,85 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.proxy.relief.triangulation import LATTICE, side, split
+from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL, insert_point, twice_signed_area
 from eigenfield.runtime.jit import kernel
 
 
 @kernel()
-def row_run(points, a, b, c, y):
-    """First and last whole pixel of row y whose centre is in the triangle a, b, c; borders count."""
+def column_range(points, a, b, c, y):
+    """First and last column of row y whose pixel centre is in the triangle a, b, c; borders count.
+
+    Args:
+        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
+        a, b, c: Indices of points.
+        y: Row.
+    """
     low, high = -(1 << 40), 1 << 40
-    Y = y * LATTICE
+    Y = y * DELAUNAY_STEPS_PER_PIXEL
     for p, q in ((a, b), (b, c), (c, a)):
         dx, dy = points[q, 0] - points[p, 0], points[q, 1] - points[p, 1]
         # dx (Y - py) - dy (X - px) >= 0
         value = dx * (Y - points[p, 1]) + dy * points[p, 0]
         if dy > 0:
-            high = min(high, value // (dy * LATTICE))
+            high = min(high, value // (dy * DELAUNAY_STEPS_PER_PIXEL))
         elif dy < 0:
-            low = max(low, -(value // (-dy * LATTICE)))
+            low = max(low, -(value // (-dy * DELAUNAY_STEPS_PER_PIXEL)))
         elif value < 0:
             return 1, 0
     return low, high
 
 
 @kernel()
-def rows_of(points, a, b, c):
-    """First and last whole row of pixels that the triangle a, b, c reaches."""
+def row_range(points, a, b, c):
+    """First and last row of pixel centres that the triangle a, b, c reaches.
+
+    Args:
+        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
+        a, b, c: Indices of points.
+    """
     low = min(points[a, 1], points[b, 1], points[c, 1])
     high = max(points[a, 1], points[b, 1], points[c, 1])
-    return -(-low // LATTICE), high // LATTICE
+    return -(-low // DELAUNAY_STEPS_PER_PIXEL), high // DELAUNAY_STEPS_PER_PIXEL
 
 
 @kernel()
 def label_pixels(points, tri, count, owner):
-    """owner (h, w) int32, out: the triangle on whose ground each pixel centre lies; -1 where there is none."""
+    """The triangle that contains each pixel centre.
+
+    Args:
+        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
+        tri: (m, 3) corners; rows with -1 are skipped.
+        count: Number of triangles.
+        owner: (h, w) int32 triangles, written; -1 where there is none.
+    """
     owner[:] = -1
     for t in range(count):
         a, b, c = tri[t]
         if a < 0:
             continue
-        first, last = rows_of(points, a, b, c)
+        first, last = row_range(points, a, b, c)
         for y in range(max(first, 0), min(last, owner.shape[0] - 1) + 1):
-            low, high = row_run(points, a, b, c, y)
+            low, high = column_range(points, a, b, c, y)
             for x in range(max(low, 0), min(high, owner.shape[1] - 1) + 1):
                 owner[y, x] = t
 
 
 @kernel()
-def misfit(d, valid, mixed, y, x, z):
-    """(how far z is from the depth map at a pixel, the value there); beside a cut any pixel of the 3 x 3 around will
-    do, for the contour may have passed on the other side of this one. Infinity comes back as -1."""
+def depth_error(d, valid, at_cut, y, x, z):
+    """Difference of z from the depth map at a pixel, and the depth there.
+
+    Beside a cut the nearest depth of the 3 x 3 pixels around counts, because the contour may have passed on the other
+    side of this pixel. Without a valid pixel the difference is -1.
+
+    Args:
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        at_cut: (h, w) pixels beside a cut.
+        y, x: The pixel.
+        z: Label.
+    """
     best, value = -1.0, 0.0
-    reach = 1 if mixed[y, x] else 0
+    reach = 1 if at_cut[y, x] else 0
     for j in range(max(0, y - reach), min(d.shape[0], y + reach + 1)):
         for i in range(max(0, x - reach), min(d.shape[1], x + reach + 1)):
             if valid[j, i]:
@@ -71,20 +98,33 @@ def misfit(d, valid, mixed, y, x, z):
 
 
 @kernel()
-def worst_pixel(points, height, tri, t, d, valid, mixed, worst, place, value):
-    """The valid pixel of triangle t where the mesh is farthest from the depth map: error, (row, column), depth."""
+def worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
+    """The valid pixel of triangle t at which the mesh is farthest from the depth map.
+
+    Args:
+        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
+        height: (n,) labels of the points.
+        tri: (m, 3) corners.
+        t: The triangle.
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        at_cut: (h, w) pixels beside a cut.
+        worst: (m,) largest error, written at t.
+        place: (m, 2) row and column, written at t; -1 if there is none.
+        value: (m,) depth, written at t.
+    """
     worst[t], place[t, 0] = 0.0, -1
     a, b, c = tri[t]
     if a < 0:
         return
-    area = float(side(points, a, b, c))
-    first, last = rows_of(points, a, b, c)
+    area = float(twice_signed_area(points, a, b, c))
+    first, last = row_range(points, a, b, c)
     for y in range(max(first, 0), min(last, d.shape[0] - 1) + 1):
-        low, high = row_run(points, a, b, c, y)
+        low, high = column_range(points, a, b, c, y)
         for x in range(max(low, 0), min(high, d.shape[1] - 1) + 1):
             if not valid[y, x]:
                 continue
-            X, Y = x * LATTICE, y * LATTICE
+            X, Y = x * DELAUNAY_STEPS_PER_PIXEL, y * DELAUNAY_STEPS_PER_PIXEL
             wa = (
                 float(
                     (points[c, 0] - points[b, 0]) * (Y - points[b, 1])
@@ -100,13 +140,20 @@ def worst_pixel(points, height, tri, t, d, valid, mixed, worst, place, value):
                 / area
             )
             z = wa * height[a] + wb * height[b] + (1 - wa - wb) * height[c]
-            error, found = misfit(d, valid, mixed, y, x, z)
+            error, found = depth_error(d, valid, at_cut, y, x, z)
             if error > worst[t] and not is_corner(points, a, b, c, X, Y):
                 worst[t], place[t, 0], place[t, 1], value[t] = error, y, x, found
 
 
 @kernel()
 def is_corner(points, a, b, c, X, Y):
+    """Whether a place is a corner of a triangle.
+
+    Args:
+        points: (n, 2).
+        a, b, c: Indices of points.
+        X, Y: The place, in the same steps.
+    """
     corner = False
     for p in (a, b, c):
         corner |= points[p, 0] == X and points[p, 1] == Y
@@ -114,12 +161,26 @@ def is_corner(points, a, b, c, X, Y):
 
 
 @kernel()
-def refine(points, height, tri, across, fixed, at, vertices, count, d, valid, mixed, tolerance, limit):
-    """Insert the worst pixels of the triangles, largest errors first, until all are within `tolerance` or there are
-    `limit` triangles. points, height, tri, ... have room for limit + 2 rows. Returns (points, triangles) in use and
-    the largest error left.
+def refine_greedily(
+    points, height, tri, adjacent, constrained, incident, vertices, count, d, valid, at_cut, tolerance, limit
+):
+    """Insert the worst pixels of the triangles, largest errors first, until all errors are within a tolerance.
 
-    Each pass takes all triangles within a factor of two of the worst that no earlier insertion of the pass has touched.
+    Each pass takes all triangles within a factor of two of the worst that no earlier insertion of the pass has changed.
+
+    Args:
+        points, height, tri, adjacent, constrained, incident: As in `triangulation` and `worst_pixel`, with room for
+            limit + 2 rows.
+        vertices: Number of points in use.
+        count: Number of triangles in use.
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        at_cut: (h, w) pixels beside a cut.
+        tolerance: Labels.
+        limit: Most triangles.
+
+    Returns:
+        The numbers of points and triangles in use, and the largest remaining error.
     """
     rows = tri.shape[0]
     worst, value = np.zeros(rows), np.zeros(rows)
@@ -130,7 +191,7 @@ def refine(points, height, tri, across, fixed, at, vertices, count, d, valid, mi
     while True:
         for t in range(count):
             if changed[t] == stamp:
-                worst_pixel(points, height, tri, t, d, valid, mixed, worst, place, value)
+                worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value)
         top = worst[:count].max() if count else 0.0
         if top <= tolerance or count + 2 > limit:
             return vertices, count, top
@@ -142,31 +203,50 @@ def refine(points, height, tri, across, fixed, at, vertices, count, d, valid, mi
                 continue
             if count + 2 > limit or vertices >= points.shape[0]:
                 break
-            points[vertices, 0], points[vertices, 1] = place[t, 1] * LATTICE, place[t, 0] * LATTICE
+            points[vertices, 0], points[vertices, 1] = (
+                place[t, 1] * DELAUNAY_STEPS_PER_PIXEL,
+                place[t, 0] * DELAUNAY_STEPS_PER_PIXEL,
+            )
             height[vertices] = value[t]
-            split(points, vertices, t, tri, across, fixed, at, count, changed, stamp, stack)
+            insert_point(points, vertices, t, tri, adjacent, constrained, incident, count, changed, stamp, stack)
             vertices += 1
             count += 2
 
 
 @kernel()
-def line_through(sums, first, last):
-    """The line nearest to points [first, last] of a chain with prefix sums (n + 1, 5) of x, y, x x, x y, y y: a point
-    on it, its normal, and the sum of squared distances (the smaller eigenvalue of the scatter matrix)."""
+def fit_line(sums, first, last):
+    """The least-squares line through points [first, last] of a chain.
+
+    Args:
+        sums: (n + 1, 5) prefix sums of x, y, x x, x y, y y.
+        first, last: Indices.
+
+    Returns:
+        A point on the line, its normal, and the sum of squared distances (the smaller eigenvalue of the scatter
+        matrix).
+    """
     n = last - first + 1
     x = (sums[last + 1, 0] - sums[first, 0]) / n
     y = (sums[last + 1, 1] - sums[first, 1]) / n
     xx = sums[last + 1, 2] - sums[first, 2] - n * x * x
     xy = sums[last + 1, 3] - sums[first, 3] - n * x * y
     yy = sums[last + 1, 4] - sums[first, 4] - n * y * y
-    turn = 0.5 * np.arctan2(2 * xy, xx - yy)
+    angle = 0.5 * np.arctan2(2 * xy, xx - yy)
     rest = 0.5 * (xx + yy) - np.hypot(0.5 * (xx - yy), xy)
-    return x, y, -np.sin(turn), np.cos(turn), max(rest, 0.0)
+    return x, y, -np.sin(angle), np.cos(angle), max(rest, 0.0)
 
 
 @kernel()
 def is_straight(chain, sums, first, last, tolerance):
-    x, y, nx, ny, _ = line_through(sums, first, last)
+    """Whether points [first, last] of a chain lie within a tolerance of their line.
+
+    Args:
+        chain: (n, 2).
+        sums: Of `fit_line`.
+        first, last: Indices.
+        tolerance: Pixels.
+    """
+    x, y, nx, ny, _ = fit_line(sums, first, last)
     farthest = 0.0
     for i in range(first, last + 1):
         farthest = max(farthest, abs((chain[i, 0] - x) * nx + (chain[i, 1] - y) * ny))
@@ -175,9 +255,17 @@ def is_straight(chain, sums, first, last, tolerance):
 
 @kernel()
 def split_chain(chain, tolerance, window, kept):
-    """kept (n,) bool, out: the ends of runs of chain (n, 2) that lie within `tolerance` of a line each. A run is
-    taken as long as it goes; then each joint moves, within `window` points, to where the two runs fit their lines
-    best."""
+    """Split a chain into runs that lie within a tolerance of a line each.
+
+    A run is extended as far as possible. Then each joint moves, within a window, to where the two runs fit their lines
+    best.
+
+    Args:
+        chain: (n, 2).
+        tolerance: Pixels.
+        window: Points.
+        kept: (n,) bool, set at the ends of runs.
+    """
     n = chain.shape[0]
     sums = np.zeros((n + 1, 5))
     for i in range(n):
@@ -208,7 +296,7 @@ def split_chain(chain, tolerance, window, kept):
         before, after = knots[k - 1], knots[k + 1]
         best, place = np.inf, knots[k]
         for i in range(max(before + 1, knots[k] - window), min(after - 1, knots[k] + window) + 1):
-            error = line_through(sums, before, i)[4] + line_through(sums, i, after)[4]
+            error = fit_line(sums, before, i)[4] + fit_line(sums, i, after)[4]
             if error < best:
                 best, place = error, i
         knots[k] = place
@@ -217,20 +305,33 @@ def split_chain(chain, tolerance, window, kept):
 
 
 @kernel()
-def wedge_moments(points, tri, d, valid, mixed, reach, clear, near):
-    """Moments sum w (1, x, y, x x, x y, y y, d, x d, y d) of the valid pixels within `reach` of a vertex that lie in
-    the wedge of one of its triangles, x and y from the vertex, w = 1 / (1 + x x + y y): near (n, 9) over all, clear
-    (n, 9) over those away from cuts.
+def wedge_moments(points, tri, d, valid, at_cut, reach, clear, near):
+    """Moments of the valid pixels near each vertex that lie in the wedge of one of its triangles.
+
+    They are sum w (1, x, y, x x, x y, y y, d, x d, y d), x and y from the vertex, w = 1 / (1 + x x + y y).
+
+    Args:
+        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
+        tri: (m, 3) corners.
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        at_cut: (h, w) pixels beside a cut.
+        reach: Pixels.
+        clear: (n, 9) over pixels away from cuts, added to.
+        near: (n, 9) over all pixels, added to.
     """
     for t in range(tri.shape[0]):
         for k in range(3):
             p, q, r = tri[t, k], tri[t, (k + 1) % 3], tri[t, (k + 2) % 3]
-            middle_x, middle_y = points[p, 0] / LATTICE, points[p, 1] / LATTICE
+            middle_x, middle_y = points[p, 0] / DELAUNAY_STEPS_PER_PIXEL, points[p, 1] / DELAUNAY_STEPS_PER_PIXEL
             for row in range(max(0, int(middle_y) - reach), min(d.shape[0], int(middle_y) + reach + 2)):
                 for column in range(max(0, int(middle_x) - reach), min(d.shape[1], int(middle_x) + reach + 2)):
                     if not valid[row, column]:
                         continue
-                    X, Y = column * LATTICE - points[p, 0], row * LATTICE - points[p, 1]
+                    X, Y = (
+                        column * DELAUNAY_STEPS_PER_PIXEL - points[p, 0],
+                        row * DELAUNAY_STEPS_PER_PIXEL - points[p, 1],
+                    )
                     if (points[q, 0] - points[p, 0]) * Y < (points[q, 1] - points[p, 1]) * X:
                         continue
                     if (points[r, 0] - points[p, 0]) * Y > (points[r, 1] - points[p, 1]) * X:
@@ -238,12 +339,21 @@ def wedge_moments(points, tri, d, valid, mixed, reach, clear, near):
                     x, y, z = column - middle_x, row - middle_y, d[row, column]
                     w = 1 / (1 + x * x + y * y)
                     add_moments(near, p, w, x, y, z)
-                    if not mixed[row, column]:
+                    if not at_cut[row, column]:
                         add_moments(clear, p, w, x, y, z)
 
 
 @kernel()
 def add_moments(sums, p, w, x, y, z):
+    """Add one pixel to the moments of vertex p.
+
+    Args:
+        sums: (n, 9).
+        p: Vertex.
+        w: Weight.
+        x, y: Pixel, from the vertex.
+        z: Label.
+    """
     sums[p, 0] += w
     sums[p, 1] += w * x
     sums[p, 2] += w * y
@@ -256,9 +366,17 @@ def add_moments(sums, p, w, x, y, z):
 
 
 @kernel()
-def first_fit(taken, mask, place):
-    """Put mask (h, w) into taken (H, W) at the first place, by rows, where nothing of it is taken; place (2,) out:
-    row, column. False if it fits nowhere."""
+def place_first_fit(taken, mask, place):
+    """Put a mask at the first place, by rows, where nothing of it is taken.
+
+    Args:
+        taken: (H, W) bool, updated.
+        mask: (h, w) bool.
+        place: (2,) row and column, written.
+
+    Returns:
+        False if it fits nowhere.
+    """
     for row in range(taken.shape[0] - mask.shape[0] + 1):
         for column in range(taken.shape[1] - mask.shape[1] + 1):
             free = True

@@ -1,14 +1,15 @@
 """The second layer of a relief: what the array sees behind the near side of each cut.
 
-Where the first layer is cut, a view from the side sees past the near edge. How far follows from the array itself: a
-jump J in d uncovers |m| J pixels, m being how many pixels a point moves in that view for one unit of d. There depth is
-found as for the first layer, from the views that the first layer does not block; where none looks, the surface behind
-goes on as a thin plate that hangs on the far side of the cut.
+Where the first layer is cut, a view from the side sees past the near edge. The array determines how far: a jump J in d
+uncovers |m| J pixels, with m the parallax of that view for one unit of d. Depth there is estimated as for the first
+layer, from the views that the first layer does not block. Where no view looks, the surface behind continues as a thin
+plate that is attached to the far side of the cut.
 """
 
 from __future__ import annotations
 
 import logging
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,38 +19,69 @@ from scipy.sparse.linalg import splu
 
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.relief.layers_kernels import mark_revealed
-from eigenfield.stereo.semiglobal import semi_global
-from eigenfield.stereo.sweep import sweep
-from eigenfield.stereo.views import Pictures, motion, pack
+from eigenfield.stereo.semiglobal import semi_global_matching
+from eigenfield.stereo.sweep import plane_sweep
+from eigenfield.stereo.views import Pictures, label_parallax, pack_pictures
 from eigenfield.stereo.visibility import depth_buffers
 
 log = logging.getLogger("eigenfield.proxy")
 
-STAGE = "second layer"  # steps: what is uncovered; sweep and optimisation, which count twice; plate
-MOST_VIEWS = 100  # for the sweep; more say little new
-STEP = 0.8  # pixels that a label moves a point in the view with most parallax
-MOST_LABELS = 128
-SLACK = 0.3  # of a cut: how much nearer than the far side of a cut the layer behind may come ..
-BENEATH = 0.3  # .. and how far it stays behind the first layer
-BIAS = 0.3  # of a cut: bias of the depth test
-FEWEST = 3  # views that must see past the first layer
-MOST = 30.0  # grey levels, as in `sweep`
-UNSEEN = 21.0
-SMOOTH = 5  # pixels, side of the window over which costs are averaged
-STEEP = 60.0  # grey levels a label unit: how strongly the far side holds its depth in the optimisation
-SMALL_STEP, LARGE_STEP = 1.5, 25.0  # penalties of `semi_global`
-RING = 12  # pixels of the far side on which the layer hangs
-UNDER = 4  # pixels by which it reaches under the far side, so that no gap opens between them
-SURE = 2.0  # confidence of `semi_global` at which a depth has half its say
-AGREED = 12.0  # grey levels above which photographs do not agree
-PLATE, MEMBRANE, ANCHOR = (
-    100.0,
-    0.02,
-    100.0,
-)  # weights of curvature, of slope and of the far side, over those of a depth
+SECOND_LAYER_STAGE = "second layer"  # steps: uncovered pixels; sweep and optimisation (two); plate
 
 
-def second_layer(
+@dataclass(frozen=True)
+class SecondLayerTuning:
+    """Constants of `estimate_second_layer`.
+
+    Attributes:
+        sweep_max_views: Views of the sweep. More views tell little new.
+        sweep_step_pixels: Distance of two labels in the view with most parallax.
+        sweep_max_labels: Labels of the sweep.
+        nearer_cuts: How much nearer than the far side of a cut the second layer may come, in cuts.
+        behind_cuts: How far it stays behind the first layer, in cuts.
+        visibility_bias_cuts: Bias of the depth test, in cuts.
+        min_views: Views that must see past the first layer.
+        max_difference_levels: Grey levels at which differences are cut off.
+        unseen_cost_levels: Cost of points that too few views see.
+        cost_window_pixels: Side of the window over which costs are averaged.
+        anchor_levels_per_label: How strongly the far side holds its depth in the optimisation.
+        sgm_p1_levels: Penalty of `semi_global_matching` for a step of one label.
+        sgm_p2_levels: Penalty for a jump.
+        ring_pixels: Width of the far side to which the layer is attached.
+        overlap_pixels: Width by which the layer extends under the far side, so that no gap opens.
+        half_confidence: Confidence of `semi_global_matching` at which a depth has half its weight.
+        max_cost_levels: Cost above which photographs do not agree.
+        curvature_weight: Weight of curvature, relative to a depth.
+        slope_weight: Weight of slope.
+        far_side_weight: Weight of the far side.
+    """
+
+    sweep_max_views: int = 100
+    sweep_step_pixels: float = 0.8
+    sweep_max_labels: int = 128
+    nearer_cuts: float = 0.3
+    behind_cuts: float = 0.3
+    visibility_bias_cuts: float = 0.3
+    min_views: int = 3
+    max_difference_levels: float = 30.0
+    unseen_cost_levels: float = 21.0
+    cost_window_pixels: int = 5
+    anchor_levels_per_label: float = 60.0
+    sgm_p1_levels: float = 1.5
+    sgm_p2_levels: float = 25.0
+    ring_pixels: int = 12
+    overlap_pixels: int = 4
+    half_confidence: float = 2.0
+    max_cost_levels: float = 12.0
+    curvature_weight: float = 100.0
+    slope_weight: float = 0.02
+    far_side_weight: float = 100.0
+
+
+SECOND_LAYER_TUNING = SecondLayerTuning()
+
+
+def estimate_second_layer(
     pictures: Pictures,
     matrices: NDArray[np.float64],
     d: NDArray[np.float32],
@@ -58,63 +90,80 @@ def second_layer(
     cut: float,
     progress: Progress | None = None,
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """(d2 (h, w) float32, valid2 (h, w) bool): the layer behind d (h, w), and where there is one.
+    """The layer behind a depth map.
 
-    pictures, matrices: the array's views, as for `stereo.sweep`. valid: (h, w) where d counts. cut: jump of d at which
-    the first layer is cut. Where valid2, d2 is below d; it reaches a few pixels under the far side of each cut.
+    Args:
+        pictures: (V, H, W, 3) uint8 or packed.
+        matrices: (V, 3, 4) of the views, as for `plane_sweep`.
+        d: (h, w) labels of the first layer.
+        valid: (h, w) where it has surface. Default: everywhere.
+        cut: Difference of neighbouring labels at which the first layer is cut.
+        progress: Called for each step.
+
+    Returns:
+        (h, w) float32 labels of the second layer, below d, and (h, w) bool where there is one. It extends a few pixels
+        under the far side of each cut.
     """
     d = np.ascontiguousarray(d, np.float32)
     valid = np.ones(d.shape, np.bool_) if valid is None else valid
     report = progress or (lambda stage, done, total: None)
-    report(STAGE, 0, 4)
-    moves = motion(matrices, d.shape, float(np.median(d[valid])) if valid.any() else 0.0)
-    want, ceiling = _revealed(d, valid, cut, moves)
+    report(SECOND_LAYER_STAGE, 0, 4)
+    parallax = label_parallax(matrices, d.shape, float(np.median(d[valid])) if valid.any() else 0.0)
+    want, ceiling = _find_revealed(d, valid, cut, parallax)
     if not want.any():
-        report(STAGE, 4, 4)
+        report(SECOND_LAYER_STAGE, 4, 4)
         return d.copy(), want
-    report(STAGE, 1, 4)
+    report(SECOND_LAYER_STAGE, 1, 4)
     far = _far_side(d, valid, want, ceiling, cut)
-    floor = _floor(d, far, want, moves) - np.float32(SLACK * cut)
-    guess, trust = _swept(pictures, matrices, d, valid, want, floor, ceiling, cut, moves)
-    report(STAGE, 3, 4)
+    floor = _label_floor(d, far, want, parallax) - np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut)
+    guess, trust = _sweep_behind(pictures, matrices, d, valid, want, floor, ceiling, cut, parallax)
+    report(SECOND_LAYER_STAGE, 3, 4)
     inside = want | far
-    plate = _plate(np.where(want, guess, d), np.where(want, trust, ANCHOR), inside)
-    report(STAGE, 4, 4)
-    below = np.where(want, d - np.float32(BENEATH * cut), d - np.float32(0.1 * BENEATH * cut))
+    plate = _fit_thin_plate(
+        np.where(want, guess, d), np.where(want, trust, SECOND_LAYER_TUNING.far_side_weight), inside
+    )
+    report(SECOND_LAYER_STAGE, 4, 4)
+    below = np.where(
+        want,
+        d - np.float32(SECOND_LAYER_TUNING.behind_cuts * cut),
+        d - np.float32(0.1 * SECOND_LAYER_TUNING.behind_cuts * cut),
+    )
     result = np.where(want, np.minimum(np.maximum(plate, floor), np.minimum(ceiling, below)), below)
-    return result.astype(np.float32), want | (far & binary_dilation(want, iterations=UNDER))
+    return result.astype(np.float32), want | (
+        far & binary_dilation(want, iterations=SECOND_LAYER_TUNING.overlap_pixels)
+    )
 
 
-def _revealed(
-    d: NDArray[np.float32], valid: NDArray[np.bool_], cut: float, moves: NDArray[np.float64]
+def _find_revealed(
+    d: NDArray[np.float32], valid: NDArray[np.bool_], cut: float, parallax: NDArray[np.float64]
 ) -> tuple[NDArray[np.bool_], NDArray[np.float32]]:
     """Pixels of the near sides that some view uncovers, and the largest d that the surface behind may have there."""
     want, ceiling = np.zeros(d.shape, np.bool_), np.full(d.shape, np.inf, np.float32)
-    reach = np.maximum(np.r_[moves.max(axis=0), -moves.min(axis=0)], 0.0)
-    mark_revealed(d, valid, np.float32(cut), reach, np.float32(SLACK * cut), want, ceiling)
+    reach = np.maximum(np.r_[parallax.max(axis=0), -parallax.min(axis=0)], 0.0)
+    mark_revealed(d, valid, np.float32(cut), reach, np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut), want, ceiling)
     return want, ceiling
 
 
 def _far_side(
     d: NDArray[np.float32], valid: NDArray[np.bool_], want: NDArray[np.bool_], ceiling: NDArray[np.float32], cut: float
 ) -> NDArray[np.bool_]:
-    """Pixels beside the wanted ones that are no nearer than the surface behind may be."""
-    ring = binary_dilation(want, iterations=RING) & ~want & valid
-    allowed = minimum_filter(np.where(want, ceiling, np.inf), 2 * RING + 1)
-    return np.asarray(ring & (d <= allowed + np.float32(SLACK * cut)))
+    """Pixels beside the uncovered ones that are no nearer than the surface behind may be."""
+    ring = binary_dilation(want, iterations=SECOND_LAYER_TUNING.ring_pixels) & ~want & valid
+    allowed = minimum_filter(np.where(want, ceiling, np.inf), 2 * SECOND_LAYER_TUNING.ring_pixels + 1)
+    return np.asarray(ring & (d <= allowed + np.float32(SECOND_LAYER_TUNING.nearer_cuts * cut)))
 
 
-def _floor(
-    d: NDArray[np.float32], far: NDArray[np.bool_], want: NDArray[np.bool_], moves: NDArray[np.float64]
+def _label_floor(
+    d: NDArray[np.float32], far: NDArray[np.bool_], want: NDArray[np.bool_], parallax: NDArray[np.float64]
 ) -> NDArray[np.float32]:
-    """The least d on the far side anywhere near: the layer behind would dive without it."""
+    """The smallest d on the far side in the neighbourhood: without it the second layer would drop away."""
     jump = float(d[want].max() - d[far].min()) if far.any() else 0.0
-    near = 2 * int(np.ceil(np.abs(moves).max(initial=0.0) * jump)) + 2 * RING + 1
+    near = 2 * int(np.ceil(np.abs(parallax).max(initial=0.0) * jump)) + 2 * SECOND_LAYER_TUNING.ring_pixels + 1
     least = minimum_filter(np.where(far, d, np.inf), min(near, 2 * max(d.shape) + 1))
     return np.where(np.isfinite(least), least, d[want].min()).astype(np.float32)
 
 
-def _swept(
+def _sweep_behind(
     pictures: Pictures,
     matrices: NDArray[np.float64],
     d: NDArray[np.float32],
@@ -123,48 +172,74 @@ def _swept(
     floor: NDArray[np.float32],
     ceiling: NDArray[np.float32],
     cut: float,
-    moves: NDArray[np.float64],
+    parallax: NDArray[np.float64],
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Depth of the wanted pixels from the views that see past the first layer, and how far it is to be trusted
-    (0..1)."""
-    chosen = np.arange(0, len(matrices), -(-len(matrices) // MOST_VIEWS))
-    packed, matrices = pack(pictures[chosen]), matrices[chosen]
+    """Depth of the uncovered pixels from the views that see past the first layer, and its weight (0..1)."""
+    chosen = np.arange(0, len(matrices), -(-len(matrices) // SECOND_LAYER_TUNING.sweep_max_views))
+    packed, matrices = pack_pictures(pictures[chosen]), matrices[chosen]
     low, high = float(floor[want].min()), float(ceiling[want].max())
-    step = max(STEP / max(float(np.abs(moves).max()), 1e-9), (high - low) / (MOST_LABELS - 4))
+    step = max(
+        SECOND_LAYER_TUNING.sweep_step_pixels / max(float(np.abs(parallax).max()), 1e-9),
+        (high - low) / (SECOND_LAYER_TUNING.sweep_max_labels - 4),
+    )
     labels = (low - step + step * np.arange(int(np.ceil((high - low) / step)) + 3)).astype(np.float32)
     buffers = depth_buffers(matrices, d, packed.shape[1:], valid)
-    cost = sweep(
-        packed, matrices, d.shape, labels, todo=want, floor=floor, ceiling=ceiling, buffers=buffers, bias=BIAS * cut,
-        most=MOST, fewest=FEWEST, unseen=UNSEEN,
+    cost = plane_sweep(
+        packed, matrices, d.shape, labels, mask=want, floor=floor, ceiling=ceiling, buffers=buffers,
+        bias=SECOND_LAYER_TUNING.visibility_bias_cuts * cut, max_difference=SECOND_LAYER_TUNING.max_difference_levels,
+        min_views=SECOND_LAYER_TUNING.min_views, unseen_cost=SECOND_LAYER_TUNING.unseen_cost_levels,
     )  # fmt: skip
-    window = np.maximum(uniform_filter(want.astype(np.float32), SMOOTH), np.float32(1 / SMOOTH**2))
+    window = np.maximum(
+        uniform_filter(want.astype(np.float32), SECOND_LAYER_TUNING.cost_window_pixels),
+        np.float32(1 / SECOND_LAYER_TUNING.cost_window_pixels**2),
+    )
     best = np.full(d.shape, np.inf, np.float32)
     for index, label in enumerate(labels):
         tried = want & (cost[..., index] < 255)
-        level = np.where(tried, cost[..., index] / np.float32(8), np.float32(MOST)) * want
-        level = uniform_filter(level, SMOOTH) / window
+        level = (
+            np.where(tried, cost[..., index] / np.float32(8), np.float32(SECOND_LAYER_TUNING.max_difference_levels))
+            * want
+        )
+        level = uniform_filter(level, SECOND_LAYER_TUNING.cost_window_pixels) / window
         best = np.where(tried, np.minimum(best, level), best)
-        anchored = np.minimum(np.float32(MOST), np.abs(label - d) * np.float32(STEEP))
-        layer = np.where(want, np.where(tried, level, np.float32(MOST)), anchored)
+        anchored = np.minimum(
+            np.float32(SECOND_LAYER_TUNING.max_difference_levels),
+            np.abs(label - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label),
+        )
+        layer = np.where(want, np.where(tried, level, np.float32(SECOND_LAYER_TUNING.max_difference_levels)), anchored)
         cost[..., index] = np.rint(np.clip(layer * 8, 0, 240)).astype(np.uint8)
-    guess, confidence = semi_global(cost, np.zeros(d.shape, np.float32), labels, SMALL_STEP, LARGE_STEP)
-    trust = np.where(best < AGREED, confidence / (confidence + np.float32(SURE)), 0)
+    guess, confidence = semi_global_matching(
+        cost,
+        np.zeros(d.shape, np.float32),
+        labels,
+        SECOND_LAYER_TUNING.sgm_p1_levels,
+        SECOND_LAYER_TUNING.sgm_p2_levels,
+    )
+    trust = np.where(
+        best < SECOND_LAYER_TUNING.max_cost_levels,
+        confidence / (confidence + np.float32(SECOND_LAYER_TUNING.half_confidence)),
+        0,
+    )
     return np.minimum(guess, np.where(want, ceiling, np.inf)).astype(np.float32), trust.astype(np.float32)
 
 
-def _plate(guess: NDArray[np.float32], weight: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """z over `inside` that makes sum weight (z - guess)^2 + PLATE |second differences|^2 + MEMBRANE |differences|^2
-    least."""
+def _fit_thin_plate(
+    guess: NDArray[np.float32], weight: NDArray[np.float32], inside: NDArray[np.bool_]
+) -> NDArray[np.float64]:
+    """z over `inside` that minimises a thin plate under tension.
+
+    It minimises sum weight (z - guess)^2 + curvature_weight |second differences|^2 + slope_weight |differences|^2.
+    """
     index = np.full(inside.shape, -1, np.int64)
     index[inside] = np.arange(inside.sum())
     n = int(inside.sum())
     normal = diags_array(weight[inside].astype(np.float64) + 1e-6)
     for stencil, factor in (
-        (((0, -1, 1.0), (0, 0, -2.0), (0, 1, 1.0)), PLATE),
-        (((-1, 0, 1.0), (0, 0, -2.0), (1, 0, 1.0)), PLATE),
-        (((0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)), 2 * PLATE),
-        (((0, 0, 1.0), (0, 1, -1.0)), MEMBRANE),
-        (((0, 0, 1.0), (1, 0, -1.0)), MEMBRANE),
+        (((0, -1, 1.0), (0, 0, -2.0), (0, 1, 1.0)), SECOND_LAYER_TUNING.curvature_weight),
+        (((-1, 0, 1.0), (0, 0, -2.0), (1, 0, 1.0)), SECOND_LAYER_TUNING.curvature_weight),
+        (((0, 0, 1.0), (0, 1, -1.0), (1, 0, -1.0), (1, 1, 1.0)), 2 * SECOND_LAYER_TUNING.curvature_weight),
+        (((0, 0, 1.0), (0, 1, -1.0)), SECOND_LAYER_TUNING.slope_weight),
+        (((0, 0, 1.0), (1, 0, -1.0)), SECOND_LAYER_TUNING.slope_weight),
     ):
         rows = _stencil(index, stencil, n)
         normal = normal + factor * (rows.T @ rows)

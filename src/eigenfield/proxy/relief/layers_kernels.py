@@ -8,19 +8,25 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 
-PAD = 3  # pixels beyond what the array uncovers
-NEAR_SHARE = 0.6  # of the jump above the far side: what belongs to the near side
+REVEALED_PADDING_PIXELS = 3  # beyond what the array uncovers
+REVEALED_NEAR_FRACTION = 0.6  # of the jump above the far side: nearer pixels belong to the near side
 
 
 @kernel()
 def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
-    """For every side between two valid pixels whose depths differ by more than `cut`: the pixels of its near side
-    that are uncovered.
+    """For every edge between two valid pixels with a cut: the pixels of its near side that are uncovered.
 
-    reach (4,): pixels to the right, down, left and up that a point moves at most for one unit of d. The near pixel of
-    a jump J covers from its cut reach J pixels, towards where it moves; J counts the next pixels on both sides too,
-    over which the step may be smeared. want, ceiling (h, w): out, the pixels, and the least over their cuts of the
-    far side's d + slack.
+    The near pixel of a jump J covers reach J pixels from its cut, in the direction of its motion. J includes the next
+    pixels on both sides, over which the step may be smeared.
+
+    Args:
+        d: (h, w) labels.
+        valid: (h, w) where there is surface.
+        cut: Difference of labels at which an edge is cut.
+        reach: (4,) pixels to the right, down, left and up that a point moves at most for one unit of d.
+        slack: Labels that the surface behind may be nearer than the far side.
+        want: (h, w) uncovered pixels, set.
+        ceiling: (h, w) the smallest over their cuts of the far side's d + slack, updated.
     """
     h, w = d.shape
     for y in range(h):
@@ -35,8 +41,14 @@ def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
                     if 0 <= q < h and 0 <= p < w and valid[q, p]:
                         near, far = max(near, d[q, p]), min(far, d[q, p])
                 jump = near - far
-                right, down = int(np.ceil(reach[0] * jump)) + PAD, int(np.ceil(reach[1] * jump)) + PAD
-                left, up = int(np.ceil(reach[2] * jump)) + PAD, int(np.ceil(reach[3] * jump)) + PAD
+                right, down = (
+                    int(np.ceil(reach[0] * jump)) + REVEALED_PADDING_PIXELS,
+                    int(np.ceil(reach[1] * jump)) + REVEALED_PADDING_PIXELS,
+                )
+                left, up = (
+                    int(np.ceil(reach[2] * jump)) + REVEALED_PADDING_PIXELS,
+                    int(np.ceil(reach[3] * jump)) + REVEALED_PADDING_PIXELS,
+                )
                 if axis == 0 and forward:
                     left = -1
                 elif axis == 0:
@@ -48,6 +60,6 @@ def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
                 for row in range(max(0, y - up), min(h, y + down + 1)):
                     for column in range(max(0, x - left), min(w, x + right + 1)):
                         z = d[row, column]
-                        if valid[row, column] and z >= far + NEAR_SHARE * jump:
+                        if valid[row, column] and z >= far + REVEALED_NEAR_FRACTION * jump:
                             want[row, column] = True
                             ceiling[row, column] = min(ceiling[row, column], max(far, min(far + slack, z - slack)))

@@ -1,7 +1,7 @@
-"""A layered relief: depth maps seen from one camera as a mesh, each layer laid out in the atlas as that camera sees it.
+"""A layered relief: depth maps of one camera as a mesh, each layer laid out in the atlas as that camera sees it.
 
-The first layer is one chart. The second, which lies behind it and exists only near its cuts, is divided into pieces
-that fill their boxes, and packed round and into the first. One pixel of the canvas takes the same number of texels
+The first layer is one chart. The second lies behind it and exists only near its cuts. It is divided into pieces that
+fill their boxes, and packed around and into the first. One pixel of the reference view gets the same number of texels
 everywhere.
 """
 
@@ -17,21 +17,26 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
-from eigenfield.proxy.atlas.unwrap import DEFAULT_TRIANGLES
-from eigenfield.proxy.relief.backdrop import backdrop
-from eigenfield.proxy.relief.packing import packed_layers
-from eigenfield.proxy.relief.sheet import joined, make_sheet, sheet_mesh, used_part
-from eigenfield.stereo import Canvas
+from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
+from eigenfield.proxy.relief.backdrop import make_backdrop
+from eigenfield.proxy.relief.height_field import (
+    extract_faces,
+    height_field_to_world,
+    join_height_fields,
+    triangulate_height_field,
+)
+from eigenfield.proxy.relief.packing import pack_layers
+from eigenfield.stereo import ReferenceView
 
-SECOND_SHARE = 0.3  # of the triangles that the second layer may take
-BACKDROP_SHARE = 0.05  # likewise, the backdrop
-GAP = 0.25  # of a cut: how far behind the layers it stays
-SECOND_TOLERANCE = 2.5  # times coarser than the first: it is seen by few views
-GUTTER = 4.0  # canvas pixels between charts: six texels at density 1.5
+RELIEF_SECOND_LAYER_FRACTION = 0.3  # of the triangles, for the second layer at most
+RELIEF_BACKDROP_FRACTION = 0.05  # of the triangles, for the backdrop
+RELIEF_BACKDROP_GAP_CUTS = 0.25  # distance of the backdrop behind the layers
+RELIEF_SECOND_TOLERANCE_RATIO = 2.5  # to that of the first layer: few views see the second
+RELIEF_GUTTER_PIXELS = 4.0  # of the reference view, between charts: six texels at density 1.5
 
 
 def relief_mesh(
-    canvas: Canvas,
+    reference: ReferenceView,
     d: NDArray[np.float32],
     valid: NDArray[np.bool_],
     second: tuple[NDArray[np.float32], NDArray[np.bool_]] | None = None,
@@ -39,45 +44,60 @@ def relief_mesh(
     cut: float,
     tolerance: float,
     triangles: int | None = None,
-    gutter: float = GUTTER,
+    gutter: float = RELIEF_GUTTER_PIXELS,
     cameras: Sequence[Camera] = (),
     progress: Progress | None = None,
 ) -> Mesh:
     """The mesh of a depth map, and of a second one behind it, with an atlas.
 
-    d, valid: (h, w) labels on the canvas (larger is nearer) and where there is surface. second: the same for the layer
-    behind. cut: the surface is slit where neighbouring pixels of the first layer differ by more than this; the second
-    has no cuts. tolerance: in d, how far the mesh may be from the depth map, except within a pixel of a cut; a second
-    layer is allowed SECOND_TOLERANCE times as much. triangles: at most this many (None: DEFAULT_TRIANGLES), at the
-    cost of the tolerance. gutter: free canvas pixels between charts. cameras: what they see past both layers is closed
-    by a backdrop (`relief_backdrop`).
+    Faces are counter-clockwise seen from the reference camera.
 
-    Faces are counter-clockwise seen from the reference camera. Raises ProxyError `relief-empty`.
+    Args:
+        reference: The reference view.
+        d: (h, w) labels (larger is nearer).
+        valid: (h, w) where there is surface.
+        second: The same for the layer behind, which has no cuts.
+        cut: The surface is cut where neighbouring pixels of the first layer differ by more than this.
+        tolerance: Largest difference of the mesh from the depth map in labels, except within a pixel of a cut. The
+            second layer is allowed RELIEF_SECOND_TOLERANCE_RATIO times as much.
+        triangles: Most triangles, at the cost of the tolerance. Default: PROXY_DEFAULT_TRIANGLES.
+        gutter: Free pixels of the reference view between charts.
+        cameras: What they see past both layers is closed by a backdrop (`make_backdrop`).
+        progress: Called for each view of the backdrop.
+
+    Raises:
+        ProxyError: `relief-empty`: the depth map has no surface.
     """
-    limit = DEFAULT_TRIANGLES if triangles is None else triangles
-    spare = int(BACKDROP_SHARE * limit) if cameras else 0
+    limit = PROXY_DEFAULT_TRIANGLES if triangles is None else triangles
+    spare = int(RELIEF_BACKDROP_FRACTION * limit) if cameras else 0
     limit -= spare
     others = []
     if second is not None and second[1].any():
-        behind = make_sheet(
+        behind = triangulate_height_field(
             second[0],
             second[1],
             cut=float("inf"),
-            tolerance=SECOND_TOLERANCE * tolerance,
-            limit=int(SECOND_SHARE * limit),
+            tolerance=RELIEF_SECOND_TOLERANCE_RATIO * tolerance,
+            limit=int(RELIEF_SECOND_LAYER_FRACTION * limit),
         )
         others = [behind] if len(behind.faces) else []
-    front = make_sheet(d, valid, cut=cut, tolerance=tolerance, limit=limit - sum(len(s.faces) for s in others))
+    front = triangulate_height_field(
+        d, valid, cut=cut, tolerance=tolerance, limit=limit - sum(len(s.faces) for s in others)
+    )
     if len(front.faces) == 0:
         raise ProxyError(
             "relief-empty", "the depth map has no surface", remedy="widen the depth range, or look at the masks"
         )
     far = (
-        backdrop(canvas, [front, *others], cameras, gap=GAP * cut, limit=spare, progress=progress) if cameras else None
+        make_backdrop(
+            reference, [front, *others], cameras, gap=RELIEF_BACKDROP_GAP_CUTS * cut, limit=spare, progress=progress
+        )
+        if cameras
+        else None
     )
     if far is not None:
         others.append(far)
-    parts, places, side = packed_layers(used_part(front), others, gutter)
+    parts, places, side = pack_layers(extract_faces(front), others, gutter)
     uv = np.concatenate([(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)])
-    mesh = sheet_mesh(canvas, joined(parts))
+    mesh = height_field_to_world(reference, join_height_fields(parts))
     return replace(mesh, uv=np.clip(uv, 0, 1).astype(np.float32))

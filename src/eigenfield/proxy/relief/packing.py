@@ -1,4 +1,4 @@
-"""Charts that keep their shape and direction, packed into a square: first fit on a raster, largest first."""
+"""Packing of charts that keep their shape and direction into a square: first fit on a raster, largest first."""
 
 from __future__ import annotations
 
@@ -9,63 +9,85 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from eigenfield.core.mesh import signed_areas
-from eigenfield.proxy.relief.kernels import first_fit, label_pixels
-from eigenfield.proxy.relief.sheet import Sheet, sheet_components, used_part
-from eigenfield.proxy.relief.triangulation import LATTICE
+from eigenfield.proxy.relief.height_field import HeightFieldMesh, extract_faces, face_components
+from eigenfield.proxy.relief.kernels import label_pixels, place_first_fit
+from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
 
-FULL = 0.6  # part of its box that a piece should fill
-SMALLEST = 24.0  # pixels, longer side of a box that is not divided further
-ROOMS = (0.05, 0.1, 0.2, 0.4)  # of the first part's longer side: widths of the strips beside it that are tried
-WORTH = 0.9  # of the box's area: what the boxes of a division may have
-TRIALS = 9  # places at which a division is tried
-CELLS = 320  # about this many cells make a side of the raster
-GROWTH = 1.01  # from one side that is too small to the next
+PACK_MIN_BOX_FILL = 0.6  # fraction of its box that a piece should fill
+PACK_MIN_BOX_PIXELS = 24.0  # longer side of a box that is not divided further
+PACK_STRIP_WIDTHS = (
+    0.05,
+    0.1,
+    0.2,
+    0.4,
+)  # widths of the strips beside the first layer, in units of its longer side
+PACK_MAX_DIVISION_AREA_RATIO = 0.9  # area of the boxes of a division relative to the whole box, at most
+PACK_DIVISION_TRIALS = 9  # places along each axis
+PACK_RASTER_CELLS = 320  # along a side, approximately
+PACK_SIDE_GROWTH = 1.01  # from a side that is too small to the next
 
 
-def packed_layers(
-    first: Sheet, others: Sequence[Sheet], gutter: float
-) -> tuple[list[Sheet], list[NDArray[np.float64]], float]:
-    """The first layer whole and the others in pieces, by how much each moves, and the side of the square that holds
-    all.
+def pack_layers(
+    first: HeightFieldMesh, others: Sequence[HeightFieldMesh], gutter: float
+) -> tuple[list[HeightFieldMesh], list[NDArray[np.float64]], float]:
+    """The first layer whole and the others in pieces, packed into a square.
 
-    Pieces too wide for the strips that a square leaves beside the first layer would waste most of it: several widths
+    Pieces too wide for the strips that a square leaves beside the first layer would waste most of it. Several widths
     are tried, and the smallest square is taken.
+
+    Args:
+        first: The first layer.
+        others: The other layers.
+        gutter: Pixels between parts.
+
+    Returns:
+        The parts, (2,) by how much each moves, and the side of the square.
     """
     if not others:
-        return [first], *pack([first], gutter)
+        return [first], *pack_charts([first], gutter)
     longer = max(np.ptp(first.x), np.ptp(first.y))
     trials = []
-    for room in ROOMS:
-        pieces = [piece for sheet in others for piece in pieces_of(sheet, max(SMALLEST, room * longer))]
-        parts = [first, *sorted(pieces, key=lambda piece: -sheet_area(piece))]
-        trials.append((parts, *pack(parts, gutter)))
+    for room in PACK_STRIP_WIDTHS:
+        pieces = [
+            piece for mesh in others for piece in divide_into_pieces(mesh, max(PACK_MIN_BOX_PIXELS, room * longer))
+        ]
+        parts = [first, *sorted(pieces, key=lambda piece: -height_field_area(piece))]
+        trials.append((parts, *pack_charts(parts, gutter)))
     return min(trials, key=lambda trial: trial[2])
 
 
-def pieces_of(sheet: Sheet, room: float) -> list[Sheet]:
-    """A sheet divided into pieces that hang together, fill their boxes and fit into a strip `room` wide; largest
-    first."""
+def divide_into_pieces(mesh: HeightFieldMesh, room: float) -> list[HeightFieldMesh]:
+    """A mesh divided into connected pieces that fill their boxes and fit into a strip, largest first.
+
+    Args:
+        mesh: The height field.
+        room: Width of the strip, pixels.
+    """
     pieces: list[NDArray[np.int64]] = []
-    corners = np.stack([sheet.x, sheet.y], axis=1)[sheet.faces]
-    component = sheet_components(sheet.faces, len(sheet.x))
+    corners = np.stack([mesh.x, mesh.y], axis=1)[mesh.faces]
+    component = face_components(mesh.faces, len(mesh.x))
     waiting = [np.flatnonzero(component == c) for c in range(component.max(initial=-1) + 1)]
     while waiting:
         faces = waiting.pop()
-        part = _divided(corners[faces], room)
+        part = _find_division(corners[faces], room)
         if part is None:
             pieces.append(faces)
             continue
         for half in (faces[part], faces[~part]):
-            label = sheet_components(sheet.faces[half], len(sheet.x))
+            label = face_components(mesh.faces[half], len(mesh.x))
             waiting += [half[label == c] for c in range(label.max() + 1)]
     area = [_area(corners[faces]) for faces in pieces]
     order = sorted(range(len(pieces)), key=lambda i: (-area[i], int(pieces[i][0])))
-    return [used_part(sheet, np.sort(pieces[i])) for i in order]
+    return [extract_faces(mesh, np.sort(pieces[i])) for i in order]
 
 
-def sheet_area(sheet: Sheet) -> float:
-    """In squared pixels."""
-    return _area(np.stack([sheet.x, sheet.y], axis=1)[sheet.faces])
+def height_field_area(mesh: HeightFieldMesh) -> float:
+    """Area in squared pixels.
+
+    Args:
+        mesh: The height field.
+    """
+    return _area(np.stack([mesh.x, mesh.y], axis=1)[mesh.faces])
 
 
 def _area(corners: NDArray[np.float64]) -> float:
@@ -76,16 +98,16 @@ def _box(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(corners.max(axis=(0, 1)) - corners.min(axis=(0, 1)))
 
 
-def _divided(corners: NDArray[np.float64], room: float) -> NDArray[np.bool_] | None:
-    """The triangles on one side of a line along x or y that makes the boxes of both sides small; None to leave them."""
+def _find_division(corners: NDArray[np.float64], room: float) -> NDArray[np.bool_] | None:
+    """The triangles on one side of a line along x or y that makes both boxes small; None if none is worth it."""
     size = _box(corners)
     middle = corners.mean(axis=1)
     wide = size.min() > room
-    if not wide and (size.max() < SMALLEST or _area(corners) > FULL * size.prod()):
+    if not wide and (size.max() < PACK_MIN_BOX_PIXELS or _area(corners) > PACK_MIN_BOX_FILL * size.prod()):
         return None
-    best, found = (np.inf if wide else WORTH) * float(size.prod()), None
+    best, found = (np.inf if wide else PACK_MAX_DIVISION_AREA_RATIO) * float(size.prod()), None
     for axis in (0, 1):
-        for at in np.quantile(middle[:, axis], np.arange(1, TRIALS + 1) / (TRIALS + 1)):
+        for at in np.quantile(middle[:, axis], np.arange(1, PACK_DIVISION_TRIALS + 1) / (PACK_DIVISION_TRIALS + 1)):
             low = middle[:, axis] < at
             if low.any() and not low.all():
                 cost = float(_box(corners[low]).prod() + _box(corners[~low]).prod())
@@ -94,33 +116,42 @@ def _divided(corners: NDArray[np.float64], room: float) -> NDArray[np.bool_] | N
     return found
 
 
-def pack(parts: Sequence[Sheet], gutter: float) -> tuple[list[NDArray[np.float64]], float]:
-    """((2,) by how much each part moves, side of the square) such that parts are `gutter` pixels apart, and half as far
-    from the border. Parts are taken in the order in which they come."""
+def pack_charts(parts: Sequence[HeightFieldMesh], gutter: float) -> tuple[list[NDArray[np.float64]], float]:
+    """Pack parts into a square, in the given order.
+
+    Args:
+        parts: The parts.
+        gutter: Pixels between parts; half of it to the border.
+
+    Returns:
+        (2,) by how much each part moves, and the side of the square.
+    """
     reach = int(np.ceil(gutter / 2)) + 1
     masks, corners = zip(*(_mask(part, reach) for part in parts), strict=True)
     filled = sum(int(mask.sum()) for mask in masks)
-    cell = max(1, round(np.sqrt(filled) / CELLS))
-    coarse = [_pooled(mask, cell) for mask in masks]
+    cell = max(1, round(np.sqrt(filled) / PACK_RASTER_CELLS))
+    coarse = [_max_pool(mask, cell) for mask in masks]
     side = max(int(np.sqrt(sum(int(mask.sum()) for mask in coarse))), *(max(mask.shape) for mask in coarse), 1)
     while True:
         taken = np.zeros((side, side), np.bool_)
         places = np.zeros((len(coarse), 2), np.int64)
-        if all(first_fit(taken, mask, place) for mask, place in zip(coarse, places, strict=True)):
+        if all(place_first_fit(taken, mask, place) for mask, place in zip(coarse, places, strict=True)):
             break
-        side = int(np.ceil(side * GROWTH))
+        side = int(np.ceil(side * PACK_SIDE_GROWTH))
     offsets = [place[::-1] * cell - corner for place, corner in zip(places, corners, strict=True)]
     return [np.asarray(offset, np.float64) for offset in offsets], float(side * cell)
 
 
-def _mask(part: Sheet, reach: int) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
-    """The pixels within about `reach` of a part, and where the raster's top left pixel begins."""
+def _mask(part: HeightFieldMesh, reach: int) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """The pixels within about `reach` of a part, and the corner of the raster's top left pixel."""
     low = np.floor([part.x.min(), part.y.min()]) - reach - 1
     high = np.ceil([part.x.max(), part.y.max()]) + reach + 1
     width, height = (high - low).astype(int) + 1
     xy = np.stack([part.x, part.y], axis=1) - low
     owner = np.empty((height, width), np.int32)
-    label_pixels(np.rint(xy * LATTICE).astype(np.int64), part.faces.astype(np.int64), len(part.faces), owner)
+    label_pixels(
+        np.rint(xy * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64), part.faces.astype(np.int64), len(part.faces), owner
+    )
     mask = owner >= 0
     column, row = np.rint(xy).astype(int).T
     mask[row, column] = True
@@ -128,7 +159,7 @@ def _mask(part: Sheet, reach: int) -> tuple[NDArray[np.bool_], NDArray[np.float6
     return binary_dilation(mask, x * x + y * y <= reach * reach), low - 0.5
 
 
-def _pooled(mask: NDArray[np.bool_], cell: int) -> NDArray[np.bool_]:
+def _max_pool(mask: NDArray[np.bool_], cell: int) -> NDArray[np.bool_]:
     h, w = -(-mask.shape[0] // cell), -(-mask.shape[1] // cell)
     whole = np.zeros((h * cell, w * cell), np.bool_)
     whole[: mask.shape[0], : mask.shape[1]] = mask

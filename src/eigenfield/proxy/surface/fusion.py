@@ -1,7 +1,7 @@
-"""Depth maps of many views into one set of oriented, coloured points.
+"""Fusion of the depth maps of many views into one set of oriented, coloured points.
 
-A point stays where enough other views confirm it and no majority looks through it; of the pixels that show one surface
-element, the finest stands for all of them. (Merrell et al., "Real-Time Visibility-Based Fusion of Depth Maps", 2007.)
+A point stays if enough other views confirm it and no majority sees through it. Of the pixels that show one surface
+element, the finest represents all of them. Merrell et al., "Real-Time Visibility-Based Fusion of Depth Maps", 2007.
 """
 
 from __future__ import annotations
@@ -16,25 +16,27 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.progress import Progress, track
-from eigenfield.proxy.surface.fusion_kernels import agree, normals_of, stand_for
+from eigenfield.proxy.surface.fusion_kernels import confirm_points, estimate_normals, select_finest
 from eigenfield.runtime.parallel import parallel_map, pieces
+from eigenfield.stereo.reference_view import INDEX_FROM_PIXEL
 
 log = logging.getLogger("eigenfield.proxy")
 
-BAND = 32  # rows a thread works on
-MOST_POINTS = 1_500_000
-THINNING = 1.25  # by how much the cells grow until few enough points remain
-HALF = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1.0]])  # from pixels with centres at +0.5 to indices
+FUSION_ROWS_PER_TASK = 32
+FUSION_MAX_POINTS = 1_500_000
+FUSION_CELL_GROWTH = 1.25  # of the cells in each step, until few enough points remain
 
 
 @dataclass(frozen=True, eq=False)
 class DepthView:
-    """One view's depth.
+    """The depth map of one view.
 
-    camera: at the depth map's size.
-    inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is none.
-    colour: (H, W, 3) uint8; None: grey.
-    mask: (H, W) bool, True where the photograph counts; None: everywhere.
+    Attributes:
+        camera: At the depth map's size.
+        inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is
+            none.
+        colour: (H, W, 3) uint8; None: grey.
+        mask: (H, W) bool, True where the photograph is valid; None: everywhere.
     """
 
     camera: Camera
@@ -44,11 +46,14 @@ class DepthView:
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
+class OrientedPoints:
     """Oriented points on surfaces.
 
-    positions: (n, 3) float64. normals: (n, 3) float32, unit, outwards. colours: (n, 3) uint8.
-    spacing: (n,) float32, world units, about the distance to the next point: a pixel's width on the surface.
+    Attributes:
+        positions: (n, 3) float64.
+        normals: (n, 3) float32, unit, outwards.
+        colours: (n, 3) uint8.
+        spacing: (n,) float32, world units: approximate distance to the next point, a pixel's width on the surface.
     """
 
     positions: NDArray[np.float64]
@@ -59,18 +64,22 @@ class Points:
     def __len__(self) -> int:
         return len(self.positions)
 
-    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Points:
-        """Some of the points, by a mask or by indices."""
-        return Points(self.positions[which], self.normals[which], self.colours[which], self.spacing[which])
+    def subset(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> OrientedPoints:
+        """Some of the points.
+
+        Args:
+            chosen: A mask or indices.
+        """
+        return OrientedPoints(self.positions[chosen], self.normals[chosen], self.colours[chosen], self.spacing[chosen])
 
 
 @dataclass(frozen=True, eq=False)
-class _Stack:
-    """All views end to end, as the kernels want them."""
+class _StackedViews:
+    """All views, one after the other, as the kernels read them."""
 
     layout: NDArray[np.int64]
     projections: NDArray[np.float64]
-    lifts: NDArray[np.float64]
+    unprojections: NDArray[np.float64]
     centres: NDArray[np.float64]
     inverse_depth: NDArray[np.float32]
     normals: NDArray[np.float32]
@@ -78,23 +87,31 @@ class _Stack:
     inside: NDArray[np.uint8]
 
 
-def fuse(
+def fuse_depth_maps(
     views: Sequence[DepthView],
     *,
     tolerance: float = 0.01,
     agreement: int = 2,
-    limit: int = MOST_POINTS,
+    limit: int = FUSION_MAX_POINTS,
     progress: Progress | None = None,
-) -> Points:
+) -> OrientedPoints:
     """One point a surface element, at the resolution of the finest view that shows it.
 
-    tolerance: relative difference of depth up to which two views agree. agreement: how many other views have to.
-    limit: merge points into growing cells until at most so many are left. The result does not depend on the number of
-    threads. Raises ProxyError `surface-masked` if the masks leave nothing, `surface-no-points` if no views agree.
+    The result does not depend on the number of threads.
+
+    Args:
+        views: Depth maps.
+        tolerance: Relative difference of depth up to which two views agree.
+        agreement: How many other views must agree.
+        limit: Merge points into growing cells until at most so many remain.
+        progress: Called for each part.
+
+    Raises:
+        ProxyError: `surface-masked`: the masks leave nothing. `surface-no-points`: no views agree.
     """
     if not views:
         raise ProxyError("surface-no-points", "there are no depth maps", remedy="give at least three photographs")
-    stack = _stacked(views)
+    stack = _stack_views(views)
     if not stack.inside.any():
         raise ProxyError(
             "surface-masked", "the masks hide every pixel", remedy="white counts, black is left out: invert the masks?"
@@ -102,21 +119,29 @@ def fuse(
     total = len(stack.inverse_depth)
     mean, counts, keep = np.empty((total, 3)), np.zeros(total, np.int16), np.zeros(total, np.bool_)
     everyone = np.arange(len(views))
-    bands = [(v, *band) for v, (_, height, _) in enumerate(stack.layout) for band in pieces(int(height), BAND)]
+    bands = [
+        (v, *band)
+        for v, (_, height, _) in enumerate(stack.layout)
+        for band in pieces(int(height), FUSION_ROWS_PER_TASK)
+    ]
     spans = [slice(start, start + height * width) for start, height, width in stack.layout.tolist()]
 
     def confirm(band: tuple[int, int, int]) -> None:
-        agree(*band, stack.layout, stack.projections, stack.lifts, stack.centres, everyone, stack.inverse_depth,
-              stack.normals, stack.level, stack.inside, tolerance, agreement, mean[spans[band[0]]],
-              counts[spans[band[0]]])  # fmt: skip
+        confirm_points(
+            *band, stack.layout, stack.projections, stack.unprojections, stack.centres, everyone, stack.inverse_depth,
+            stack.normals, stack.level, stack.inside, tolerance, agreement, mean[spans[band[0]]],
+            counts[spans[band[0]]],
+        )  # fmt: skip
 
-    def settle(band: tuple[int, int, int]) -> None:
-        stand_for(*band, stack.layout, stack.projections, everyone, mean, stack.normals, stack.level, counts,
-                  tolerance, keep[spans[band[0]]])  # fmt: skip
+    def select(band: tuple[int, int, int]) -> None:
+        select_finest(
+            *band, stack.layout, stack.projections, everyone, mean, stack.normals, stack.level, counts, tolerance,
+            keep[spans[band[0]]],
+        )  # fmt: skip
 
     for part in track(pieces(len(bands), 64), "fusion", len(pieces(len(bands), 64)), progress):
         parallel_map(confirm, bands[slice(*part)])
-    parallel_map(settle, bands)
+    parallel_map(select, bands)
     chosen = np.flatnonzero(keep)
     if len(chosen) == 0:
         raise ProxyError(
@@ -124,25 +149,32 @@ def fuse(
             f"no point is confirmed by {agreement + 1} of the {len(views)} views",
             remedy="check the calibration (eigenfield inspect); the photographs must overlap and have texture",
         )
-    points = Points(mean[chosen], stack.normals[chosen], _colours(views, chosen, spans), _spacing(stack, chosen))
+    points = OrientedPoints(
+        mean[chosen], stack.normals[chosen], _point_colours(views, chosen, spans), _point_spacing(stack, chosen)
+    )
     log.info("fusion: %d points from %d views", len(points), len(views))
-    return thinned(points, limit)
+    return subsample_points(points, limit)
 
 
-def thinned(points: Points, limit: int) -> Points:
-    """At most `limit` points: those in one cell, as wide as their spacing times a factor that grows, become their mean.
+def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
+    """Merge points in growing cells until few enough remain.
 
-    Points whose normals lie in different octants stay apart, so thin walls keep two sides.
+    The width of a cell is the spacing of its points times a factor that grows. Points whose normals lie in different
+    octants stay apart, so that thin walls keep two sides.
+
+    Args:
+        points: The points.
+        limit: How many may remain.
     """
     factor = 1.0
     result = points
     while len(result) > limit:
-        result = _merged(points, factor)
-        factor *= THINNING
+        result = _merge_cells(points, factor)
+        factor *= FUSION_CELL_GROWTH
     return result
 
 
-def _merged(points: Points, factor: float) -> Points:
+def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
     size = 2.0 ** np.ceil(np.log2(points.spacing.astype(np.float64)))
     cell = np.floor((points.positions - points.positions.min(axis=0)) / (factor * size)[:, None]).astype(np.int64)
     octant = (points.normals > 0) @ np.array([1, 2, 4])
@@ -159,18 +191,18 @@ def _merged(points: Points, factor: float) -> Points:
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     spacing = np.maximum(average(points.spacing.astype(np.float64)), factor * size[order][starts] / np.sqrt(2))
     colours = np.rint(average(points.colours.astype(np.float64))).astype(np.uint8)
-    return Points(average(points.positions), normals.astype(np.float32), colours, spacing.astype(np.float32))
+    return OrientedPoints(average(points.positions), normals.astype(np.float32), colours, spacing.astype(np.float32))
 
 
-def _stacked(views: Sequence[DepthView]) -> _Stack:
+def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
     layout = np.zeros((len(views), 3), np.int64)
     layout[:, 1:] = [view.inverse_depth.shape for view in views]
     layout[1:, 0] = np.cumsum(layout[:, 1] * layout[:, 2])[:-1]
     total = int((layout[:, 1] * layout[:, 2]).sum())
-    stack = _Stack(
+    stack = _StackedViews(
         layout,
-        np.stack([HALF @ view.camera.matrix for view in views]),
-        np.stack([view.camera.R.T @ np.linalg.inv(HALF @ view.camera.K) for view in views]),
+        np.stack([INDEX_FROM_PIXEL @ view.camera.matrix for view in views]),
+        np.stack([view.camera.R.T @ np.linalg.inv(INDEX_FROM_PIXEL @ view.camera.K) for view in views]),
         np.stack([view.camera.centre for view in views]),
         np.zeros(total, np.float32),
         np.zeros((total, 3), np.float32),
@@ -189,13 +221,13 @@ def _stacked(views: Sequence[DepthView]) -> _Stack:
         stack.inverse_depth[span] = np.maximum(depth, 0).reshape(-1)
         flat = stack.inverse_depth[span].reshape(height, width)
         normals, level = stack.normals[span].reshape(height, width, 3), stack.level[span].reshape(height, width)
-        normals_of(flat, HALF @ view.camera.K, view.camera.R, 0, height, normals, level)
+        estimate_normals(flat, INDEX_FROM_PIXEL @ view.camera.K, view.camera.R, 0, height, normals, level)
 
     parallel_map(fill, range(len(views)))
     return stack
 
 
-def _colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Sequence[slice]) -> NDArray[np.uint8]:
+def _point_colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Sequence[slice]) -> NDArray[np.uint8]:
     colours = np.full((len(chosen), 3), 128, np.uint8)
     for view, span in zip(views, spans, strict=True):
         if view.colour is not None:
@@ -204,6 +236,6 @@ def _colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Seque
     return colours
 
 
-def _spacing(stack: _Stack, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    """From the levels: the middle of each one's range."""
+def _point_spacing(stack: _StackedViews, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
+    """From the levels: the middle of each level's range."""
     return (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)

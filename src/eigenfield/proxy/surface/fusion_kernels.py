@@ -1,7 +1,8 @@
-"""Depth maps of many views: normals, agreement between views, and which pixels stand for a surface element.
+"""Inner loops of fusion: normals, agreement between views, and the pixels that represent a surface element.
 
-All views lie end to end in flat arrays; layout[v] = (first pixel, height, width). projections[v] (3, 4) takes a world
-point to homogeneous index coordinates (the centre of the top-left pixel is (0, 0)) whose third entry is the depth.
+All views lie one after the other in flat arrays; layout[v] = (first pixel, height, width). projections[v] (3, 4) takes
+a world point to homogeneous index coordinates (the centre of the top-left pixel is (0, 0)) whose third entry is the
+depth.
 """
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
@@ -12,24 +13,31 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 
-STEEPEST = 8.0  # tangent of the angle between a surface's normal and the ray beyond which it counts as a depth edge
-FEWEST = 10  # of the 25 pixels of a window must lie on the same surface
-LEVELS = 2.0  # levels of size an octave
-FACING = 0.5  # cosine between two views' normals of one surface
+FUSION_MAX_SLOPE = 8.0  # tangent of the angle between normal and ray: beyond, it is a depth edge
+FUSION_MIN_WINDOW_PIXELS = 10  # of the 25 of a window, on the same surface
+FUSION_LEVELS_PER_OCTAVE = 2.0  # of pixel size
+FUSION_MIN_NORMAL_COSINE = 0.5  # between two views' normals of one surface
 
 
 @kernel()
-def normals_of(inverse_depth, K, R, first, last, normals, level):
-    """Rows [first, last) of an inverse depth map (H, W), index coordinates: world normals towards the camera into
-    normals (H, W, 3) float32 and the level of size into level (H, W) int16; both stay 0 where there is no surface.
+def estimate_normals(inverse_depth, K, R, first, last, normals, level):
+    """Normals and levels of pixel size of rows [first, last).
 
-    A plane n . X = 1 seen by a camera is affine in the pixels p = (x, y, 1) of inverse depth, w = n . K^-1 p, so a
-    least-squares fit w = (a, b, c) . p over the window's pixels on the same surface gives n = K^T (a, b, c). A pixel
-    covers an area (Z / f)^2 / cos(angle) of the surface; its level is the logarithm of that area's side.
+    A plane n . X = 1 seen by a camera is affine in the pixels p = (x, y, 1) of inverse depth, w = n . K^-1 p. A
+    least-squares fit w = (a, b, c) . p over the window's pixels on the same surface therefore gives n = K^T (a, b, c).
+    A pixel covers an area (Z / f)^2 / cos(angle) of the surface; its level is the logarithm of that area's side.
+
+    Args:
+        inverse_depth: (H, W) at index coordinates.
+        K: (3, 3) for index coordinates.
+        R: (3, 3) world to camera.
+        first, last: Range of rows.
+        normals: (H, W, 3) float32 world normals towards the camera, written; 0 where there is no surface.
+        level: (H, W) int16, written; 0 where there is no surface.
     """
     height, width = inverse_depth.shape
     focal = 0.5 * (K[0, 0] + K[1, 1])
-    slope = STEEPEST / focal
+    slope = FUSION_MAX_SLOPE / focal
     for row in range(first, last):
         for column in range(width):
             w = inverse_depth[row, column]
@@ -52,7 +60,7 @@ def normals_of(inverse_depth, K, R, first, last, normals, level):
                         sw += d
                         sxw += dx * d
                         syw += dy * d
-            if count < FEWEST:
+            if count < FUSION_MIN_WINDOW_PIXELS:
                 continue
             sxx -= sx * sx / count
             sxy -= sx * sy / count
@@ -72,16 +80,23 @@ def normals_of(inverse_depth, K, R, first, last, normals, level):
             ry = (row - K[1, 2]) / K[1, 1]
             rx = (column - K[0, 2] - K[0, 1] * ry) / K[0, 0]
             cosine = w / (length * np.sqrt(rx * rx + ry * ry + 1.0))  # n . K^-1 p = w > 0: n points away
-            if not cosine > 1.0 / STEEPEST / 2:
+            if not cosine > 1.0 / FUSION_MAX_SLOPE / 2:
                 continue
             for k in range(3):
                 normals[row, column, k] = -(R[0, k] * nx + R[1, k] * ny + R[2, k] * nz) / length
-            level[row, column] = np.int16(np.floor(LEVELS * np.log2(1.0 / (w * focal * np.sqrt(cosine)))))
+            level[row, column] = np.int16(
+                np.floor(FUSION_LEVELS_PER_OCTAVE * np.log2(1.0 / (w * focal * np.sqrt(cosine))))
+            )
 
 
 @kernel(inline=True)
-def projected(projection, x, y, z):
-    """Index coordinates and depth of a world point."""
+def project_point(projection, x, y, z):
+    """Index coordinates and depth of a world point.
+
+    Args:
+        projection: (3, 4).
+        x, y, z: The point.
+    """
     depth = projection[2, 0] * x + projection[2, 1] * y + projection[2, 2] * z + projection[2, 3]
     if depth <= 0:
         return 0.0, 0.0, 0.0
@@ -91,17 +106,32 @@ def projected(projection, x, y, z):
 
 
 @kernel()
-def agree(
-    view, first, last, layout, projections, lifts, centres, others, inverse_depth, normals, level, inside,
+def confirm_points(
+    view, first, last, layout, projections, unprojections, centres, others, inverse_depth, normals, level, inside,
     tolerance, agreement, mean, counts,
 ):  # fmt: skip
-    """Rows [first, last) of one view: which points other views confirm, and their mean position.
+    """Which points of rows [first, last) of one view other views confirm, and their mean position.
 
-    lifts[v] (3, 3) takes index coordinates (x, y, 1) to the world direction of depth 1; inside: flat uint8, 0 outside a
-    mask. A view confirms a point where its own inverse depth, nearest pixel or bilinear, is within `tolerance`
-    (relative) and the normals face alike; it contradicts where it looks through the point to something farther, all
-    four pixels around. Into mean (H W, 3) the mean of the positions, and counts (H W,) int16 the number of confirming
-    views, 0 where fewer than `agreement`, fewer than the contradicting ones, or where masks hide the point.
+    A view confirms a point if its own inverse depth, nearest pixel or bilinear, is within a relative tolerance and the
+    normals are similar. It contradicts the point if all four pixels around it are clearly farther.
+
+    Args:
+        view: Index of the view.
+        first, last: Range of rows.
+        layout: (V, 3).
+        projections: (V, 3, 4).
+        unprojections: (V, 3, 3) take index coordinates (x, y, 1) to the world direction of depth 1.
+        centres: (V, 3).
+        others: Indices of the views to compare with.
+        inverse_depth: Flat, of all views.
+        normals: Flat, of all views.
+        level: Not used.
+        inside: Flat uint8, 0 outside a mask.
+        tolerance: Relative difference of depth.
+        agreement: How many views must confirm.
+        mean: (H W, 3) mean of the positions, written.
+        counts: (H W,) int16 number of confirming views, written; 0 if fewer than `agreement`, fewer than the
+            contradicting ones, or if masks hide the point.
     """
     start, width = layout[view, 0], layout[view, 2]
     for row in range(first, last):
@@ -113,16 +143,16 @@ def agree(
             nx, ny, nz = normals[pixel, 0], normals[pixel, 1], normals[pixel, 2]
             if not w > 0 or inside[pixel] == 0 or (nx == 0 and ny == 0 and nz == 0):
                 continue
-            lift = lifts[view]
-            x = centres[view, 0] + (lift[0, 0] * column + lift[0, 1] * row + lift[0, 2]) / w
-            y = centres[view, 1] + (lift[1, 0] * column + lift[1, 1] * row + lift[1, 2]) / w
-            z = centres[view, 2] + (lift[2, 0] * column + lift[2, 1] * row + lift[2, 2]) / w
+            unproject = unprojections[view]
+            x = centres[view, 0] + (unproject[0, 0] * column + unproject[0, 1] * row + unproject[0, 2]) / w
+            y = centres[view, 1] + (unproject[1, 0] * column + unproject[1, 1] * row + unproject[1, 2]) / w
+            z = centres[view, 2] + (unproject[2, 0] * column + unproject[2, 1] * row + unproject[2, 2]) / w
             mx, my, mz = x, y, z
             confirmed, contradicted, hidden, seen = 0, 0, 0, 0
             for u in others:
                 if u == view:
                     continue
-                px, py, depth = projected(projections[u], x, y, z)
+                px, py, depth = project_point(projections[u], x, y, z)
                 other_start, other_height, other_width = layout[u]
                 if depth <= 0 or not (0 <= px < other_width - 1 and 0 <= py < other_height - 1):
                     continue
@@ -143,12 +173,12 @@ def agree(
                 difference = theirs * depth - 1.0
                 if theirs > 0 and abs(difference) < tolerance:
                     facing = nx * normals[nearest, 0] + ny * normals[nearest, 1] + nz * normals[nearest, 2]
-                    if facing > FACING:
+                    if facing > FUSION_MIN_NORMAL_COSINE:
                         confirmed += 1
-                        lift = lifts[u]
-                        mx += centres[u, 0] + (lift[0, 0] * px + lift[0, 1] * py + lift[0, 2]) / theirs
-                        my += centres[u, 1] + (lift[1, 0] * px + lift[1, 1] * py + lift[1, 2]) / theirs
-                        mz += centres[u, 2] + (lift[2, 0] * px + lift[2, 1] * py + lift[2, 2]) / theirs
+                        unproject = unprojections[u]
+                        mx += centres[u, 0] + (unproject[0, 0] * px + unproject[0, 1] * py + unproject[0, 2]) / theirs
+                        my += centres[u, 1] + (unproject[1, 0] * px + unproject[1, 1] * py + unproject[1, 2]) / theirs
+                        mz += centres[u, 2] + (unproject[2, 0] * px + unproject[2, 1] * py + unproject[2, 2]) / theirs
                 elif low > 0 and high * depth < 1.0 - 2 * tolerance:
                     contradicted += 1
             if confirmed < agreement or contradicted > confirmed or hidden * 10 > seen:
@@ -160,11 +190,24 @@ def agree(
 
 
 @kernel()
-def stand_for(view, first, last, layout, projections, order, mean, normals, level, confirmed, tolerance, keep):
-    """Rows [first, last) of one view into keep (H W,) bool: the confirmed pixels that stand for their surface element.
+def select_finest(view, first, last, layout, projections, order, mean, normals, level, confirmed, tolerance, keep):
+    """Which confirmed pixels of rows [first, last) of one view represent their surface element.
 
-    A pixel yields to another view's confirmed pixel of the same element that goes before it: of a finer level, or of
-    the same level and an earlier view. That is a strict order, so of any set of pixels on one element one stays.
+    A pixel yields to another view's confirmed pixel of the same element with a finer level, or with the same level and
+    an earlier view. That is a strict order, so that one pixel of every set on one element stays.
+
+    Args:
+        view: Index of the view.
+        first, last: Range of rows.
+        layout: (V, 3).
+        projections: (V, 3, 4).
+        order: Indices of the views to compare with.
+        mean: Flat positions of `confirm_points`, of all views.
+        normals: Flat, of all views.
+        level: Flat, of all views.
+        confirmed: Flat counts of `confirm_points`, of all views.
+        tolerance: Relative difference of depth.
+        keep: (H W,) bool, written.
     """
     start, width = layout[view, 0], layout[view, 2]
     for row in range(first, last):
@@ -178,7 +221,7 @@ def stand_for(view, first, last, layout, projections, order, mean, normals, leve
             for u in order:
                 if u == view:
                     continue
-                px, py, depth = projected(projections[u], x, y, z)
+                px, py, depth = project_point(projections[u], x, y, z)
                 other_start, other_height, other_width = layout[u]
                 if depth <= 0 or not (-0.5 < px < other_width - 0.5 and -0.5 < py < other_height - 0.5):
                     continue
@@ -200,6 +243,6 @@ def stand_for(view, first, last, layout, projections, order, mean, normals, leve
                     + normals[pixel, 1] * normals[other, 1]
                     + normals[pixel, 2] * normals[other, 2]
                 )
-                if abs(theirs - depth) < 2 * tolerance * depth and facing > FACING:
+                if abs(theirs - depth) < 2 * tolerance * depth and facing > FUSION_MIN_NORMAL_COSINE:
                     keep[local] = False
                     break

@@ -1,7 +1,7 @@
 """From photographs with known cameras to a surface: a depth map a view, fused, closed, trimmed and simplified.
 
-Two passes: a coarse one over all depths that the cameras can resolve, unless structure from motion has left points, and
-a fine one, each view within the range of the points that it sees.
+There are two passes. The coarse one covers all depths that the cameras can resolve, unless points of structure from
+motion are given. In the fine one each view covers the range of the points that it sees.
 """
 
 from __future__ import annotations
@@ -20,46 +20,82 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
-from eigenfield.proxy.atlas.unwrap import DEFAULT_TRIANGLES
-from eigenfield.proxy.background import coverage, fill_background
+from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
+from eigenfield.proxy.background import camera_coverage, fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
-from eigenfield.proxy.surface.fusion import DepthView, fuse
+from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
-from eigenfield.proxy.surface.trim import SurfaceError, simplified_with_error, trimmed, within_masks
+from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 from eigenfield.stereo.estimate import estimate_depth
 
 log = logging.getLogger("eigenfield.proxy")
 
-MOST_VIEWS = 60  # views that get a depth map
-MOST_PIXELS = 600_000  # of one depth map
-ALL_PIXELS = 9_000_000  # of all depth maps together
-COARSE_PIXELS = 40_000  # of a depth map of the first pass
-COARSE_VIEWS = 24
-NEIGHBOURS = 8
-FEWEST = 2  # neighbours without which a view gets no depth map
-NEAREST = 0.5  # of the picture's longer side: the largest parallax of the first pass
-FARTHEST = 0.1  # pixels: the smallest
-BEYOND = 0.15  # of the range of the points' inverse depths, added at both ends
-QUANTILES = (0.5, 99.5)  # percent, of the points' inverse depths
-FEWEST_POINTS = 30  # in view, for a range of one's own
-ROUNDS = 2  # of refinement of a depth map
-END = 0.25  # pixels: depths this near the ends of the range are none
-FRAYED = 0.01  # of the pixels: what a mask may hide beyond the lens's border and still be that border
-POINTS_A_TRIANGLE = 16  # of the result: more are merged, so that noise is averaged, not reconstructed
-FEWEST_FUSED = 100_000
-FAR_SHARE = 0.05  # of the triangles, kept for the far surface
-TOLERANCE = (0.004, 0.02)  # least and largest relative tolerance of fusion
+
+@dataclass(frozen=True)
+class MultiviewTuning:
+    """Constants of `surface_from_views`.
+
+    Attributes:
+        max_views: Views that get a depth map.
+        max_pixels: Pixels of one depth map.
+        max_total_pixels: Pixels of all depth maps together.
+        coarse_pixels: Pixels of a depth map of the coarse pass.
+        coarse_views: Views of the coarse pass.
+        neighbours: Views that each is compared with.
+        min_neighbours: A view with fewer neighbours gets no depth map.
+        max_parallax_sides: Largest parallax of the coarse pass, in units of the picture's longer side.
+        min_parallax_pixels: Smallest parallax of the coarse pass.
+        range_margin_fraction: Added at both ends of the range of the points' inverse depths.
+        range_percentiles: Percentiles of the points' inverse depths that bound the range.
+        min_points: Points in view that determine a range.
+        refinement_rounds: Rounds of refinement of a depth map.
+        range_end_labels: Depths this near the ends of the range are invalid.
+        mask_border_fraction: Fraction of the pixels that a mask may hide beyond the lens's border and still be that
+            border.
+        points_per_triangle: Points a triangle of the result: more are merged, so that noise is averaged, not
+            reconstructed.
+        min_fused_points: Fused points, at least.
+        background_fraction: Fraction of the triangles reserved for the background.
+        tolerance_range: Smallest and largest relative tolerance of fusion.
+    """
+
+    max_views: int = 60
+    max_pixels: int = 600_000
+    max_total_pixels: int = 9_000_000
+    coarse_pixels: int = 40_000
+    coarse_views: int = 24
+    neighbours: int = 8
+    min_neighbours: int = 2
+    max_parallax_sides: float = 0.5
+    min_parallax_pixels: float = 0.1
+    range_margin_fraction: float = 0.15
+    range_percentiles: tuple[float, float] = (0.5, 99.5)
+    min_points: int = 30
+    refinement_rounds: int = 2
+    range_end_labels: float = 0.25
+    mask_border_fraction: float = 0.01
+    points_per_triangle: int = 16
+    min_fused_points: int = 100_000
+    background_fraction: float = 0.05
+    tolerance_range: tuple[float, float] = (0.004, 0.02)
+
+
+MULTIVIEW_TUNING = MultiviewTuning()
 
 
 @dataclass(frozen=True, eq=False)
-class Surface:
-    """What `surface_from_views` made.
+class ReconstructedSurface:
+    """The result of `surface_from_views`.
 
-    mesh: without UVs. error: of its simplification, in pixels of the camera in the middle. coverage: (n,) the part of
-    each camera's pixels on which the mesh puts surface. views: how many depth maps. points: how many were fused.
+    Attributes:
+        mesh: Without UVs.
+        error: Of its simplification, in pixels of the central camera.
+        coverage: (n,) fraction of each camera's pixels that the mesh covers.
+        views: Number of depth maps.
+        points: Number of fused points.
     """
 
     mesh: Mesh
@@ -71,8 +107,14 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class _Picture:
-    """A photograph at the working resolution: pixels (H, W, 3) uint8; mask (H, W) bool, the foreground, or None; known
-    (H, W) bool, where the removal of the lens left a picture, or None."""
+    """A photograph at the working resolution.
+
+    Attributes:
+        camera: Of that resolution.
+        pixels: (H, W, 3) uint8.
+        mask: (H, W) bool, the foreground, or None.
+        known: (H, W) bool, where the removal of the lens leaves a picture, or None.
+    """
 
     camera: Camera
     pixels: NDArray[np.uint8]
@@ -84,82 +126,106 @@ def surface_from_views(
     light_field: LightField,
     points: NDArray[np.float64] | None = None,
     *,
-    triangles: int = DEFAULT_TRIANGLES,
+    triangles: int = PROXY_DEFAULT_TRIANGLES,
     background: bool | None = None,
     primitives: Sequence[Primitive] = (),
     progress: Progress | None = None,
-) -> Surface:
+) -> ReconstructedSurface:
     """The surface that the photographs show, by multi-view stereo and Poisson reconstruction.
 
-    points: (n, 3) world points on the scene, as structure from motion leaves them, for the range of depths and the
-    choice of neighbours; without them a coarse pass finds its own. triangles: about so many at most. background: close
-    it behind with a far surface (`fill_background`); None: unless there are masks. primitives: put in in place of what
-    stereo made there.
+    Args:
+        light_field: Photographs with cameras.
+        points: (n, 3) world points on the scene from structure from motion, for the range of depths and the choice of
+            neighbours. Without them a coarse pass finds its own.
+        triangles: Most triangles, approximately.
+        background: Add a far surface (`fill_background`). None: unless there are masks.
+        primitives: Shapes that replace the result of stereo.
+        progress: Called for each view and step.
 
-    Raises ProxyError: `surface-masked`, `surface-no-points`, `surface-empty`, `surface-overlap` if no view shares
-    enough with two others; CaptureError for a photograph that cannot be read.
+    Raises:
+        ProxyError: `surface-masked`, `surface-no-points`, `surface-empty`; `surface-overlap`: no view shares enough
+            with two others.
+        CaptureError: A photograph cannot be read.
     """
     cameras = light_field.cameras
-    if points is None or len(points) < FEWEST_POINTS:
-        chosen = spread_views(cameras, COARSE_VIEWS)
-        pictures = _pictures(light_field, chosen, COARSE_PIXELS, progress)
+    if points is None or len(points) < MULTIVIEW_TUNING.min_points:
+        chosen = spread_views(cameras, MULTIVIEW_TUNING.coarse_views)
+        pictures = _pictures(light_field, chosen, MULTIVIEW_TUNING.coarse_pixels, progress)
         views, tolerance = _depth_views(pictures, None, progress)
-        points = fuse(views, tolerance=tolerance, agreement=FEWEST, limit=FEWEST_FUSED, progress=progress).positions
+        points = fuse_depth_maps(
+            views,
+            tolerance=tolerance,
+            agreement=MULTIVIEW_TUNING.min_neighbours,
+            limit=MULTIVIEW_TUNING.min_fused_points,
+            progress=progress,
+        ).positions
         log.info("coarse pass: %d points", len(points))
-    chosen = spread_views(cameras, MOST_VIEWS)
-    pictures = _pictures(light_field, chosen, min(MOST_PIXELS, ALL_PIXELS // len(chosen)), progress)
+    chosen = spread_views(cameras, MULTIVIEW_TUNING.max_views)
+    pictures = _pictures(
+        light_field,
+        chosen,
+        min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen)),
+        progress,
+    )
     views, tolerance = _depth_views(pictures, points, progress)
-    limit = max(POINTS_A_TRIANGLE * triangles, FEWEST_FUSED)
-    fused = fuse(views, tolerance=tolerance, agreement=FEWEST, limit=limit, progress=progress)
+    limit = max(MULTIVIEW_TUNING.points_per_triangle * triangles, MULTIVIEW_TUNING.min_fused_points)
+    fused = fuse_depth_maps(
+        views, tolerance=tolerance, agreement=MULTIVIEW_TUNING.min_neighbours, limit=limit, progress=progress
+    )
     masked = any(picture.mask is not None for picture in pictures)
-    middle = cameras[_central(cameras)]
-    # masked pixels have no depth that could look through a patch: nothing without points stays there
+    middle = cameras[_central_camera(cameras)]
+    # masked pixels have no depth that could contradict a patch: nothing without points stays there
     walls = () if masked else views
-    mesh = trimmed(poisson_surface(fused, progress=progress), fused, views=walls, tolerance=tolerance)
+    mesh = trim_surface(poisson_surface(fused, progress=progress), fused, views=walls, tolerance=tolerance)
     if masked:
-        mesh = within_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
+        mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background
-    mesh, error = simplified_with_error(mesh, fused, round((1 - FAR_SHARE * closed) * triangles), middle)
+    mesh, error = simplify_with_error(
+        mesh, fused, round((1 - MULTIVIEW_TUNING.background_fraction * closed) * triangles), middle
+    )
     for primitive in primitives:
         mesh = insert_primitive(mesh, primitive, cameras)
     if closed:
         mesh = fill_background(mesh, cameras)
-    covered = coverage(mesh, cameras)
+    covered = camera_coverage(mesh, cameras)
     log.info("surface: %d triangles, coverage %.4f (least %.4f)", len(mesh.faces), covered.mean(), covered.min())
-    return Surface(mesh, error, covered, len(chosen), len(fused))
+    return ReconstructedSurface(mesh, error, covered, len(chosen), len(fused))
 
 
-def _central(cameras: Sequence[Camera]) -> int:
+def _central_camera(cameras: Sequence[Camera]) -> int:
     centres = np.array([camera.centre for camera in cameras])
     return int(np.linalg.norm(centres - centres.mean(axis=0), axis=1).argmin())
 
 
 def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progress: Progress | None) -> list[_Picture]:
-    def one(index: int) -> _Picture:
+    def load(index: int) -> _Picture:
         photograph = light_field.photograph(index)
         camera = light_field.views[index].camera
         scale = min(1.0, float(np.sqrt(most / (camera.width * camera.height))))
         small = camera.resized(max(2, round(camera.width * scale)), max(2, round(camera.height * scale)))
-        pixels = _resampled(photograph.pixels, camera, small)
-        mask = None if photograph.mask is None else _resampled(photograph.mask, camera, small) > 0.5
-        known = _lens_frame(light_field.views[index], small)
-        if mask is not None and known is not None and (known & ~mask).mean() < FRAYED:
-            mask = None  # it says no more than where the lens left no picture
+        pixels = _resample(photograph.pixels, camera, small)
+        mask = None if photograph.mask is None else _resample(photograph.mask, camera, small) > 0.5
+        known = _lens_mask(light_field.views[index], small)
+        if mask is not None and known is not None and (known & ~mask).mean() < MULTIVIEW_TUNING.mask_border_fraction:
+            mask = None  # it only marks where the lens leaves no picture
         return _Picture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
 
-    return list(track(parallel_stream(one, chosen), "photographs", len(chosen), progress))
+    return list(track(parallel_stream(load, chosen), "photographs", len(chosen), progress))
 
 
-def _lens_frame(view: View, small: Camera) -> NDArray[np.bool_] | None:
+def _lens_mask(view: View, small: Camera) -> NDArray[np.bool_] | None:
     """Where the removal of the lens leaves a picture, at the working resolution; None: everywhere."""
     if view.lens is None:
         return None
     _, _, inside = source_positions(view.camera.K, view.lens, view.camera.width, view.camera.height)
-    return None if inside.all() else _resampled(inside.astype(np.float32), view.camera, small) > 0.5
+    return None if inside.all() else _resample(inside.astype(np.float32), view.camera, small) > 0.5
 
 
-def _resampled(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDArray[np.float32]:
-    """Where `Camera.resized` crops, it does so evenly and by less than a pixel of the smaller picture."""
+def _resample(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDArray[np.float32]:
+    """Pixels at the resolution of `small`.
+
+    `Camera.resized` crops evenly, by less than a pixel of the smaller picture.
+    """
     if (small.width, small.height) == (camera.width, camera.height):
         return pixels
     scale = max(small.width / camera.width, small.height / camera.height)
@@ -185,61 +251,69 @@ def _depth_views(
     stage = "coarse depth" if points is None else "depth"
     views, tolerances = [], []
     for index in track(range(len(pictures)), stage, len(pictures), progress):
-        span = _range(cameras[index], cameras, points)
+        span = _inverse_range(cameras[index], cameras, points)
         seen = frustum_points(cameras[index], *span) if points is None else points[inside_frame(cameras[index], points)]
-        others = choose_neighbours(index, cameras, seen, NEIGHBOURS)
-        if len(others) < FEWEST:
+        others = choose_neighbours(index, cameras, seen, MULTIVIEW_TUNING.neighbours)
+        if len(others) < MULTIVIEW_TUNING.min_neighbours:
             log.warning("a view shares too little with the others: it gets no depth map")
             continue
         inverse_depth, tolerance = _depth_map(index, others, pictures, span)
         tolerances.append(tolerance)
         picture = pictures[index]
         views.append(DepthView(picture.camera, inverse_depth, picture.pixels, picture.mask))
-    if len(views) < FEWEST + 1:
+    if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
         raise ProxyError(
             "surface-overlap",
             f"only {len(views)} of {len(pictures)} photographs share enough with two others",
             remedy="photographs must overlap and be taken from different places; check the calibration",
         )
-    return views, float(np.clip(np.median(tolerances), *TOLERANCE))
+    return views, float(np.clip(np.median(tolerances), *MULTIVIEW_TUNING.tolerance_range))
 
 
-def _range(camera: Camera, cameras: Sequence[Camera], points: NDArray[np.float64] | None) -> tuple[float, float]:
-    """The inverse depths to look at: of the points in view, else all that give a parallax of 0.1 pixels up to half the
-    picture between the nearest cameras."""
+def _inverse_range(
+    camera: Camera, cameras: Sequence[Camera], points: NDArray[np.float64] | None
+) -> tuple[float, float]:
+    """The range of inverse depths of the points in view.
+
+    Without points: all that give a parallax between 0.1 pixels and half the picture between the nearest cameras.
+    """
     if points is not None:
         seen = points[inside_frame(camera, points)]
-        if len(seen) < FEWEST_POINTS:
+        if len(seen) < MULTIVIEW_TUNING.min_points:
             seen = points[camera.project(points)[1] > 0]
         if len(seen):
-            low, high = np.percentile(1 / camera.project(seen)[1], QUANTILES).tolist()
-            room = BEYOND * (high - low) + 1e-3 * high
+            low, high = np.percentile(1 / camera.project(seen)[1], MULTIVIEW_TUNING.range_percentiles).tolist()
+            room = MULTIVIEW_TUNING.range_margin_fraction * (high - low) + 1e-3 * high
             return max(low - room, 0.3 * low), high + room
     distances = np.sort([float(np.linalg.norm(other.centre - camera.centre)) for other in cameras])
     baseline = float(np.median(distances[distances > 0][:3])) if (distances > 0).any() else 1.0
     parallax = camera.K[0, 0] * baseline
-    return FARTHEST / parallax, NEAREST * max(camera.width, camera.height) / parallax
+    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, MULTIVIEW_TUNING.max_parallax_sides * max(
+        camera.width, camera.height
+    ) / parallax
 
 
 def _depth_map(
     index: int, others: Sequence[int], pictures: Sequence[_Picture], span: tuple[float, float]
 ) -> tuple[NDArray[np.float32], float]:
-    """Inverse depth (H, W) of one view, 0 outside its mask, and the relative depth that a pixel of parallax is."""
+    """Inverse depth (H, W) of one view, 0 outside its mask, and the relative depth of a pixel of parallax."""
     own = pictures[index]
     cameras = [pictures[i].camera for i in others]
     axis = own.camera.R[2]
     across = [np.linalg.norm(d - (d @ axis) * axis) for d in (camera.centre - own.camera.centre for camera in cameras)]
     unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
-    canvas = Canvas.around(own.camera, 0, span[0], unit)
+    reference = ReferenceView.with_margin(own.camera, 0, span[0], unit)
     reach = (span[1] - span[0]) / unit
     height, width = max(p.pixels.shape[0] for p in pictures), max(p.pixels.shape[1] for p in pictures)
     stack = np.zeros((len(others) + 1, height, width, 3), np.uint8)
     for slot, i in zip(stack, [index, *others], strict=True):
         part = pictures[i].pixels
         slot[: part.shape[0], : part.shape[1]] = part
-    depth = estimate_depth(stack, [own.camera, *cameras], canvas, (0.0, reach), rounds=ROUNDS)
-    w = canvas.offset + canvas.scale * depth.d
-    w[(depth.d <= END) | (depth.d >= reach - END)] = 0
+    depth = estimate_depth(
+        stack, [own.camera, *cameras], reference, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds
+    )
+    w = reference.offset + reference.scale * depth.d
+    w[(depth.d <= MULTIVIEW_TUNING.range_end_labels) | (depth.d >= reach - MULTIVIEW_TUNING.range_end_labels)] = 0
     for kept in (own.mask, own.known):
         if kept is not None:
             w[~kept] = 0

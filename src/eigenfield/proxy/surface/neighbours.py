@@ -1,4 +1,4 @@
-"""Which photographs are to be compared: those that show the same things from somewhat aside."""
+"""The choice of photographs to compare: those that show the same points from somewhat different directions."""
 
 from __future__ import annotations
 
@@ -10,16 +10,22 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.imaging.sampling import distances_to, farthest_points
 
-BEST_ANGLE = 6.0  # degrees between two views of a point
-NARROWER, WIDER = 3.0, 12.0  # widths of the bell on its two sides
-FACING = 0.2  # cosine between the axes of two cameras that may see the same side of a thing
-WORTH = 0.2  # of the best one's score, below which a view is not worth comparing with
-LEAST = 3  # are taken all the same
-APART = 0.35  # of the distance from the reference: a view nearer than that to one chosen already counts less
+NEIGHBOUR_BEST_ANGLE_DEGREES = 6.0  # between two views of a point
+NEIGHBOUR_NARROW_SIGMA_DEGREES, NEIGHBOUR_WIDE_SIGMA_DEGREES = 3.0, 12.0  # of the score's bell on its two sides
+NEIGHBOUR_MIN_AXIS_COSINE = 0.2  # between the axes of two cameras that may see the same side of an object
+NEIGHBOUR_MIN_SCORE_RATIO = 0.2  # relative to the best score: a view with less is not compared
+NEIGHBOUR_MIN_COUNT = 3  # views that are taken in any case
+NEIGHBOUR_MIN_DISTANCE_RATIO = 0.35  # relative to the reference's distance: a view nearer to a chosen one counts less
 
 
 def frustum_points(camera: Camera, w_low: float, w_high: float) -> NDArray[np.float64]:
-    """(75, 3) world points all over what a camera sees between two inverse depths."""
+    """(75, 3) world points throughout a camera's frustum between two inverse depths.
+
+    Args:
+        camera: The camera.
+        w_low: Inverse depth of the far end.
+        w_high: Inverse depth of the near end.
+    """
     x, y, w = np.meshgrid([0.1, 0.3, 0.5, 0.7, 0.9], [0.1, 0.3, 0.5, 0.7, 0.9], np.linspace(w_low, w_high, 3))
     pixels = np.stack([x.ravel() * camera.width, y.ravel() * camera.height, np.ones(x.size)], axis=1)
     rays = pixels @ np.linalg.inv(camera.K).T
@@ -27,7 +33,12 @@ def frustum_points(camera: Camera, w_low: float, w_high: float) -> NDArray[np.fl
 
 
 def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(n,) which world points a camera has in its frame."""
+    """(n,) which world points a camera has in its frame.
+
+    Args:
+        camera: The camera.
+        points: (n, 3).
+    """
     pixels, depth = camera.project(points)
     with np.errstate(invalid="ignore"):
         within = (pixels > 0).all(axis=1) & (pixels[:, 0] < camera.width) & (pixels[:, 1] < camera.height)
@@ -35,16 +46,22 @@ def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool
 
 
 def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray[np.float64], count: int) -> list[int]:
-    """At most `count` other cameras, the best first: the sum over the points that both see of a bell of the angle
-    between their rays; one that stands beside a better one counts less, one at the same place not at all.
+    """Other cameras to compare with, the best first.
 
-    points: (n, 3), what the reference sees.
+    The score is the sum over the points that both see of a bell-shaped function of the angle between their rays. A
+    camera beside a better one counts less, one at the same place not at all.
+
+    Args:
+        reference: Index of the reference camera.
+        cameras: All cameras.
+        points: (n, 3) points that the reference sees.
+        count: How many at most.
     """
     own = cameras[reference]
     to_own = own.centre - points
     scores = np.zeros(len(cameras))
     for index, camera in enumerate(cameras):
-        if index == reference or camera.R[2] @ own.R[2] < FACING:
+        if index == reference or camera.R[2] @ own.R[2] < NEIGHBOUR_MIN_AXIS_COSINE:
             continue
         seen = inside_frame(camera, points)
         rays = camera.centre - points[seen]
@@ -52,27 +69,49 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
             np.linalg.norm(rays, axis=1) * np.linalg.norm(to_own[seen], axis=1) + 1e-300
         )
         angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-        bell = np.exp(-(((angle - BEST_ANGLE) / np.where(angle < BEST_ANGLE, NARROWER, WIDER)) ** 2) / 2)
-        # a narrow array has only small angles: they count by their size, and two at one place for nothing
-        scores[index] = (np.minimum(bell, angle / BEST_ANGLE)).sum()
+        bell = np.exp(
+            -(
+                (
+                    (angle - NEIGHBOUR_BEST_ANGLE_DEGREES)
+                    / np.where(
+                        angle < NEIGHBOUR_BEST_ANGLE_DEGREES,
+                        NEIGHBOUR_NARROW_SIGMA_DEGREES,
+                        NEIGHBOUR_WIDE_SIGMA_DEGREES,
+                    )
+                )
+                ** 2
+            )
+            / 2
+        )
+        # a narrow array has only small angles: they count by their size, and two cameras at one place not at all
+        scores[index] = (np.minimum(bell, angle / NEIGHBOUR_BEST_ANGLE_DEGREES)).sum()
     centres = np.array([camera.centre for camera in cameras])
     distance = np.linalg.norm(centres - own.centre, axis=1)
     chosen: list[int] = []
     worth = scores.copy()
     while len(chosen) < count and worth.max() > 1e-3 * scores.max() > 0:
         best = int(worth.argmax())
-        if len(chosen) >= LEAST and scores[best] < WORTH * scores.max():
+        if len(chosen) >= NEIGHBOUR_MIN_COUNT and scores[best] < NEIGHBOUR_MIN_SCORE_RATIO * scores.max():
             break
         chosen.append(best)
-        apart = np.linalg.norm(centres - centres[best], axis=1) / np.maximum(APART * distance, 1e-300)
+        apart = np.linalg.norm(centres - centres[best], axis=1) / np.maximum(
+            NEIGHBOUR_MIN_DISTANCE_RATIO * distance, 1e-300
+        )
         worth = worth * np.minimum(apart, 1.0)
         worth[best] = 0
     return chosen
 
 
 def spread_views(cameras: Sequence[Camera], count: int) -> list[int]:
-    """At most `count` cameras, the first nearest the middle, each as far as possible from those before (places, and
-    directions of view in units of the array's size); in rising order."""
+    """Cameras spread evenly over places and directions, in increasing order.
+
+    The first is nearest the middle, each other as far as possible from those before. Places are in units of the array's
+    size.
+
+    Args:
+        cameras: All cameras.
+        count: How many at most.
+    """
     if len(cameras) <= count:
         return list(range(len(cameras)))
     centres = np.array([camera.centre for camera in cameras])

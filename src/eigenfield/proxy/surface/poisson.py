@@ -1,4 +1,4 @@
-"""Screened Poisson surface reconstruction (Kazhdan and Hoppe, 2013), by the implementation within pycolmap."""
+"""Screened Poisson surface reconstruction (Kazhdan and Hoppe, 2013), by the implementation in pycolmap."""
 
 from __future__ import annotations
 
@@ -13,30 +13,36 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.proxy.child import run_child
-from eigenfield.proxy.surface.fusion import Points
+from eigenfield.proxy.surface.fusion import OrientedPoints
 
 log = logging.getLogger("eigenfield.proxy")
 
-SHALLOWEST, DEEPEST = 5, 11
-FEWEST_POINTS = 50
-CELL = 2.0  # cells are about so many times as wide as points are apart: less follows the noise of depth
-MARGIN = 1.1  # the octree's cube over the points' box
+POISSON_MIN_DEPTH, POISSON_MAX_DEPTH = 5, 11
+POISSON_MIN_POINTS = 50
+POISSON_CELL_SPACINGS = 2.0  # width of a cell in spacings of the points: less follows the noise of depth
+POISSON_BOX_MARGIN = 1.1  # size of the octree's cube relative to the points' box
 
 
-def poisson_surface(points: Points, *, depth: int | None = None, progress: Progress | None = None) -> Mesh:
-    """The watertight (or box-bounded) surface through oriented points; trim it by what supports it (`trimmed`).
+def poisson_surface(points: OrientedPoints, *, depth: int | None = None, progress: Progress | None = None) -> Mesh:
+    """The watertight (or box-bounded) surface through oriented points; trim it with `trim_surface`.
 
-    depth: of the octree; None chooses it from the points' spacing. One thread, in a process of its own: with more, the
-    library's result differs from run to run. Raises ProxyError `surface-no-points` for too few points,
-    `surface-poisson` if the library fails.
+    It runs in one thread of a child process: with more threads, the library's result differs from run to run.
+
+    Args:
+        points: Oriented points.
+        depth: Of the octree; None chooses it from the points' spacing.
+        progress: Called while the child works.
+
+    Raises:
+        ProxyError: `surface-no-points`: too few points. `surface-poisson`: the library fails.
     """
-    if len(points) < FEWEST_POINTS:
+    if len(points) < POISSON_MIN_POINTS:
         raise ProxyError(
             "surface-no-points",
             f"{len(points)} points are no surface",
             remedy="check the calibration (eigenfield inspect), and that the photographs overlap and have texture",
         )
-    centre, scale = _frame(points.positions)
+    centre, scale = _normalisation(points.positions)
     chosen = octree_depth(points) if depth is None else depth
     table = np.hstack([(points.positions - centre) / scale, points.normals]).astype(np.float32)
     report = progress or (lambda stage, done, total: None)
@@ -51,23 +57,27 @@ def poisson_surface(points: Points, *, depth: int | None = None, progress: Progr
     vertices, faces = (np.load(written, allow_pickle=False) for _ in range(2))
     log.info("Poisson: depth %d, %d triangles from %d points", chosen, len(faces), len(points))
     mesh = Mesh((vertices.astype(np.float64) * scale + centre).astype(np.float32), faces)
-    return _facing(mesh, points)
+    return _orient_like_points(mesh, points)
 
 
-def octree_depth(points: Points) -> int:
-    """Such that a cell is about as wide as `CELL` of the points' median spacing."""
-    _, scale = _frame(points.positions)
-    cells = MARGIN * scale / (CELL * float(np.median(points.spacing)))
-    return int(np.clip(np.rint(np.log2(max(cells, 1.0))), SHALLOWEST, DEEPEST))
+def octree_depth(points: OrientedPoints) -> int:
+    """The depth at which a cell is about POISSON_CELL_SPACINGS of the points' median spacing wide.
+
+    Args:
+        points: Oriented points.
+    """
+    _, scale = _normalisation(points.positions)
+    cells = POISSON_BOX_MARGIN * scale / (POISSON_CELL_SPACINGS * float(np.median(points.spacing)))
+    return int(np.clip(np.rint(np.log2(max(cells, 1.0))), POISSON_MIN_DEPTH, POISSON_MAX_DEPTH))
 
 
-def _frame(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
+def _normalisation(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     low, high = positions.min(axis=0), positions.max(axis=0)
     return (low + high) / 2, float((high - low).max()) or 1.0
 
 
-def _facing(mesh: Mesh, points: Points) -> Mesh:
-    """Turned inside out unless most triangles face as the points near them do."""
+def _orient_like_points(mesh: Mesh, points: OrientedPoints) -> Mesh:
+    """The mesh, inverted unless most triangles face as the points near them do."""
     from scipy.spatial import KDTree
 
     sample = np.linspace(0, len(mesh.faces) - 1, min(len(mesh.faces), 2000)).astype(np.int64)

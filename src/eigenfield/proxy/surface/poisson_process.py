@@ -1,8 +1,8 @@
-"""Run as a script: Poisson reconstruction in a process of its own.
+"""A script that runs Poisson reconstruction in a process of its own.
 
-pycolmap's wrapper keeps options of one call for the next, writes files, and cannot be stopped: a child process holds
-all three. Standard input: a float32 array (n, 6) of positions and normals, then (depth,); standard output: vertices
-(n, 3) float32 and faces (m, 3) int32, as `numpy.save` writes them.
+pycolmap's wrapper keeps options of one call for the next, writes files, and cannot be stopped; a child process contains
+all three. Standard input: a float32 array (n, 6) of positions and normals, then (depth,). Standard output: vertices (n,
+3) float32 and faces (m, 3) int32, as `numpy.save` writes them.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ import numpy as np
 
 
 def main() -> None:
-    """Reads the points, reconstructs, writes the mesh."""
+    """Read the points, reconstruct, and write the mesh."""
     message = io.BytesIO(sys.stdin.buffer.read())
     answer = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # whatever the library prints must not get into the answer
+    os.dup2(2, 1)  # what the library prints must not get into the answer
     points, (depth,) = (np.load(message, allow_pickle=False) for _ in range(2))
     with tempfile.TemporaryDirectory(prefix="eigenfield-poisson-") as folder:
         source, result = Path(folder) / "points.ply", Path(folder) / "mesh.ply"
@@ -38,7 +38,7 @@ def main() -> None:
         options = pycolmap.PoissonMeshingOptions()
         options.depth, options.trim, options.color, options.num_threads = int(depth), 0.0, False, 1
         pycolmap.poisson_meshing(source, result, options)
-        vertices, faces = _read(result)
+        vertices, faces = _read_ply(result)
     written = io.BytesIO()
     for array in (vertices, faces):
         np.save(written, array, allow_pickle=False)
@@ -46,7 +46,7 @@ def main() -> None:
         answer.write(written.getvalue())
 
 
-def _read(path: Path) -> tuple[np.ndarray, np.ndarray]:
+def _read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
     data = path.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
     lines = [line.split() for line in data[:end].decode().splitlines()]

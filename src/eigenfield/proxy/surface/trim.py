@@ -1,4 +1,4 @@
-"""From the surface that Poisson reconstruction closes everywhere to what the points show, in few triangles."""
+"""Trimming of the closed Poisson surface to the part that points support, and its simplification."""
 
 from __future__ import annotations
 
@@ -14,29 +14,33 @@ from scipy.spatial import KDTree
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.proxy.atlas.unwrap import simplified
-from eigenfield.proxy.surface.fusion import DepthView, Points
-from eigenfield.proxy.topology import filled, manifold, patches, without_islands
+from eigenfield.proxy.atlas.unwrap import simplify_mesh
+from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints
+from eigenfield.proxy.topology import face_patches, fill_holes, make_manifold, remove_islands
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.proxy")
 
-REACH = 4.0  # times their spacing: as far as points support a surface
-GAP = 30.0  # times their spacing: holes up to this size are closed
-WALL = 120.0  # times their spacing: patches without points up to this size stay where nothing is seen through them
-THROUGH = 2  # depth maps that must see something behind a point for it to be in the air
-ISLAND = 0.005  # of the area: a smaller patch is dropped
-SAMPLES = 200_000  # on a surface, to find the triangles near a point
-PROBES = 20_000  # points that the error of a simplification is measured at
-NEAREST = 4  # samples whose triangles are tried
+TRIM_SUPPORT_SPACINGS = 4.0  # distance at which points support a surface
+TRIM_MAX_GAP_SPACINGS = 30.0  # size of holes that are closed
+TRIM_MAX_WALL_SPACINGS = 120.0  # size of patches without points that stay if no view sees through them
+TRIM_MIN_SEEN_THROUGH_VIEWS = 2  # depth maps that must see something behind a point
+TRIM_MIN_ISLAND_FRACTION = 0.005  # of the area: smaller patches are dropped
+SURFACE_DISTANCE_SAMPLES = 200_000  # on a surface, to find the triangles near a point
+SURFACE_ERROR_PROBES = 20_000  # points at which the error of a simplification is measured
+SURFACE_DISTANCE_NEIGHBOURS = 4  # samples whose triangles are tried
 
 
 @dataclass(frozen=True)
 class SurfaceError:
-    """How far points lie from a surface: the root mean square and the 95th percentile.
+    """Distances of points from a surface.
 
-    rms, p95: world units. relative: rms over the diagonal of the points' box (1st to 99th percentiles).
-    pixels, pixels_p95: seen by a camera, as pixels that the whole distance would cover across the line of sight.
+    Attributes:
+        rms: Root mean square, world units.
+        p95: 95th percentile, world units.
+        relative: rms over the diagonal of the points' box (1st to 99th percentiles).
+        pixels: Root mean square in pixels of a camera, as if the whole distance were across the line of sight.
+        pixels_p95: 95th percentile in pixels.
     """
 
     rms: float
@@ -49,34 +53,42 @@ class SurfaceError:
         return f"{100 * self.relative:.3f} % of the scene, {self.pixels:.2f} px (95 % under {self.pixels_p95:.2f} px)"
 
 
-def trimmed(
+def trim_surface(
     mesh: Mesh,
-    points: Points,
+    points: OrientedPoints,
     *,
     views: Sequence[DepthView] = (),
     tolerance: float = 0.01,
-    reach: float = REACH,
-    gap: float = GAP,
-    wall: float = WALL,
-    island: float = ISLAND,
+    reach: float = TRIM_SUPPORT_SPACINGS,
+    max_gap: float = TRIM_MAX_GAP_SPACINGS,
+    max_wall: float = TRIM_MAX_WALL_SPACINGS,
+    min_island: float = TRIM_MIN_ISLAND_FRACTION,
 ) -> Mesh:
-    """Without what no points support, but with small holes closed; no small islands, nothing non-manifold.
+    """Remove what no points support and close small holes; no small islands and nothing non-manifold remains.
 
-    reach: in units of the points' spacing, how far from a point the surface counts as supported. gap: in the same
-    units (median), the size up to which unsupported patches stay and holes are closed. island: share of the area below
-    which a patch is dropped. views: with them, patches up to `wall` (in the same units) stay too where no two depth
-    maps look through them, to something farther by more than twice the relative `tolerance`: bare walls give no points.
-    Raises ProxyError `surface-empty`.
+    Args:
+        mesh: The closed surface.
+        points: The points that it was reconstructed from.
+        views: Depth maps. With them, unsupported patches up to `max_wall` stay too if no two depth maps see through
+            them: bare walls have no points.
+        tolerance: Relative; a view sees through a patch if it sees something farther by more than twice this.
+        reach: Distance from a point at which the surface is supported, in spacings of that point.
+        max_gap: Size up to which unsupported patches stay and holes are closed, in median spacings.
+        max_wall: See `views`, in median spacings.
+        min_island: Fraction of the area below which a patch is dropped.
+
+    Raises:
+        ProxyError: `surface-empty`: nothing remains.
     """
     spacing = float(np.median(points.spacing))
-    gap_size = gap * spacing
-    supported = np.asarray(_supported(mesh, points, reach)[mesh.faces].all(axis=1), np.bool_)
+    gap_size = max_gap * spacing
+    supported = np.asarray(_has_support(mesh, points, reach)[mesh.faces].all(axis=1), np.bool_)
     kept = supported | _small_patches(mesh, ~supported, gap_size)
     if views:
-        solid = ~supported & ~_looked_through(mesh, views, tolerance)[mesh.faces].any(axis=1)
-        kept |= _small_patches(mesh, solid, wall * spacing)
-    result = manifold(without_islands(Mesh(mesh.vertices, mesh.faces[kept]), island))
-    result = without_islands(filled(result, gap_size), island)
+        solid = ~supported & ~_seen_through(mesh, views, tolerance)[mesh.faces].any(axis=1)
+        kept |= _small_patches(mesh, solid, max_wall * spacing)
+    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), min_island))
+    result = remove_islands(fill_holes(result, gap_size), min_island)
     if len(result.faces) == 0:
         raise ProxyError(
             "surface-empty",
@@ -87,12 +99,23 @@ def trimmed(
     return result
 
 
-def within_masks(
-    mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray[np.bool_] | None], *, island: float = ISLAND
+def trim_by_masks(
+    mesh: Mesh,
+    cameras: Sequence[Camera],
+    masks: Sequence[NDArray[np.bool_] | None],
+    *,
+    min_island: float = TRIM_MIN_ISLAND_FRACTION,
 ) -> Mesh:
-    """Without what no view has in its frame, and what more than a tenth of those that do see outside their masks.
+    """Remove what no view has in its frame, and what more than a tenth of those that do see outside their masks.
 
-    masks: (H, W) bool at the cameras' sizes; a pixel outside is forgiven. Raises ProxyError `surface-empty`.
+    Args:
+        mesh: The surface.
+        cameras: The views.
+        masks: (H, W) bool at the cameras' sizes; one pixel outside is tolerated.
+        min_island: Fraction of the area below which a patch is dropped.
+
+    Raises:
+        ProxyError: `surface-empty`: nothing remains.
     """
     positions = mesh.vertices.astype(np.float64)
     seen, hidden = np.zeros(len(positions), np.int64), np.zeros(len(positions), np.int64)
@@ -106,7 +129,7 @@ def within_masks(
             column, row = pixels[inside].astype(np.int64).T
             hidden[inside] += ~binary_dilation(mask, np.ones((3, 3), np.bool_))[row, column]
     kept = ((seen > 0) & (hidden * 10 <= seen))[mesh.faces].all(axis=1)
-    result = manifold(without_islands(Mesh(mesh.vertices, mesh.faces[kept]), island))
+    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), min_island))
     if len(result.faces) == 0:
         raise ProxyError(
             "surface-empty",
@@ -116,19 +139,36 @@ def within_masks(
     return result
 
 
-def simplified_with_error(mesh: Mesh, points: Points, triangles: int, camera: Camera) -> tuple[Mesh, SurfaceError]:
-    """At most about `triangles` of them, still manifold, and how far the points on `mesh` lie from what comes out."""
-    result = mesh if len(mesh.faces) <= triangles else manifold(simplified(mesh, triangles))
-    near = KDTree(mesh.vertices).query(points.positions)[0] <= REACH * points.spacing  # not what trimming gave up
+def simplify_with_error(
+    mesh: Mesh, points: OrientedPoints, triangles: int, camera: Camera
+) -> tuple[Mesh, SurfaceError]:
+    """At most about `triangles` triangles, still manifold, and the distance of the points from the result.
+
+    Args:
+        mesh: The surface.
+        points: The points that it was reconstructed from.
+        triangles: How many.
+        camera: Whose pixels measure the error.
+    """
+    result = mesh if len(mesh.faces) <= triangles else make_manifold(simplify_mesh(mesh, triangles))
+    near = (
+        KDTree(mesh.vertices).query(points.positions)[0] <= TRIM_SUPPORT_SPACINGS * points.spacing
+    )  # not what trimming removed
     error = surface_error(result, points.positions[near] if near.any() else points.positions, camera)
     log.info("simplified from %d to %d triangles: %s", len(mesh.faces), len(result.faces), error)
     return result, error
 
 
 def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) -> SurfaceError:
-    """How far points (n, 3) lie from a mesh; at most 20,000 of them, evenly taken, are looked at."""
-    probes = positions[np.linspace(0, len(positions) - 1, min(len(positions), PROBES)).astype(np.int64)]
-    distance = distances(mesh, probes)
+    """Distances of points from a mesh, measured at no more than SURFACE_ERROR_PROBES of them.
+
+    Args:
+        mesh: The surface.
+        positions: (n, 3) points.
+        camera: Whose pixels measure the error.
+    """
+    probes = positions[np.linspace(0, len(positions) - 1, min(len(positions), SURFACE_ERROR_PROBES)).astype(np.int64)]
+    distance = surface_distances(mesh, probes)
     low, high = np.percentile(positions, [1, 99], axis=0)
     depth = camera.project(probes)[1]
     focal = (camera.K[0, 0] + camera.K[1, 1]) / 2
@@ -144,14 +184,20 @@ def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) ->
     )
 
 
-def distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n,) distances of points (n, 3) from the surface: the least over the triangles of the nearest samples on it, so
-    at times a little too large, never too small."""
+def surface_distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) distances of points from a surface.
+
+    The distance is the least over the triangles of the nearest samples: sometimes a little too large, never too small.
+
+    Args:
+        mesh: The surface.
+        positions: (n, 3) points.
+    """
     from trimesh.triangles import closest_point
 
-    samples, face = surface_samples(mesh, SAMPLES)
+    samples, face = surface_samples(mesh, SURFACE_DISTANCE_SAMPLES)
     tree = KDTree(samples)
-    nearest = tree.query(positions, k=min(NEAREST, len(samples)))[1].reshape(len(positions), -1)
+    nearest = tree.query(positions, k=min(SURFACE_DISTANCE_NEIGHBOURS, len(samples)))[1].reshape(len(positions), -1)
     triangles = mesh.vertices.astype(np.float64)[mesh.faces]
     best = np.full(len(positions), np.inf)
     for column in nearest.T:
@@ -161,9 +207,13 @@ def distances(mesh: Mesh, positions: NDArray[np.float64]) -> NDArray[np.float64]
 
 
 def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """About `count` points spread evenly over a mesh, at least one a triangle, and the triangle of each.
+    """Points spread evenly over a mesh, at least one a triangle, and the triangle of each.
 
-    The R2 sequence (Roberts, 2018) folded into each triangle: no chance, so the same mesh gives the same points.
+    They are the R2 sequence (Roberts, 2018) folded into each triangle, so that the same mesh gives the same points.
+
+    Args:
+        mesh: The surface.
+        count: How many, approximately.
     """
     area = mesh.face_areas()
     number = np.maximum(np.rint(count * area / max(float(area.sum()), 1e-300)), 1).astype(np.int64)
@@ -176,16 +226,16 @@ def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArra
     return p[:, 0] + u[:, None] * (p[:, 1] - p[:, 0]) + v[:, None] * (p[:, 2] - p[:, 0]), face
 
 
-def _supported(mesh: Mesh, points: Points, reach: float) -> NDArray[np.bool_]:
-    """(n,) whether a point lies near each vertex, within `reach` of the point's own spacing or of a typical edge."""
+def _has_support(mesh: Mesh, points: OrientedPoints, reach: float) -> NDArray[np.bool_]:
+    """(n,) whether a point lies within `reach` of each vertex, in units of its spacing or of a typical edge."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     edge = float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
     distance, nearest = KDTree(points.positions).query(mesh.vertices)
     return distance <= reach * np.maximum(points.spacing[nearest], edge / 2)
 
 
-def _looked_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> NDArray[np.bool_]:
-    """(n,) which vertices at least THROUGH depth maps have something clearly behind of, all around them."""
+def _seen_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> NDArray[np.bool_]:
+    """(n,) vertices behind which at least TRIM_MIN_SEEN_THROUGH_VIEWS depth maps see something, all around them."""
     positions = mesh.vertices.astype(np.float64)
 
     def behind(view: DepthView) -> NDArray[np.bool_]:
@@ -199,12 +249,12 @@ def _looked_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) ->
         result[inside] = nearest[row, column] * depth[inside] < 1 - 2 * tolerance
         return result
 
-    return np.asarray(np.sum(parallel_map(behind, views), axis=0) >= THROUGH)
+    return np.asarray(np.sum(parallel_map(behind, views), axis=0) >= TRIM_MIN_SEEN_THROUGH_VIEWS)
 
 
 def _small_patches(mesh: Mesh, which: NDArray[np.bool_], size: float) -> NDArray[np.bool_]:
-    """Of the faces in `which`, those whose patch is at most `size` across."""
-    label = patches(mesh.faces, which)
+    """The faces in `which` whose patch is at most `size` across."""
+    label = face_patches(mesh.faces, which)
     count = int(label.max(initial=-1)) + 1
     if count == 0:
         return np.zeros(len(which), np.bool_)

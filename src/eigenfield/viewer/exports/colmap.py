@@ -20,7 +20,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual import captured_pixels, with_differences
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import Shots, at_resolution, camera_colour, camera_weights, viewpoint
+from eigenfield.rendering import RenderJob, at_resolution, camera_colour, camera_weights, viewpoint
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
@@ -34,7 +34,7 @@ BEHIND = 0.01  # of a vertex's depth, by which it may lie behind the drawn surfa
 
 
 @dataclass(frozen=True, eq=False)
-class Shot:
+class RedrawnView:
     """A picture to draw: a name, a camera without skew, view weights, and the camera's own exposure if it has one."""
 
     name: str
@@ -44,7 +44,7 @@ class Shot:
 
 
 def write_colmap(
-    shots: Shots,
+    job: RenderJob,
     folder: Path,
     *,
     points: NDArray[np.float64] | None = None,
@@ -60,12 +60,12 @@ def write_colmap(
     pictures too. residual: encoded cameras' pictures have their residual on them; the listing says which.
     Raises OutputError, OptionError as `Renderer.draw`, and `residual` where there is none, or with skew.
     """
-    todo = _captured(shots) if points is None else _along(shots, points)
+    todo = _captured(job) if points is None else _along(job, points)
     files = file_names([shot.name for shot in todo])
-    refuse_attributes(shots.scene.appearance.channels)
-    sparse = _sparse_points(shots.scene, todo)
-    plain = replace(shots, resolution=None)
-    if residual and (points is not None or any(camera.K[0, 1] for camera in shots.scene.rig.cameras)):
+    refuse_attributes(job.scene.appearance.channels)
+    sparse = _sparse_points(job.scene, todo)
+    plain = replace(job, resolution=None)
+    if residual and (points is not None or any(camera.K[0, 1] for camera in job.scene.rig.cameras)):
         raise OptionError(
             "residual", "these are not the captured cameras", remedy="leave it out: it is of captured views alone"
         )
@@ -77,9 +77,9 @@ def write_colmap(
         if difference is None:
             return number, plain.png(shot.camera, shot.mix, shot.colour)
         exact.append(files[number])
-        return number, png(captured_pixels(shots, number, difference))
+        return number, png(captured_pixels(job, number, difference))
 
-    drawn = plain.each(draw, with_differences(shots.scene, range(len(todo)), residual))
+    drawn = plain.each(draw, with_differences(job.scene, range(len(todo)), residual))
     with atomic_folder(folder, overwrite) as part:
         images = part / "images"
         for number, data in track(drawn, "drawing", len(todo), progress):
@@ -89,30 +89,30 @@ def write_colmap(
         assert model is not None, "pinholes without skew have a model"
         for name, data in model.items():
             put(part / "sparse" / "0" / name, data)
-        held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(shots.scene.rig.held_out)]}
+        held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(job.scene.rig.held_out)]}
         held |= {"residual": sorted(exact)} if residual else {}
         named = {shot.name: f"images/{file}" for shot, file in zip(todo, files, strict=True)}
         write_listing(part, "colmap", {"images": named, **held})
 
 
-def _captured(shots: Shots) -> list[Shot]:
-    scene = shots.scene
+def _captured(job: RenderJob) -> list[RedrawnView]:
+    scene = job.scene
     return [
-        Shot(
+        RedrawnView(
             name,
-            _pinhole(camera, shots.resolution),
-            camera_weights(scene, index, shots.weights),
+            _pinhole(camera, job.resolution),
+            camera_weights(scene, index, job.weights),
             camera_colour(scene, index),
         )
         for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True))
     ]
 
 
-def _along(shots: Shots, points: NDArray[np.float64]) -> list[Shot]:
+def _along(job: RenderJob, points: NDArray[np.float64]) -> list[RedrawnView]:
     made = []
     for number, (x, y) in enumerate(points.tolist()):
-        camera, mix = viewpoint(shots.scene, at=(x, y), weights=shots.weights)
-        made.append(Shot(f"path_{number:04d}", _pinhole(camera, shots.resolution), mix, None))
+        camera, mix = viewpoint(job.scene, at=(x, y), weights=job.weights)
+        made.append(RedrawnView(f"path_{number:04d}", _pinhole(camera, job.resolution), mix, None))
     return made
 
 
@@ -123,20 +123,20 @@ def _pinhole(camera: Camera, resolution: tuple[int, int] | None) -> Camera:
     return replace(sized, K=K)
 
 
-def _sparse_points(scene: Scene, shots: Sequence[Shot]) -> SparsePoints:
+def _sparse_points(scene: Scene, views: Sequence[RedrawnView]) -> SparsePoints:
     """Points of the surface that two views or more see."""
     positions, uv = _surface_points(scene.proxy.mesh)
-    seen = np.array(parallel_map(lambda shot: _seen(scene.proxy.mesh, shot.camera, positions), shots))
-    kept = np.flatnonzero(seen.sum(axis=0) >= min(2, len(shots)))
+    seen = np.array(parallel_map(lambda redrawn: _seen(scene.proxy.mesh, redrawn.camera, positions), views))
+    kept = np.flatnonzero(seen.sum(axis=0) >= min(2, len(views)))
     if len(kept) == 0:
         raise OptionError("no-points", "the views see nothing in common", remedy="give viewpoints that look at it")
     positions, uv, seen = positions[kept], uv[kept], seen[:, kept]
     parts = [_tracks(seen[:, first:last], first) for first, last in pieces(len(kept), AT_ONCE)]
     point, view = (np.concatenate(part) for part in zip(*parts, strict=True))
     pixels = np.empty((len(point), 2))
-    for number, shot in enumerate(shots):
+    for number, redrawn in enumerate(views):
         here = view == number
-        pixels[here] = shot.camera.project(positions[point[here]])[0]
+        pixels[here] = redrawn.camera.project(positions[point[here]])[0]
     return SparsePoints(positions, _mean_colours(scene, uv), np.zeros(len(kept)), point, view, pixels)
 
 

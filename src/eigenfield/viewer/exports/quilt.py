@@ -18,7 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import Shots, at_resolution, novel_camera, view_weights
+from eigenfield.rendering import RenderJob, at_resolution, novel_camera, view_weights
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
 
@@ -89,15 +89,15 @@ def quilt_file(output: Path, quilt: Quilt) -> Path:
 
 
 def write_quilt(
-    shots: Shots, quilt: Quilt, output: Path, *, overwrite: bool = False, progress: Progress | None = None
+    job: RenderJob, quilt: Quilt, output: Path, *, overwrite: bool = False, progress: Progress | None = None
 ) -> Path:
     """Draw and write the quilt as .png; returns the file's path, which has the suffix.
 
     Raises OutputError, OptionError (`quilt-array`, `quilt-name`, and as `Renderer.draw`).
     """
     path = quilt_file(output, quilt)
-    views = quilt_views(shots, quilt)
-    plain = replace(shots, resolution=None)
+    views = quilt_views(job, quilt)
+    plain = replace(job, resolution=None)
     drawn = plain.each(lambda view: plain.pixels(*view), views)
     whole: NDArray[np.uint8] | None = None
     for number, tile in enumerate(track(drawn, "views", len(views), progress)):
@@ -111,14 +111,14 @@ def write_quilt(
     return path
 
 
-def quilt_views(shots: Shots, quilt: Quilt) -> list[tuple[Camera, NDArray[np.float64]]]:
+def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, NDArray[np.float64]]]:
     """The quilt's cameras and their view weights, from left to right along the middle of the array.
 
     All look the same way, with their x axis along the array's X; principal points are shifted so that what lies in the
     middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
     plane of the display. Raises OptionError `quilt-array` where the cameras do not stand side by side.
     """
-    scene, plane = shots.scene, shots.scene.rig.view_plane
+    scene, plane = job.scene, job.scene.rig.view_plane
     base = at_resolution(novel_camera(scene, (0.0, 0.0)), (quilt.width, quilt.height))
     right = plane.right
     if base.R[0] @ right < SIDEWAYS:
@@ -138,7 +138,7 @@ def quilt_views(shots: Shots, quilt: Quilt) -> list[tuple[Camera, NDArray[np.flo
     return [
         (
             _looking(base, R, plane.point(x, 0.0), focus - plane.point(x, 0.0)),
-            view_weights(scene, (float(x), 0.0), shots.weights),
+            view_weights(scene, (float(x), 0.0), job.weights),
         )
         for x in places.tolist()
     ]

@@ -1,4 +1,4 @@
-"""What a stage keeps in its folder, read back to the bit."""
+"""Files in the folder of a stage, which restore their values exactly."""
 
 from __future__ import annotations
 
@@ -10,16 +10,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibrate import (
-    Planar,
+    PlanarArray,
 )
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
-from eigenfield.stereo import Canvas
+from eigenfield.stereo import ReferenceView
 
-MESH, ERROR, CAMERAS, DEPTH = "mesh.ply", "error.json", "cameras.npz", "depth.npz"
+STAGE_MESH_FILE, STAGE_ERROR_FILE, STAGE_CAMERAS_FILE, STAGE_DEPTH_FILE = (
+    "mesh.ply",
+    "error.json",
+    "cameras.npz",
+    "depth.npz",
+)
 
 
 def write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:
+    """Write cameras, lenses, problems and points.
+
+    Args:
+        path: The .npz file.
+        capture: All photographs.
+        light_field: Those with a camera.
+        points: (n, 3) points of structure from motion.
+    """
     index = {name: i for i, name in enumerate(capture.names)}
     cameras = light_field.cameras
     lenses = [
@@ -34,6 +47,12 @@ def write_cameras(path: Path, capture: Capture, light_field: LightField, points:
 
 
 def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.float64]]:
+    """The light field and points that `write_cameras` wrote.
+
+    Args:
+        path: The .npz file.
+        capture: All photographs.
+    """
     with np.load(path) as data:
         kept = [int(i) for i in data["kept"]]
         cameras = [
@@ -47,21 +66,39 @@ def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.f
     return replace(light_field, problems=problems), points
 
 
-def write_planar(path: Path, planar: Planar) -> None:
-    canvas = planar.canvas
+def write_planar(path: Path, planar: PlanarArray) -> None:
+    """Write the depth map of an array and the matrices of its views.
+
+    Args:
+        path: The .npz file.
+        planar: The array.
+    """
+    reference = planar.reference
     views = np.arange(len(planar.parameters))
     np.savez(
-        path, d=planar.d, confidence=planar.confidence, texture=planar.texture, count=planar.count, K=canvas.camera.K,
-        R=canvas.camera.R, t=canvas.camera.t, canvas=[canvas.margin, canvas.offset, canvas.scale],
-        matrices=planar.model.matrices(canvas, views, planar.parameters), range=[planar.low, planar.high],
+        path, d=planar.d, confidence=planar.confidence, texture=planar.texture, count=planar.count,
+        K=reference.camera.K, R=reference.camera.R, t=reference.camera.t,
+        reference=[reference.margin, reference.offset, reference.scale],
+        matrices=planar.model.matrices(reference, views, planar.parameters), range=[planar.low, planar.high],
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class ArrayDepth:
-    """What `write_planar` kept: the depth map of an array, and how its views look at it."""
+    """The depth map of an array, as `write_planar` wrote it.
 
-    canvas: Canvas
+    Attributes:
+        reference: The reference view.
+        d: (h, w) labels.
+        confidence: (h, w) about 1 / variance of d.
+        texture: (h, w, 3) mean texture, grey levels.
+        count: (h, w) number of views that see each point.
+        matrices: (n, 3, 4) of the views.
+        low: Lowest label.
+        high: Highest label.
+    """
+
+    reference: ReferenceView
     d: NDArray[np.float32]
     confidence: NDArray[np.float32]
     texture: NDArray[np.float32]
@@ -72,12 +109,17 @@ class ArrayDepth:
 
 
 def read_planar(path: Path) -> ArrayDepth:
+    """The depth map that `write_planar` wrote.
+
+    Args:
+        path: The .npz file.
+    """
     with np.load(path) as data:
         d = data["d"]
-        margin, offset, scale = data["canvas"].tolist()
+        margin, offset, scale = data["reference"].tolist()
         camera = Camera(data["K"], data["R"], data["t"], d.shape[1], d.shape[0])
         low, high = data["range"].tolist()
         return ArrayDepth(
-            Canvas(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
+            ReferenceView(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
             data["matrices"], low, high,
         )  # fmt: skip

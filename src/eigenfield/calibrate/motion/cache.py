@@ -1,4 +1,4 @@
-"""Features and matches as finished stages in a work folder, so that a run that was cut short goes on."""
+"""Features and matches as finished stages in a work folder, so that an interrupted run continues."""
 
 from __future__ import annotations
 
@@ -10,20 +10,29 @@ import numpy as np
 
 from eigenfield.calibrate.lenses import KnownLens
 from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, features_of
+from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, extract_features_of
 from eigenfield.calibrate.motion.matching import Match, Matching, choose_pairs, match_pairs
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.stages import Stages, file_digest, stage_key
 
-MATCHES = "matches.npz"
+MATCH_CACHE_FILE = "matches.npz"
 
 
-def kept_features(
+def cached_features(
     stages: Stages | None, photos: PhotoSet, progress: Progress | None
 ) -> tuple[list[Features | CaptureError], str]:
-    """As `extract_features`, and the stage's key; taken up from the stage where it is finished."""
+    """As `extract_features`, loaded from the stage if it is finished.
+
+    Args:
+        stages: Finished stages; None: nothing is stored.
+        photos: The photographs.
+        progress: Called for each photograph.
+
+    Returns:
+        The features of every photograph, and the stage's key.
+    """
     if stages is None:
         return extract_features(photos, None, progress), ""
     key = stage_key(["features", *(_identity(shot) for shot in photos.shots)])
@@ -44,7 +53,7 @@ def kept_features(
 
 
 def _identity(shot: Shot) -> list[Any]:
-    """What a photograph's features depend on. A file that cannot be read is told apart by that."""
+    """What a photograph's features depend on. A file that cannot be read is identified by that."""
     try:
         mask = None if shot.mask is None else file_digest(shot.mask)
         return [file_digest(shot.path), mask, shot.width, shot.height, shot.upright]
@@ -57,16 +66,16 @@ def _file(folder: Path, index: int) -> Path:
 
 
 def _load(file: Path, shot: Shot) -> Features | CaptureError:
-    if not file.is_file():  # it could not be read when the stage was built: say why once more
+    if not file.is_file():  # it could not be read when the stage was built: repeat the reason
         try:
-            return features_of(shot, FeatureOptions())
+            return extract_features_of(shot, FeatureOptions())
         except CaptureError as error:
             return error
-    with np.load(file) as kept:
-        return Features(kept["points"], kept["scales"], kept["descriptors"], kept["colours"])
+    with np.load(file) as stored:
+        return Features(stored["points"], stored["scales"], stored["descriptors"], stored["colours"])
 
 
-def kept_matches(
+def cached_matches(
     stages: Stages | None,
     features_key: str,
     photos: PhotoSet,
@@ -77,7 +86,19 @@ def kept_matches(
     seed: int,
     progress: Progress | None,
 ) -> list[Match]:
-    """As `match_pairs` over `choose_pairs`; taken up from the stage where it is finished."""
+    """As `match_pairs` over `choose_pairs`, loaded from the stage if it is finished.
+
+    Args:
+        stages: Finished stages; None: nothing is stored.
+        features_key: The key of the features' stage.
+        photos: The photographs.
+        features: Of each photograph, undistorted.
+        cameras: A pycolmap.Camera for each photograph.
+        known: Known lenses, if any.
+        matching: Which photographs are compared.
+        seed: Of RANSAC.
+        progress: Called for each pair.
+    """
 
     def compute() -> list[Match]:
         pairs = choose_pairs(features, matching, photos.layout, progress)
@@ -91,11 +112,11 @@ def kept_matches(
         known and [[k.K.tolist(), k.lens and [k.lens.model, k.lens.coefficients]] for k in known],
         layout and [layout.rows.tolist(), layout.columns.tolist(), layout.positions.tolist(), layout.measured],
     ])  # fmt: skip
-    folder = stages.run("matches", key, lambda place: _write(place / MATCHES, compute()))
-    return _read(folder / MATCHES)
+    folder = stages.run("matches", key, lambda place: _write_matches(place / MATCH_CACHE_FILE, compute()))
+    return _read_matches(folder / MATCH_CACHE_FILE)
 
 
-def _write(path: Path, matches: Sequence[Match]) -> None:
+def _write_matches(path: Path, matches: Sequence[Match]) -> None:
     good = [match for match in matches if match.geometry is not None]
     kinds: dict[str, Any] = {
         name: np.array([_matrix(getattr(m.geometry, name)) for m in good]).reshape(-1, 3, 3) for name in "EFH"
@@ -115,20 +136,20 @@ def _matrix(value: Any) -> Any:
     return np.full((3, 3), np.nan) if value is None else np.asarray(value)
 
 
-def _read(path: Path) -> list[Match]:
+def _read_matches(path: Path) -> list[Match]:
     with np.load(path) as file:
-        kept = {name: file[name] for name in file.files}
-    ends = np.cumsum(kept["count"])
+        stored = {name: file[name] for name in file.files}
+    ends = np.cumsum(stored["count"])
     matches, number = [], 0
-    for (first, second, putative), verified in zip(kept["pairs"].tolist(), kept["verified"], strict=True):
+    for (first, second, putative), verified in zip(stored["pairs"].tolist(), stored["verified"], strict=True):
         geometry = None
         if verified:
             geometry = pycolmap.TwoViewGeometry()
-            geometry.config = int(kept["config"][number])
-            geometry.inlier_matches = kept["inliers"][ends[number] - kept["count"][number] : ends[number]]
+            geometry.config = int(stored["config"][number])
+            geometry.inlier_matches = stored["inliers"][ends[number] - stored["count"][number] : ends[number]]
             for name in "EFH":
-                if np.isfinite(kept[name][number]).all():
-                    setattr(geometry, name, kept[name][number])
+                if np.isfinite(stored[name][number]).all():
+                    setattr(geometry, name, stored[name][number])
             number += 1
         matches.append(Match(first, second, putative, geometry))
     return matches
