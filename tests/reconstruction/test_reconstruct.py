@@ -91,7 +91,7 @@ def test_blind_views_only_register_their_own_camera(photos, made, tmp_path):
         other = picture.transpose(Image.Transpose.FLIP_TOP_BOTTOM)
     other.save(changed / held)
     without = reconstruct(open_any(changed), blind="every:5")
-    assert np.array_equal(without.proxy.mesh.vertices, blind.mesh.vertices)
+    assert np.array_equal(without.mesh.vertices, blind.mesh.vertices)
 
 
 def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
