@@ -21,6 +21,11 @@ from support.calibrations import CUBE, HEIGHT, NAMES, WIDTH, stations
 from support.readers import FINDERS, FORMATS, WRITERS, check_cube
 
 
+def test_every_format_of_calibrations_has_a_writer():
+    """transforms.json and COLMAP models have test modules of their own."""
+    assert {FORMATS.get(name, name) for name in WRITERS} == FINDERS.keys()
+
+
 @pytest.mark.parametrize("name", list(WRITERS))
 def test_a_cube_projects_where_it_must(tmp_path, name):
     writer, read = WRITERS[name]

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import re
+from pathlib import Path
 
 import cv2
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, OutputError
 from eigenfield.encoding.projected import make_atlas, texture_map
@@ -43,11 +46,19 @@ def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
         assert 0.3 < part["coverage"] < 1
     assert figures["bytes"] is figures["ratio"] is None
     assert figures["missing"] == []
-    assert "curve" not in figures
-    assert set(figures["image"]["encoded"]) == {
-        "cameras", "psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "worst"
-    }  # fmt: skip
+    assert "curve" not in figures and "flip" not in figures["image"]["encoded"]
     json.dumps(figures, allow_nan=False)
+
+
+def test_the_documentation_defines_every_figure_of_a_picture(scene, tmp_path):
+    text = (Path(__file__).parents[2] / "docs" / "measures.md").read_text(encoding="utf-8")
+    table = text.split("\n## Figures of a picture\n\n")[1].split("\n\n")[0]
+    defined = re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE)
+    figures = evaluate(scene, write_capture(scene, tmp_path / "c"), flip=True)
+    for part in ("encoded", "held_out"):
+        assert set(figures["image"][part]) == {*defined, "cameras", "worst"}
+        assert set(figures["image"][part]["worst"]) == set(defined)
+    assert {key for key, _, _ in COLUMNS} <= set(defined)
 
 
 def test_drawing_and_projecting_back_each_resample_once(scene, tmp_path):

@@ -13,7 +13,7 @@ import eigenfield as ef
 from eigenfield.coding.pictures import stacking
 from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP, crf_of, decode_10bit, encode_10bit, encoder_step, svt
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import Payloads, weights_key
+from eigenfield.core.payloads import Payload, Payloads, weights_key
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean, coded_plane, with_weights
 from eigenfield.gltf import save, validate
 from support.composed import encoded
@@ -78,7 +78,7 @@ def test_textures_are_stacked_and_share_one_step():
     }
     assert made.textures.dtype == np.uint16 and len(np.unique(made.scale)) == 1
     assert np.abs(made.values() - basis.values()).mean() < 2e-3
-    other = with_weights(coded, made.weights * 2, b"coded")
+    other = with_weights(coded, made.weights * 2, Payload("weights-1", b"coded"))
     assert other.pictures == coded.pictures and other.weights is not None and other.weights.data == b"coded"
     assert other.payloads.keys() - coded.payloads.keys() == {weights_key(made.weights * 2)}
 

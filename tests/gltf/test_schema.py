@@ -36,6 +36,7 @@ def files(good):
     coded = coded_scene()
     film = Residual(b"film", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full=True, smooth=True)
     made["coded"] = encode_scene(coded)
+    made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     still = tiny_scene(3, 2, cameras=3)
     plane = still.appearance.planes[0]

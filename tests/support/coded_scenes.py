@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 import eigenfield as ef
-from eigenfield.coding.arrays.weights import code_weights
+from eigenfield.coding.codecs import encoder
 from eigenfield.coding.pictures.pictures_10bit import svt
 from eigenfield.coding.pictures.stacking import encode
-from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key
+from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, mean_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
@@ -30,18 +30,18 @@ GRID = np.arange(25).reshape(5, 5)
 STEP = 2e-3  # of pictures, in the photographs' range
 
 
-def coded_scene() -> EncodedScene:
+def coded_scene(weights_codec: str = "weights-1") -> EncodedScene:
     """The scene of `viewer_scenes`, as its streams and pictures keep it: one plane of R, G and B."""
-    return coded(scene(), GRID)
+    return coded(scene(), GRID, weights_codec)
 
 
-def coded(plain: Scene, grid: np.ndarray) -> EncodedScene:
+def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> EncodedScene:
     """A scene of one plane and basis, whose cameras stand on `grid`, with everything coded that can be."""
     views = coded_cameras(plain.rig.cameras, plain.proxy.mesh, grid)
     (plane,) = plain.appearance.planes
     (basis,) = plane.bases
-    stream, weights = code_weights(basis.weights, 0.01, grid)
-    textures = with_weights(code_basis(basis, STEP, svt(8)), weights, stream)
+    stream, weights = encoder(weights_codec)(basis.weights, 0.01, grid)
+    textures = with_weights(code_basis(basis, STEP, svt(8)), weights, Payload(weights_codec, stream))
     mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR), views.value, plain.rig.reference)
     made = coded_plane(plane.mean, (textures,), STEP, svt(8))
     scene = replace(

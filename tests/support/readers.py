@@ -6,26 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
+from eigenfield.capture import formats
 from eigenfield.capture.photographs.lens import source_positions
-from eigenfield.capture.readers.bundler import find_bundler, read_bundler
-from eigenfield.capture.readers.llff import find_llff, read_llff
-from eigenfield.capture.readers.metashape import find_metashape, read_metashape
-from eigenfield.capture.readers.middlebury import find_middlebury, read_middlebury
-from eigenfield.capture.readers.opencv import find_opencv, read_opencv
-from eigenfield.capture.readers.projections import find_projections, read_projections
-from eigenfield.capture.readers.strecha import find_strecha, read_strecha
+from eigenfield.capture.readers.bundler import read_bundler
+from eigenfield.capture.readers.llff import read_llff
+from eigenfield.capture.readers.metashape import read_metashape
+from eigenfield.capture.readers.middlebury import read_middlebury
+from eigenfield.capture.readers.opencv import read_opencv
+from eigenfield.capture.readers.projections import read_projections
+from eigenfield.capture.readers.strecha import read_strecha
 from support import calibrations as write
 from support.calibrations import CUBE, HEIGHT, WIDTH, stations
 
-FINDERS = {
-    "llff": find_llff,
-    "middlebury": find_middlebury,
-    "strecha": find_strecha,
-    "bundler": find_bundler,
-    "metashape": find_metashape,
-    "opencv": find_opencv,
-    "projections": find_projections,
-}
+FINDERS = {row.name: row.find for row in formats.FORMATS if row.rank == formats.CAMERAS}
 
 
 def write_llff(folder):

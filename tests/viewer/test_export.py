@@ -5,19 +5,22 @@ from __future__ import annotations
 import errno
 import json
 import os
+import re
 import signal
 import sys
 from dataclasses import replace
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from hypothesis import example, given
 from hypothesis import strategies as st
 from PIL import Image
 
 import eigenfield as ef
 from eigenfield.cli import main
+from eigenfield.cli.export import OPTIONS, command
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import save
 from eigenfield.rendering import RenderJob
@@ -69,6 +72,14 @@ def export(capsys, monkeypatch, scene_file, tmp_path):
 
 def contents(folder):
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def test_every_kind_is_documented_and_tried():
+    page = Path(__file__).parents[2] / "docs" / "exports.md"
+    listed = re.findall(r"^\| `(\w+)` \|", page.read_text(encoding="utf-8"), re.MULTILINE)
+    assert list(dict.fromkeys(listed)) == list(OPTIONS) == list(dict.fromkeys(kind.split()[0] for kind in KINDS))
+    words = CliRunner().invoke(command, ["--help"]).output
+    assert [kind for kind in OPTIONS if not re.search(rf"^ +{kind} {{2,}}\w", words, re.MULTILINE)] == []
 
 
 @pytest.mark.parametrize("kind", KINDS)

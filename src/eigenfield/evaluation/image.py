@@ -12,8 +12,6 @@ from eigenfield.imaging.flip import flip
 from eigenfield.imaging.metrics import Picture, psnr, psnr_luma, ssim, to_codes
 
 ImageScores = dict[str, float | None]
-IMAGE_SCORE_KEYS = ("psnr", "ssim", "psnr_full", "ssim_full", "psnr_luma", "psnr_luma_full", "coverage", "flip")
-OUTSIDE_SCORE_KEYS = ("psnr", "ssim", "psnr_luma", "flip")
 HIGHER_IS_WORSE = frozenset({"flip"})
 
 
@@ -24,7 +22,7 @@ def measure_picture(
     mask: NDArray[np.float32] | None = None,
     with_flip: bool = False,
 ) -> ImageScores:
-    """All of IMAGE_SCORE_KEYS for one camera; None where no pixel is covered.
+    """The scores of a picture that docs/measures.md defines, for one camera; None where no pixel is covered.
 
     Args:
         drawn: (H, W, 3), 0..1 or uint8.
@@ -56,7 +54,7 @@ def measure_outside(
     circle: ExcludedCircle | None,
     with_flip: bool = False,
 ) -> ImageScores:
-    """OUTSIDE_SCORE_KEYS over the covered pixels outside a circle.
+    """Scores over the covered pixels outside a circle.
 
     Args:
         drawn: (H, W, 3), 0..1 or uint8.

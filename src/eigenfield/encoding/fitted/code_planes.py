@@ -38,7 +38,6 @@ ZERO = 341
 ROWS = 4096  # of a picture of several textures, at most
 CODEC = "av1-10bit-1"  # of means and textures
 PRECISION_CODEC = "png"
-WEIGHTS_CODEC = "weights-1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,9 +131,9 @@ def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:
     return CodedBasis(coded.basis.truncated(sum(picture.count for picture in pictures)), pictures)
 
 
-def with_weights(coded: CodedBasis, weights: NDArray[np.float32], stream: bytes) -> CodedBasis:
+def with_weights(coded: CodedBasis, weights: NDArray[np.float32], payload: Payload) -> CodedBasis:
     """The same coded textures with other weights (Ne, N), and their coded form."""
-    return replace(coded, basis=replace(coded.basis, weights=weights), weights=Payload(WEIGHTS_CODEC, stream))
+    return replace(coded, basis=replace(coded.basis, weights=weights), weights=payload)
 
 
 def coded_plane(

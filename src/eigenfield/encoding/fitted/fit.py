@@ -20,9 +20,9 @@ from numpy.typing import NDArray
 from eigenfield.coding.codecs import encoder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import CaptureError
-from eigenfield.core.payloads import Coded
+from eigenfield.core.payloads import Coded, Payload
 from eigenfield.core.progress import Progress
-from eigenfield.encoding.fitted.code_planes import WEIGHTS_CODEC, CodedBasis, coded_plane, with_weights
+from eigenfield.encoding.fitted.code_planes import CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
@@ -42,6 +42,7 @@ WEIGHT_STEPS = 4
 WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
 WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
 CLOSING_STEPS = 3  # for the mean, after coding
+WEIGHTS_CODEC = "weights-1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,7 +217,7 @@ def code_plane(
         fit_weights(pixels.weighed, model, WEIGHT_STEPS)
         for number, block in enumerate(model.blocks):
             stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
-            bases[number] = with_weights(bases[number], block.weights, stream)
+            bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
     left = residual(pixels.fitted, model, True, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
