@@ -31,7 +31,8 @@ def place(tmp_path_factory):
     return folder
 
 
-def test_the_commands_run_in_order(place):
+def test_the_commands_run_in_order(place, run, monkeypatch):
+    monkeypatch.chdir(place)
     lines = [line for block in blocks("sh") for line in block.splitlines() if line.startswith("eigenfield ")]
     assert [shlex.split(line)[1] for line in lines] == [
         "inspect", "encode", "proxy", "inspect", "encode", "encode", "encode", "view", "render", "render", "export",
@@ -44,8 +45,8 @@ def test_the_commands_run_in_order(place):
         if words[1] == "view":
             look(words, place)
             continue
-        done = subprocess.run([sys.executable, "-m", *words], cwd=place, capture_output=True, text=True)
-        assert done.returncode == 0, f"{line}\n{done.stderr}"
+        code, _, err = run(*words[1:])
+        assert code == 0, f"{line}\n{err}"
     assert {
         "photos.glb",
         "mesh.glb",
@@ -77,11 +78,11 @@ def look(words, place):
     assert process.returncode == 0, err
 
 
-def test_the_python_runs(tmp_path):
+def test_the_python_runs(tmp_path, monkeypatch):
     write_capture(tmp_path / "capture")
     write_array(tmp_path / "photos")
-    code = "\n".join(blocks("python"))
-    subprocess.run([sys.executable, "-c", code], cwd=tmp_path, check=True)
+    monkeypatch.chdir(tmp_path)
+    exec("\n".join(blocks("python")), {})
 
 
 def test_the_make_targets_exist():
