@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import sys
 from pathlib import Path
 
@@ -33,6 +34,27 @@ def data() -> Path:
     if not folder or not Path(folder).is_dir():
         pytest.skip("EIGENFIELD_DATA names no folder of captures")
     return Path(folder)
+
+
+@pytest.fixture
+def run(capsys, monkeypatch):
+    """Call the program as the shell does, in this process: exit code, standard output, standard error."""
+    from eigenfield.cli import main
+
+    def call(*words):
+        monkeypatch.setattr(sys, "argv", ["eigenfield", *map(str, words)])
+        before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+        code = 0
+        try:
+            main()
+        except SystemExit as stop:
+            code = stop.code or 0
+        finally:
+            for number, handler in before.items():
+                signal.signal(number, handler)
+        return code, *capsys.readouterr()
+
+    return call
 
 
 @pytest.fixture(scope="session")

@@ -73,7 +73,7 @@ def free_view(scene, camera):
     points = eye + reach[:, None] * directions
     # barycentric coordinates: the corners' sum makes the point, and they add up to 1
     corners, homogeneous = np.insert(corners, 3, 1.0, axis=2), np.insert(points, 3, 1.0, axis=1)
-    part = np.stack([np.linalg.lstsq(c.T, p, rcond=None)[0] for c, p in zip(corners, homogeneous, strict=True)])
+    part = (np.linalg.pinv(corners.transpose(0, 2, 1)) @ homogeneous[..., None])[..., 0]  # by least squares
     uv = (part[..., None] * scene.proxy.mesh.uv[scene.proxy.mesh.faces[face[rows, columns]]]).sum(1)
 
     plane = scene.rig.view_plane

@@ -13,7 +13,7 @@ import time
 import numpy as np
 import pytest
 
-from eigenfield.cli import VERBS, main
+from eigenfield.cli import VERBS
 from eigenfield.gltf import save
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import write_bytes
@@ -23,27 +23,6 @@ from support.captures import write_capture
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
     return write_capture(tmp_path_factory.mktemp("captures with spaces") / "nïne")
-
-
-@pytest.fixture
-def run(capsys, monkeypatch):
-    """Call the program as the shell does; returns exit code, standard output, standard error."""
-
-    def call(*arguments):
-        monkeypatch.setattr(sys, "argv", ["eigenfield", *map(str, arguments)])
-        code = 0
-        before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
-        captured = capsys.readouterr()
-        return code, captured.out, captured.err
-
-    return call
 
 
 @pytest.fixture(scope="module")

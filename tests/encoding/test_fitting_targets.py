@@ -63,7 +63,7 @@ def test_a_psnr_is_reached_and_one_that_cannot_be_is_said_to_be_out_of_reach(fit
 
 def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, monkeypatch):
     cameras = row_grid(9, 64, 56)
-    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
+    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
@@ -88,7 +88,7 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
 def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     """The second may be worse: another mesh and atlas are a guess from the quality."""
     cameras = row_grid(9, 64, 56)
-    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
+    folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False, step=2))
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):

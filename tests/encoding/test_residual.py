@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from PIL import Image
 
 import eigenfield as ef
 from eigenfield import gltf as scene_format
-from eigenfield.cli import main
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.proxy import Proxy
@@ -63,22 +61,6 @@ def exact(base, capture):
 @pytest.fixture(scope="module")
 def data(exact):
     return encode_scene(exact)
-
-
-@pytest.fixture
-def run(capsys, monkeypatch):
-    """Call the program as the shell does; exit code, standard output, standard error."""
-
-    def call(*words):
-        monkeypatch.setattr(sys, "argv", ["eigenfield", *map(str, words)])
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        return code, *capsys.readouterr()
-
-    return call
 
 
 def stored(data, tmp_path, name="scene.glb"):

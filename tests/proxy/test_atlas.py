@@ -124,10 +124,15 @@ def test_texture_coordinates_that_are_no_atlas_say_why(word):
     assert word in atlas_fault(with_uv(mesh, FAULTS[word](mesh)))
 
 
-def test_a_mesh_without_uvs_gets_charts_that_hold():
-    mesh = ball()
+@pytest.fixture(scope="module")
+def laid_out():
+    """A ball, its atlas, and what the progress was told."""
     calls = []
-    result = unwrap_mesh(mesh, progress=lambda *call: calls.append(call))
+    return ball(), unwrap_mesh(ball(), progress=lambda *call: calls.append(call)), calls
+
+
+def test_a_mesh_without_uvs_gets_charts_that_hold(laid_out):
+    mesh, result, calls = laid_out
     assert atlas_fault(result) is None
     statistics = atlas_statistics(result)
     assert statistics.overlap == 0 and statistics.fill > 0.4 and statistics.stretch < 1.2
@@ -141,14 +146,14 @@ def test_a_mesh_without_uvs_gets_charts_that_hold():
     np.testing.assert_array_equal(again.faces, result.faces)
 
 
-def test_charts_keep_their_distance():
+def test_charts_keep_their_distance(laid_out):
     """No two charts within three texels at 1024: the gutters that bilinear sampling needs."""
     from scipy.ndimage import maximum_filter, minimum_filter
 
     from eigenfield.imaging.raster import rasterise_atlas
     from eigenfield.proxy import chart_labels
 
-    mesh = unwrap_mesh(ball(2))
+    _, mesh, _ = laid_out
     face = rasterise_atlas(mesh, 1024, 1024).face
     chart = np.where(face >= 0, chart_labels(mesh)[face], -1)
     highest = maximum_filter(chart, 7)

@@ -16,7 +16,6 @@ from PIL import Image
 
 from eigenfield.capture import open_any, open_capture
 from eigenfield.core.errors import CaptureError, OptionError, ProxyError
-from eigenfield.encoding import encode
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, read_mesh
 from eigenfield.reconstruction import looks_one_way, reconstruct
@@ -36,12 +35,6 @@ def made(photos, tmp_path_factory):
     return work, reconstruct(open_any(photos), work=work)
 
 
-def eigenfield(*words, **more):
-    return subprocess.run(
-        [sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True, check=False, **more
-    )
-
-
 def test_cameras_and_mesh_of_bare_photographs(made):
     _, result = made
     assert len(result.light_field) == 16
@@ -50,16 +43,6 @@ def test_cameras_and_mesh_of_bare_photographs(made):
         assert (rasterise_view(result.mesh, camera).face >= 0).all()
     assert list(result.seconds) == ["array", "relief"]
     assert looks_one_way(result.light_field.cameras)
-
-
-def test_the_scene_shows_held_out_views(made):
-    _, result = made
-    scene = encode(result.light_field, result.mesh, textures=5, hold_out="every:4")
-    from eigenfield.evaluation import evaluate
-
-    figures = evaluate(scene, result.light_field)
-    assert figures["image"]["held_out"]["psnr"] > 27
-    assert figures["image"]["encoded"]["psnr"] > 29
 
 
 def test_finished_stages_are_taken_up(photos, made):
@@ -117,15 +100,15 @@ def test_options_that_cannot_be(photos):
         reconstruct(open_any(photos), surface="poisson")
 
 
-def test_a_wrong_grid_ends_in_one_line(photos, tmp_path):
+def test_a_wrong_grid_ends_in_one_line(photos, tmp_path, run):
     numbered = tmp_path / "numbered"
     numbered.mkdir()
     for number, path in enumerate(sorted(photos.iterdir())):
         shutil.copy(path, numbered / f"{number:03d}.png")
-    wrong = eigenfield("encode", numbered, "--grid", "2x8", "-o", tmp_path / "scene.glb")
-    assert wrong.returncode == 2
-    assert len(wrong.stderr.strip().splitlines()) == 1
-    assert "grid" in wrong.stderr
+    code, _, err = run("encode", numbered, "--grid", "2x8", "-o", tmp_path / "scene.glb")
+    assert code == 2
+    assert len(err.strip().splitlines()) == 1
+    assert "grid" in err
     assert not (tmp_path / "scene.glb").exists()
 
 
@@ -140,35 +123,37 @@ def test_grey_photographs_end_in_one_line(tmp_path):
     assert error.value.code == "grid-texture"
 
 
-def test_a_given_proxy_and_its_options_do_not_mix(photos, tmp_path):
-    refused = eigenfield("encode", photos, "--proxy", "mesh.ply", "--no-refine", "-o", tmp_path / "scene.glb")
-    assert refused.returncode == 2
-    assert "--proxy" in refused.stderr
+def test_a_given_proxy_and_its_options_do_not_mix(photos, tmp_path, run):
+    code, _, err = run("encode", photos, "--proxy", "mesh.ply", "--no-refine", "-o", tmp_path / "scene.glb")
+    assert code == 2
+    assert "--proxy" in err
 
 
-def test_the_proxy_verb_writes_mesh_and_cameras(photos, made, tmp_path):
+def test_the_proxy_verb_writes_mesh_and_cameras(photos, made, tmp_path, run):
     work, result = made
-    done = eigenfield("proxy", photos, "-o", tmp_path / "mesh.glb", "--work", work)
-    assert done.returncode == 0, done.stderr
-    assert "taken up" in done.stderr
+    code, _, err = run("proxy", photos, "-o", tmp_path / "mesh.glb", "--work", work)
+    assert code == 0, err
+    assert "taken up" in err
     mesh = read_mesh(tmp_path / "mesh.glb")
     assert np.array_equal(np.sort(mesh.vertices, axis=0), np.sort(result.mesh.vertices, axis=0))
     poses = json.loads((tmp_path / "mesh.cameras" / "transforms.json").read_text())["frames"]
     assert len(poses) == 16
-    assert eigenfield("proxy", photos, "-o", tmp_path / "mesh.obj").returncode == 2
+    assert run("proxy", photos, "-o", tmp_path / "mesh.obj")[0] == 2
 
 
-def test_bare_photographs_are_measured_by_the_scenes_own_cameras(photos, made, tmp_path):
+def test_bare_photographs_are_measured_by_the_scenes_own_cameras(photos, made, tmp_path, run):
     work, _ = made
     scene = tmp_path / "scene.glb"
-    done = eigenfield("encode", photos, "-o", scene, "--work", work, "-n", "4")
-    assert done.returncode == 0, done.stderr
-    measured = eigenfield("evaluate", scene, photos, "--json")
-    assert json.loads(measured.stdout)["image"]["encoded"]["psnr"] > 28
+    code, _, err = run("encode", photos, "-o", scene, "--work", work, "-n", "5", "--hold-out", "every:4")
+    assert code == 0, err
+    _, measured, _ = run("evaluate", scene, photos, "--json")
+    figures = json.loads(measured)["image"]
+    assert figures["held_out"]["psnr"] > 27
+    assert figures["encoded"]["psnr"] > 29
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_a_killed_run_goes_on(photos, tmp_path):
+def test_a_killed_run_goes_on(photos, tmp_path, run):
     command = [sys.executable, "-m", "eigenfield", "encode", str(photos), "-o", str(tmp_path / "scene.glb")]
     process = subprocess.Popen(command, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     work = tmp_path / "scene.work"
@@ -178,9 +163,9 @@ def test_a_killed_run_goes_on(photos, tmp_path):
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert not (tmp_path / "scene.glb").exists()
-    again = eigenfield("encode", photos, "-o", tmp_path / "scene.glb")
-    assert again.returncode == 0, again.stderr
-    assert "array    taken up" in again.stderr
+    code, _, err = run("encode", photos, "-o", tmp_path / "scene.glb")
+    assert code == 0, err
+    assert "array    taken up" in err
     assert not list(work.glob(".*.part"))
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import subprocess
 import sys
 from dataclasses import replace
 
@@ -224,21 +223,19 @@ def test_a_machine_without_driver_or_module_says_so(monkeypatch):
     assert caught.value.code == "opengl-context"
 
 
-def test_films_and_pictures_by_the_command_line(context, loaded, tmp_path):
+def test_films_and_pictures_by_the_command_line(context, loaded, tmp_path, run):
     """`--renderer opengl` draws what the software renderer does, in `render` and in `export`."""
     path = tmp_path / "scene.glb"
     path.write_bytes(encode_scene(loaded))
     for name in ("software", "opengl"):
         for verb, output in (("render", "frame-%d.png"), ("export", "view_qs3x2a1.33.png")):
             more = ["--path", "circle", "--frames", "2"] if verb == "render" else ["--quilt", "3x2"]
-            words = [verb, path, "-o", tmp_path / f"{name}-{output}", "--renderer", name, *more]
-            done = subprocess.run([sys.executable, "-m", "eigenfield", *words], capture_output=True, text=True)
-            assert done.returncode == 0, done.stderr
+            code, _, err = run(verb, path, "-o", tmp_path / f"{name}-{output}", "--renderer", name, *more)
+            assert code == 0, err
     for output in ("frame-0.png", "frame-1.png"):
         one, other = (cv2.imread(tmp_path / f"{name}-{output}").astype(int) for name in ("software", "opengl"))
         assert np.abs(one - other).mean() < 0.6
     quilts = [cv2.imread(found) for found in sorted(tmp_path.glob("*_qs3x2*.png"))]
     assert len(quilts) == 2 and np.abs(quilts[0].astype(int) - quilts[1]).mean() < 0.6
-    words = ["render", path, "-o", tmp_path / "x.png", "--renderer", "opengl", "--samples", "2"]
-    done = subprocess.run([sys.executable, "-m", "eigenfield", *words], capture_output=True, text=True)
-    assert done.returncode == 2 and "leave them out" in done.stderr
+    code, _, err = run("render", path, "-o", tmp_path / "x.png", "--renderer", "opengl", "--samples", "2")
+    assert code == 2 and "leave them out" in err

@@ -93,7 +93,7 @@ def composed(scene: Scene, weights: np.ndarray, count: int | None = None) -> np.
 
 def finer(grid: np.ndarray, rows: int, columns: int) -> np.ndarray:
     """(rows, columns, C): Catmull-Rom of a grid, taps clamped to the border."""
-    return np.einsum("rh,cw,hwk->rck", taps(rows, grid.shape[0]), taps(columns, grid.shape[1]), grid)
+    return np.einsum("rh,cw,hwk->rck", taps(rows, grid.shape[0]), taps(columns, grid.shape[1]), grid, optimize=True)
 
 
 def taps(count: int, given: int) -> np.ndarray:
@@ -117,14 +117,14 @@ def flat(made: Scene, low: float, high: float) -> Scene:
 
 def ray_weights(made: Scene, eye: np.ndarray, size: tuple[int, int], low: float, high: float) -> np.ndarray:
     """(h, w, Ne): the definition for each texel of a flat scene, continued beyond the square."""
-    plane, weights = made.rig.view_plane, np.zeros((*size, len(made.rig.encoded)))
+    plane = made.rig.view_plane
     normal = np.cross(plane.right, plane.up)
-    for row, column in np.ndindex(*size):
-        u, v = (column + 0.5) / size[1], (row + 0.5) / size[0]
-        point = np.array([(u - low) / (high - low) * 2 - 1, (v - low) / (high - low) * 2 - 1, 0.0])
-        along = ((plane.origin - point) @ normal) / ((eye - point) @ normal)
-        weights[row, column] = view_weights(made, tuple(plane.coordinates(point + along * (eye - point))[0]))
-    return weights
+    row, column = np.indices(size)
+    u, v = (column + 0.5) / size[1], (row + 0.5) / size[0]
+    points = (np.stack([u - low, v - low, 0.0 * u], axis=-1) / (high - low) * 2 - [1, 1, 0]).reshape(-1, 3)
+    along = ((plane.origin - points) @ normal) / ((eye - points) @ normal)
+    places = plane.coordinates(points + along[:, None] * (eye - points))
+    return np.array([view_weights(made, tuple(place)) for place in places]).reshape(*size, -1)
 
 
 def write(folder: Path) -> None:

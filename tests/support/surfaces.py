@@ -85,9 +85,10 @@ class Drawn(LightField):
         return Photograph(pixels, None if mask is None else mask[index].astype(np.float32))
 
 
-def relief(camera: Camera, phase: float, virtual: bool) -> Mesh:
-    """The pixels of a camera pushed into depth, in a mesh whose texture coordinates they are."""
-    y, x = np.mgrid[0:40, 0:48].astype(np.float64) + phase
+def relief(camera: Camera, phase: float, virtual: bool, step: int = 1) -> Mesh:
+    """Every `step`-th pixel of a camera pushed into depth, in a mesh whose texture coordinates they are."""
+    y, x = np.mgrid[0:40:step, 0:48:step].astype(np.float64) + phase
+    rows, columns = x.shape
     depth = 3 + 0.5 * np.sin(x / 7) * np.cos(y / 5)
     rays = np.stack([x, y, np.ones_like(x)], axis=-1) @ np.linalg.inv(camera.K).T
     points = (rays * depth[..., None]).reshape(-1, 3) @ camera.R + camera.centre
@@ -95,8 +96,8 @@ def relief(camera: Camera, phase: float, virtual: bool) -> Mesh:
         y.ravel()[::5] += 0.25
         points = ((np.stack([x, y, np.ones_like(x)], -1) @ np.linalg.inv(camera.K).T) * depth[..., None]).reshape(-1, 3)
         points = points @ camera.R + camera.centre
-    corner = (np.arange(39)[:, None] * 48 + np.arange(47)).ravel()
-    upper = np.stack([corner, corner + 1, corner + 48], axis=1)
-    faces = np.concatenate([upper, np.stack([corner + 1, corner + 49, corner + 48], axis=1)])
+    corner = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    upper = np.stack([corner, corner + 1, corner + columns], axis=1)
+    faces = np.concatenate([upper, np.stack([corner + 1, corner + columns + 1, corner + columns], axis=1)])
     uv = np.stack([x.ravel() + 5, y.ravel() + 9], axis=1) / 64
     return Mesh(points.astype(np.float32), faces.astype(np.int32), uv.astype(np.float32))

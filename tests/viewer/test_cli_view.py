@@ -160,7 +160,7 @@ def test_the_command_opens_the_browser(scene, tmp_path, monkeypatch):
         assert seen.read_text() == f"http://127.0.0.1:{port}/"
 
 
-def test_errors_of_the_command_are_one_line(scene, capture, tmp_path):
+def test_errors_of_the_command_are_one_line(scene, tmp_path, run):
     damaged = tmp_path / "damaged.glb"
     damaged.write_bytes(scene.read_bytes()[:1000])
     other = write_capture(tmp_path / "others")
@@ -178,10 +178,9 @@ def test_errors_of_the_command_are_one_line(scene, capture, tmp_path):
             ([scene, "--grid", "3x3"], "--grid is for a capture"),
             ([scene, other], "no photograph has the name"),
         ):
-            with command(*arguments, "--no-browser") as process:
-                out, err = process.communicate(timeout=60)
-                assert (process.returncode, out) == (2, ""), err
-                assert err.count("\n") == 1 and err.startswith("eigenfield: ") and part in err, err
+            code, out, err = run("view", *arguments, "--no-browser")
+            assert (code, out) == (2, ""), err
+            assert err.count("\n") == 1 and err.startswith("eigenfield: ") and part in err, err
 
 
 def test_the_command_says_when_the_network_can_see_it(scene):

@@ -23,7 +23,6 @@ from eigenfield.rendering import RenderJob, draw_texture, renderer_of, view_weig
 from eigenfield.viewer import exports
 from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
-from support.coded_scenes import fitted_scene
 from support.composed import layered_scene
 from support.scenes import tiny_scene
 
@@ -56,10 +55,8 @@ def scene(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def fitted(tmp_path_factory):
-    path = tmp_path_factory.mktemp("fitted") / "fitted.glb"
-    save(fitted_scene(), path)
-    return ef.load(path)
+def fitted(fitted):
+    return ef.load(fitted[1])
 
 
 def test_the_glb_opens_upright_in_trimesh(scene, tmp_path):

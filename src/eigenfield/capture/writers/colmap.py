@@ -89,10 +89,11 @@ def _points(light_field: LightField, points: SparsePoints | None) -> bytes:
         here = np.flatnonzero(points.view == index)
         place[here] = np.arange(len(here))
     order = np.argsort(points.point, kind="stable")
-    ends = np.cumsum(points.track_lengths)
+    lengths = points.track_lengths
+    ends = np.cumsum(lengths)
     records = [struct.pack("<Q", len(points))]
     for row, (position, colour, error) in enumerate(zip(points.positions, points.colours, points.errors, strict=True)):
-        seen = order[ends[row] - points.track_lengths[row] : ends[row]]
+        seen = order[ends[row] - lengths[row] : ends[row]]
         track = np.column_stack([points.view[seen] + 1, place[seen]]).astype("<u4")
         head = struct.pack("<Q3d3BdQ", row + 1, *position, *colour.tolist(), float(error), len(seen))
         records.append(head + track.tobytes())
