@@ -39,7 +39,7 @@ from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering import Renderer, ViewWeights, camera_weights
 from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.parallel import set_threads
 from support.observations import InMemory
@@ -87,7 +87,7 @@ def world():
         texture += model.mean
         plain = replace(scene.appearance.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
         drawn = Renderer(replace(scene, appearance=replace(scene.appearance, planes=(plain,)))).draw(
-            camera, np.zeros(9)
+            camera, ViewWeights()
         )
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
     with open_fit_data(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as data:
@@ -216,7 +216,7 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
         rig=replace(tiny_scene(cameras=9).rig, cameras=CAMERAS),
         appearance=replace(tiny_scene(cameras=9).appearance, planes=(plane,)),
     )
-    drawn = [Renderer(scene).draw(camera, np.eye(9)[i]) for i, camera in enumerate(CAMERAS)]
+    drawn = [Renderer(scene).draw(camera, ViewWeights.one(i)) for i, camera in enumerate(CAMERAS)]
     photographs = [data.observations.codes_of(i) / np.float32(255) for i in range(9)]
     errors = [
         (d.image - d.coverage[..., None] * photograph)[d.coverage > 0.25]
@@ -380,8 +380,8 @@ def test_saving_again_codes_nothing_twice(fitted, tmp_path):
     assert (tmp_path / "again.glb").read_bytes() == output.read_bytes()
     save(ef.load(output), tmp_path / "eight.glb", codec="png")
     first, again = ef.load(output), ef.load(tmp_path / "eight.glb")
-    mix = np.eye(9)[0]
-    assert np.abs(Renderer(first).texture(mix) - Renderer(again).texture(mix)).mean() < 2 / 255
+    weights = ViewWeights.one(0)
+    assert np.abs(Renderer(first).texture(weights) - Renderer(again).texture(weights)).mean() < 2 / 255
 
 
 def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):

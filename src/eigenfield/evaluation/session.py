@@ -122,11 +122,11 @@ class Session:
             index: Of the camera.
             samples: Samples a pixel. Default: the renderer's.
         """
-        row = camera_weights(self.scene, index, self.weights)
+        weights = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         return self.renderer.draw(
             self.scene.rig.cameras[index],
-            row,
+            weights,
             filter=self.filter,
             textures=self.counts[-1],
             samples=samples,
