@@ -98,7 +98,7 @@ def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
         np.testing.assert_array_equal(ef.render(exact, **where).image, ef.render(base, **where).image)
 
 
-def test_coarser_films_are_smaller_and_worse(base, capture):
+def test_coarser_videos_are_smaller_and_worse(base, capture):
     figures = []
     for quality in (20, 60, 90):
         scene = with_residual(base, capture, quality)
@@ -192,7 +192,7 @@ def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplo
     length = parts(stored(data, tmp_path))["residual"]
     gltf, binary = glb_surgery.split(data)
     ends = [view.get("byteOffset", 0) + view["byteLength"] for view in gltf["bufferViews"]]
-    start = len(data) - len(binary) + sorted(ends)[-3]  # after it the order of the frames, its own too, and the film
+    start = len(data) - len(binary) + sorted(ends)[-3]  # after it the order of the frames, its own too, and the video
     for keep in (start, start + 4, start + 1, len(data) - length // 2, len(data) - 5):
         path = stored(data[:keep], tmp_path)
         found = ef.load(path)
@@ -255,7 +255,7 @@ def test_limits_hold(data, tmp_path, monkeypatch):
     assert outcome(tmp_path / "a.glb", data) == "residual-size"
 
 
-def test_a_damaged_film_harms_captured_views_alone(base, data, tmp_path):
+def test_a_damaged_video_harms_captured_views_alone(base, data, tmp_path):
     length = parts(stored(data, tmp_path))["residual"]
     random = np.random.default_rng(3)
     codes = set()
