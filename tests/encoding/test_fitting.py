@@ -27,7 +27,7 @@ from eigenfield.encoding.fitted import (
     fit_plane,
     fitted_textures,
     open_fit_data,
-    subsampled,
+    open_subsampled,
 )
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
 from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
@@ -104,7 +104,7 @@ def test_the_fit_draws_what_the_renderer_draws(world):
 
 def test_subsampled_pixels_are_some_of_all(world):
     data, _, _ = world
-    with subsampled(data, 2) as some:
+    with open_subsampled(data, 2) as some:
         assert len(some) == len(data)
         for index in range(len(data)):
             (counts, points), (fewer, left) = data.footprint(index), some.footprint(index)
@@ -115,7 +115,7 @@ def test_subsampled_pixels_are_some_of_all(world):
             np.testing.assert_array_equal(fewer, counts[rows, columns])
             np.testing.assert_array_equal(middles(some, index), middles(data, index)[rows, columns])
             assert 0.2 < codes[0].size / codes[1].size < 0.3
-    with subsampled(data, 1) as same:
+    with open_subsampled(data, 1) as same:
         assert same is data
 
 

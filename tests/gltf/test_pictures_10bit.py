@@ -84,7 +84,7 @@ def test_textures_are_stacked_and_share_one_step():
 
 
 def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatch):
-    monkeypatch.setattr("eigenfield.encoding.fitted.code_planes.ROWS", 128)  # two textures a file
+    monkeypatch.setattr("eigenfield.encoding.fitted.code_planes.PICTURE_MAX_ROWS", 128)  # two textures a file
     basis = float_basis(5, 4, 64, 80, 1)
     strength = np.array([1, 1, 0.5, 0.5], np.float32)[:, None, None, None]
     basis = replace(basis, textures=basis.textures * strength)

@@ -18,7 +18,7 @@ from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, 
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import save
 from eigenfield.proxy.relief.find_lattice import relief_proxy
 from support.captures import write_capture
@@ -42,7 +42,7 @@ def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> E
     (basis,) = plane.bases
     stream, weights = encoder(weights_codec)(basis.weights, 0.01, grid)
     textures = with_weights(code_basis(basis, STEP, svt(8)), weights, Payload(weights_codec, stream))
-    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR), views.value, plain.rig.reference)
+    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR_PX), views.value, plain.rig.reference)
     made = coded_plane(plane.mean, (textures,), STEP, svt(8))
     scene = replace(
         plain,

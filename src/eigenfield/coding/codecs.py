@@ -29,7 +29,7 @@ from typing import Any
 from eigenfield.coding.arrays.names import code_names, decode_names
 from eigenfield.coding.pictures import pictures_8bit as eight
 from eigenfield.coding.pictures import pictures_10bit as ten
-from eigenfield.coding.video.av1 import decode_film, encode_film
+from eigenfield.coding.video.av1 import decode_video, encode_video
 
 AVIF = "image/avif"
 
@@ -121,5 +121,5 @@ CODECS: dict[str, Codec] = {
         "picture", ten.encode_10bit, ten.decode_10bit, "bits", "1.2", PICTURE_LIMITS,
         partial(eight.header_size, mime=AVIF), AVIF, ten.BITS,
     ),
-    "video-1": Codec("residual", encode_film, decode_film, None, "1.3", ("MAX_TEXELS", "MAX_FILM")),
+    "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

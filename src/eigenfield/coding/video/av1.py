@@ -28,7 +28,7 @@ PARALLEL = 2  # SVT-AV1's level of parallelism, fixed: its memory grows with it,
 FOREVER = 99999  # frames between key frames
 
 
-def encode_film(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
+def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
     """The film of luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023, the same bytes
     each time.
 
@@ -69,9 +69,9 @@ def _frame(planes: Planes, number: int) -> Any:
     return frame
 
 
-def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
-    """The frames of a film one after the other, as they were given to `encode_film`. No frame larger than `size` (rows,
-    columns) takes memory, and none beyond `count` is decoded.
+def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
+    """The frames of a video one after the other, as they were given to `encode_video`. No frame larger than `size`
+    (rows, columns) takes memory, and none beyond `count` is decoded.
 
     FormatError `residual-damaged` where the film is damaged, ends early, or has frames of another size or kind.
     """
