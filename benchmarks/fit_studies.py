@@ -76,9 +76,7 @@ def _replaced(module: Any, name: str, value: Any) -> Change:
 
 
 def _plane_presets(change: Callable[[planes.PlanePreset], planes.PlanePreset]) -> Change:
-    return lambda: patch.dict(
-        planes.PLANE_PRESETS, {"luma-chroma": tuple(map(change, planes.PLANE_PRESETS["luma-chroma"]))}
-    )
+    return lambda: patch.object(planes, "PLANE_PRESETS", tuple(map(change, planes.PLANE_PRESETS)))
 
 
 @contextlib.contextmanager
@@ -143,7 +141,6 @@ FITTING = {
     "robust": Part(
         "all pixels count alike", _replaced(planes, "with_robust_weights", lambda data, _: nullcontext(data)), few=True
     ),
-    "planes": Part("R, G and B in one plane (`--planes rgb`)", options={"planes": "rgb"}),
     "coarse": Part(
         "textures as dense as the mean", _plane_presets(lambda one: replace(one, texture_share=one.mean_share))
     ),

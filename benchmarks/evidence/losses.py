@@ -175,7 +175,7 @@ def encode_again(
         scene.proxy.mesh,
         textures=scene.appearance.textures if textures is None else textures,
         atlas=(width, height) if atlas is None else atlas,
-        align=scene.settings.get("align"),
+        align=scene.settings.get("align") is not None,
         reference=scene.rig.names[scene.rig.reference],
         hold_out=",".join(held) or None,
         resampling=scene.settings.get("resampling", "bicubic"),

@@ -41,7 +41,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
     mean and textures as 8-bit PNG, weights as float32, no mesh, since the texture maps need that too.
     """
     light_field = prepared.light_field
-    ways = {"plain": None} if prepared.quick else {"plain": None, "aligned": "dis"}
+    ways = {"plain": False} if prepared.quick else {"plain": False, "aligned": True}
     sessions = {
         way: start_session(_encode(prepared, align), light_field, curve="sample") for way, align in ways.items()
     }
@@ -71,7 +71,7 @@ def paper(prepared: Prepared, folder: Path) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _encode(prepared: Prepared, align: str | None) -> Scene:
+def _encode(prepared: Prepared, align: bool) -> Scene:
     most = min((QUICK_COUNTS if prepared.quick else COUNTS)[-1], len(prepared.light_field) - 1)
     return ef.encode(prepared.light_field, prepared.mesh, textures=most, align=align, fit="none")
 

@@ -62,7 +62,7 @@ def test_with_all_components_truncation_loses_nothing(coded, tmp_path):
     assert rows["codec"]["mse"] == pytest.approx(rows["file"]["mse"], rel=1e-6)  # webp keeps every code
 
 
-@pytest.mark.parametrize("options", [{"harmonise": "affine"}, {"align": "dis"}])
+@pytest.mark.parametrize("options", [{"harmonise": "affine"}, {"align": True}])
 def test_harmonised_and_aligned_scenes_are_encoded_and_drawn_again_as_they_were(coded, tmp_path, options):
     folder, light_field, _ = coded
     file = tmp_path / "scene.glb"

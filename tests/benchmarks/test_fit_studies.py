@@ -27,7 +27,7 @@ def test_parts_are_put_back():
     modules = (options, plan, fit, planes, rate, drawing)
 
     def state():
-        return [dict(vars(module)) | {"PRESETS": dict(options.PRESETS), "PLANES": dict(planes.PLANE_PRESETS)}
+        return [dict(vars(module)) | {"PRESETS": dict(options.PRESETS)}
                 for module in modules]  # fmt: skip
 
     before = state()

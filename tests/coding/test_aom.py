@@ -99,6 +99,6 @@ def test_a_program_that_leaves_nothing_is_not_used(tmp_path, monkeypatch):
 
 def test_the_best_preset_alone_is_patient():
     assert [name for name, preset in PRESETS.items() if preset.patient] == ["best"]
-    rate = planes.PLANE_PRESETS["luma-chroma"][0].rate(0.01, patient=True)
+    rate = planes.PLANE_PRESETS[0].rate(0.01, patient=True)
     assert rate.coder is aom.encode_aom
     assert rate.trial is SVT

@@ -123,7 +123,7 @@ def test_same_bytes_at_any_number_of_threads(folder, capture, tmp_path):
     for count in (1, 2):
         set_threads(count)
         try:
-            made = ef.encode(capture, proxy=folder / "proxy.ply", textures=5, atlas=64, align="dis", fit="none")
+            made = ef.encode(capture, proxy=folder / "proxy.ply", textures=5, atlas=64, align=True, fit="none")
             save(made, tmp_path / f"{count}.glb")
         finally:
             set_threads(None)
@@ -205,7 +205,7 @@ def test_cameras_on_a_line_are_no_error(tmp_path):
 @pytest.mark.parametrize(
     ("change", "says"),
     [({"textures": -1}, "0 or more"), ({"uv_ssim": 1.5}, "in \\(0, 1\\]"), ({"resampling": "best"}, "bicubic"),
-     ({"reference": "lost.png"}, "no camera is called lost"), ({"align": "best"}, "dis"), ({"atlas": 0}, "from 1 to"),
+     ({"reference": "lost.png"}, "no camera is called lost"), ({"atlas": 0}, "from 1 to"),
      ({"density": 0.0, "atlas": None}, "ask for one between"), ({"hold_out": "every:0"}, "2 or more"),
      ({"hold_out": "odd", "reference": "view_01.png"}, "is held out")],
 )  # fmt: skip

@@ -104,6 +104,6 @@ def test_nothing_is_measured_where_nothing_is_looked_for(made):
 
 
 def test_luma_is_searched_where_cameras_are_many():
-    luma, chroma = PLANE_PRESETS["luma-chroma"]
+    luma, chroma = PLANE_PRESETS
     assert luma.rate(0.01).search
     assert not luma.rate(0.01, few=True).search and not chroma.rate(0.01).search

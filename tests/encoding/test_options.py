@@ -17,13 +17,12 @@ from eigenfield.cli.field_options import from_fields
 from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fields import options_of
-from eigenfield.encoding.fitted import PLANE_PRESETS
 from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_for_quality
-from eigenfield.encoding.projected import ALIGN_METHODS, RESAMPLING_FILTERS
+from eigenfield.encoding.projected import RESAMPLING_FILTERS
 from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
-FOR_MAPS = [{"align": "dis"}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
+FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
             {"codec": "png"}]  # fmt: skip
 
 
@@ -81,13 +80,10 @@ def test_the_rest_is_fitted():
 @pytest.mark.parametrize(
     ("asked", "meant"),
     [
-        ({}, {"fit": "photographs", "preset": "balanced", "planes": "luma-chroma", "quality": 89,
-              "density": density_for_quality(89)}),
-        ({"preset": "small", "planes": "rgb"}, {"fit": "photographs", "quality": 79,
-                                                "density": density_for_quality(79)}),
-        ({"quality": 60, "density": 1.2, "textures": 4}, {"fit": "photographs", "preset": "balanced",
-                                                          "planes": "luma-chroma"}),
-        ({"target": Target(psnr=30)}, {"fit": "photographs", "preset": "balanced", "planes": "luma-chroma"}),
+        ({}, {"fit": "photographs", "preset": "balanced", "quality": 89, "density": density_for_quality(89)}),
+        ({"preset": "small"}, {"fit": "photographs", "quality": 79, "density": density_for_quality(79)}),
+        ({"quality": 60, "density": 1.2, "textures": 4}, {"fit": "photographs", "preset": "balanced"}),
+        ({"target": Target(psnr=30)}, {"fit": "photographs", "preset": "balanced"}),
         ({"fit": "none"}, {"textures": 15, "density": 1.5, "resampling": "bicubic"}),
         ({"uv_ssim": 0.9}, {"fit": "none", "density": 1.5, "resampling": "bicubic"}),
         ({"codec": "png", "atlas": (64, 32), "density": 1.0, "resampling": "lanczos"}, {"fit": "none", "textures": 15}),
@@ -100,7 +96,7 @@ def test_what_options_mean(asked, meant):
 
 
 def test_choices_are_what_there_is_to_choose():
-    tables = {"preset": PRESETS, "planes": PLANE_PRESETS, "resampling": RESAMPLING_FILTERS, "align": ALIGN_METHODS}
+    tables = {"preset": PRESETS, "resampling": RESAMPLING_FILTERS}
     choices = {name: set(one.choices) for name, one in options_of(EncodeOptions) if one.choices}
     assert all(choices[name] == set(table) for name, table in tables.items())
     assert set(choices) == {*UNKNOWN_CHOICE_TEXTS, "codec"}
@@ -148,15 +144,13 @@ def test_the_command_line_maps_by_name():
     words += " --resampling lanczos --codec webp --residual --keep-maps maps --metres-per-unit 0.5 --uv-ssim 0.9"
     made = command_line(*words.split(), "--fit", "none")
     assert made == EncodeOptions(
-        textures=3, align="dis", harmonise="affine", density=1.2, atlas=(64, 32), triangles=60, hold_out="odd",
+        textures=3, align=True, harmonise="affine", density=1.2, atlas=(64, 32), triangles=60, hold_out="odd",
         reference="a.png", resampling="lanczos", codec="webp", residual=40, keep_maps=made.keep_maps,
         metres_per_unit=0.5, uv_ssim=0.9, fit="none",
     )  # fmt: skip
     assert str(made.keep_maps) == "maps"
-    words = "--preset small --planes rgb --target-size 1.5kB --atlas 64"
-    assert command_line(*words.split()) == EncodeOptions(
-        preset="small", planes="rgb", target=Target(size=1500), atlas=64
-    )
+    words = "--preset small --target-size 1.5kB --atlas 64"
+    assert command_line(*words.split()) == EncodeOptions(preset="small", target=Target(size=1500), atlas=64)
     assert command_line("--quality", "70", "--residual", "12") == EncodeOptions(quality=70, residual=12)
 
 

@@ -52,6 +52,8 @@ def _field_options(cls: type, prefix: str, parsers: Mapping[str, Callable[..., A
         how: dict[str, Any] = {"help": one.help, "metavar": one.metavar, "callback": parsers.get(name)}
         if name not in parsers:
             how["type"] = _click_type(one, get_args(kinds[field]))
+        if how.get("type") is bool:
+            how |= {"is_flag": True, "default": None}
         if one.bare is not None:
             how |= {"is_flag": False, "flag_value": one.bare}
         letters = [] if one.letter is None else [one.letter]

@@ -19,18 +19,15 @@ DEFAULT_TEXTURES = 15  # without a fit, as in the paper
 DEFAULT_DENSITY = 1.5  # without a fit
 DEFAULT_RESAMPLING = "bicubic"
 DEFAULT_PRESET = "balanced"
-DEFAULT_PLANES = "luma-chroma"
 ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
 MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
-FIT_OPTIONS = ("target", "preset", "planes")  # options that the paper's way has no use for
+FIT_OPTIONS = ("target", "preset")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
     "preset": "no preset is called",
-    "planes": "no planes are called",
     "resampling": "no filter is called",
-    "align": "no alignment is called",
     "harmonise": "no harmonisation is called",
 }
 
@@ -105,12 +102,7 @@ class EncodeOptions:
         "saves bytes; with --fit none 30000, a mesh that has an atlas as it is]",
         metavar="N",
     )
-    align: str | None = option(
-        "Align the maps to the reference camera by optical flow; tvl1 is finer and much slower.",
-        choices=("dis", "tvl1"),
-        metavar="[dis|tvl1]",
-        bare="dis",
-    )
+    align: bool | None = option("Align the maps to the reference camera by optical flow.")
     harmonise: str | None = option(
         "Take the cameras' differences of exposure and white balance out of the textures; affine fits offsets too. "
         "Captured views are drawn with their own exposure again.",
@@ -151,11 +143,6 @@ class EncodeOptions:
         "ffmpeg program that has it.  [default: balanced]",
         choices=tuple(PRESETS),
     )
-    planes: str | None = option(
-        "What a fit is made of: luma and chroma apart, each with its own mean, textures and densities, or R, G and B "
-        "together.  [default: luma-chroma]",
-        choices=("luma-chroma", "rgb"),
-    )
     target: Target | None = option("What the file is to reach, by the fit's quality (`Target`).", parts=Target)
     residual: int | None = option(
         "For archives: also keep what captured views lack, as a video of quality Q, 0 (coarse) to 100 (near-lossless); "
@@ -193,8 +180,7 @@ class EncodeOptions:
             quality = PRESETS[preset].quality
         if density is None and quality is not None:
             density = density_for_quality(quality)
-        planes = self.planes or DEFAULT_PLANES
-        return replace(self, fit="photographs", preset=preset, quality=quality, density=density, planes=planes)
+        return replace(self, fit="photographs", preset=preset, quality=quality, density=density)
 
     @property
     def coding(self) -> Coding:
@@ -211,7 +197,7 @@ class EncodeOptions:
     @property
     def map_options(self) -> list[str]:
         """The given options that are about texture maps, as the command line writes them."""
-        return [f"--{name.replace('_', '-')}" for name in MAP_OPTIONS if getattr(self, name) is not None]
+        return [f"--{name.replace('_', '-')}" for name in MAP_OPTIONS if getattr(self, name) not in (None, False)]
 
     @property
     def _fit_options(self) -> list[str]:

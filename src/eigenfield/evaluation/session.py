@@ -14,7 +14,6 @@ from eigenfield.capture import Capture, Lens, LightField, Photograph
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected import (
-    ALIGN_METHODS,
     RESAMPLING_FILTERS,
     Atlas,
     align_map,
@@ -67,7 +66,7 @@ class Session:
         filter: "bicubic" or "bilinear", for drawing.
         weights: Kind of view weights of held-out cameras.
         resampling: Filter of the texture maps.
-        align: Alignment of the texture maps, if any.
+        align: Whether the texture maps are aligned.
         atlas: Of the texture maps; None if none are measured.
         reference: The texture map and visibility that maps are aligned to; None without alignment.
         circles: Excluded circles by camera, if any.
@@ -84,7 +83,7 @@ class Session:
     filter: str
     weights: str
     resampling: str
-    align: str | None
+    align: bool
     atlas: Atlas | None
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
     circles: Mapping[str, ExcludedCircle] | None
@@ -155,9 +154,9 @@ class Session:
         colour = camera_colour(self.scene, index)
         if colour is not None:
             values = harmonised_map(values, seen, colour)
-        if self.align is None or self.reference is None or index == self.scene.rig.reference:
+        if not self.align or self.reference is None or index == self.scene.rig.reference:
             return values, seen
-        return align_map(self.atlas, values, seen, *self.reference, self.align)
+        return align_map(self.atlas, values, seen, *self.reference)
 
     @property
     def measures_residual(self) -> bool:
@@ -257,7 +256,7 @@ def start_session(
             remedy="leave --curve out, or encode with --fit none",
         )
     encoded = [int(index) for index in scene.rig.encoded if int(index) in photographs] if maps else []
-    if align is not None and scene.rig.reference not in photographs:
+    if align and scene.rig.reference not in photographs:
         log.warning(
             "%s, the reference of the alignment, is missing: no UV measure", scene.rig.names[scene.rig.reference]
         )
@@ -282,7 +281,7 @@ def start_session(
         packed=frozenset(some[png_maps]),
         flip=flip,
     )
-    if align is None or not encoded:
+    if not align or not encoded:
         return session
     reference = session.texture(scene.rig.reference, session.photograph(scene.rig.reference))
     return replace(session, reference=reference)
@@ -366,19 +365,16 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     return photographs
 
 
-def _recorded_settings(scene: Scene) -> tuple[str, str | None]:
-    """The resampling filter and the alignment of the texture maps, from the scene's settings."""
+def _recorded_settings(scene: Scene) -> tuple[str, bool]:
+    """The resampling filter of the texture maps, and whether they were aligned, from the scene's settings."""
     resampling, align = scene.settings.get("resampling", "bicubic"), scene.settings.get("align")
-    if resampling not in list(RESAMPLING_FILTERS) or align not in [
-        None,
-        *ALIGN_METHODS,
-    ]:  # a file may hold anything here
+    if resampling not in list(RESAMPLING_FILTERS) or align not in [None, "dis"]:  # a file may hold anything here
         raise OptionError(
             "settings-unknown",
             f"the scene was made with resampling {resampling!r} and alignment {align!r}, which this version has not",
             remedy="evaluate with the version that encoded it",
         )
-    return resampling, align
+    return resampling, align is not None
 
 
 def _texture_count(scene: Scene, textures: int | None) -> int:

@@ -15,7 +15,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
-from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, fitted_textures, open_fits
+from eigenfield.encoding.fitted.planes import Fits, fitted_textures, open_fits
 from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan, plan_encoding
 from eigenfield.encoding.projected import component_count, warn_of_disagreement
@@ -51,7 +51,7 @@ class FittedEncoder:
             tuple(plane.value for plane in planes.values()),
             own,
             payloads=Payloads.joined(plane.payloads for plane in planes.values()),
-            to_rgb=None if options.planes == "rgb" else to_rgb(),
+            to_rgb=to_rgb(),
         )
 
     def with_figures(self, scene: EncodedScene) -> EncodedScene:
@@ -75,13 +75,11 @@ def open_encoder(
     views, options = plan.views, plan.options
     cameras, observations = views.rig.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
-    textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[resolved_value(options.planes)]
+    textures, preset = component_count(asked, len(observations)), PRESETS[resolved_value(options.preset)]
     size = plan.atlas[1], plan.atlas[0]
     with (
         open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.rig.encoded_reference) as data,
-        open_fits(
-            data, plan.density, textures, PRESETS[resolved_value(options.preset)], planes, work, progress
-        ) as fits,
+        open_fits(data, plan.density, textures, preset, work, progress) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone

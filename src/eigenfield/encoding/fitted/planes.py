@@ -87,15 +87,10 @@ class PlanePreset:
 
 
 _LUMA, _CHROMA = split_matrix()
-PLANE_PRESETS = {
-    "luma-chroma": (
-        PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, True),
-        PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
-    ),
-    "rgb": (
-        PlanePreset("rgb", np.eye(3, dtype=np.float32), 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, True),
-    ),
-}
+PLANE_PRESETS = (
+    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, True),
+    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
+)
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
@@ -161,7 +156,6 @@ def open_fits(
     density: float,
     textures: int,
     preset: Preset,
-    planes: Sequence[PlanePreset] = PLANE_PRESETS["luma-chroma"],
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[Fits]:
@@ -172,7 +166,6 @@ def open_fits(
         density: Texels of its atlas for a pixel, along an axis.
         textures: Luma's number.
         preset: What the fit aims at.
-        planes: Which planes, and how each is fitted and coded.
         work: Folder for scratch files.
         progress: Reports the steps.
     """
@@ -192,7 +185,7 @@ def open_fits(
         patient = preset.patient and aom_program() is not None
         if preset.patient:
             log.info("coded by %s", "libaom" if patient else "SVT-AV1: an ffmpeg program with libaom saves 8 to 10 %")
-        yield Fits(tuple((plane, fit(plane)) for plane in planes), patient)
+        yield Fits(tuple((plane, fit(plane)) for plane in PLANE_PRESETS), patient)
 
 
 def step_of(quality: int) -> float:
@@ -206,7 +199,7 @@ def step_of(quality: int) -> float:
 
 def byte_lambda(quality: int) -> float:
     """Lagrange multiplier at a quality: squared error of luma for a byte, for each pixel that sees a texel."""
-    return lambda_of_step(PLANE_PRESETS["luma-chroma"][0].mean_step * step_of(quality))
+    return lambda_of_step(PLANE_PRESETS[0].mean_step * step_of(quality))
 
 
 def plane_size(size: tuple[int, int], share: float) -> tuple[int, int]:

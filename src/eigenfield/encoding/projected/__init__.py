@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eigenfield.encoding.projected.agreement import disagreement_of, warn_of_disagreement
-from eigenfield.encoding.projected.align import ALIGN_METHODS, align_map, align_maps
+from eigenfield.encoding.projected.align import align_map, align_maps
 from eigenfield.encoding.projected.atlas import (
     ATLAS_SIDE_CAP_TEXELS,
     ATLAS_SIDE_STEP_TEXELS,
@@ -28,7 +28,6 @@ from eigenfield.encoding.projected.uv_measure import measure_map, smallest_count
 from eigenfield.encoding.projected.write_maps import write_maps
 
 __all__ = [
-    "ALIGN_METHODS",
     "ATLAS_SIDE_CAP_TEXELS",
     "ATLAS_SIDE_STEP_TEXELS",
     "RESAMPLING_FILTERS",

@@ -6,8 +6,6 @@ map. Each map is warped so that it matches the reference.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -17,28 +15,13 @@ from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_stream
 
-Flow = Callable[[NDArray[np.uint8], NDArray[np.uint8]], NDArray[np.float32]]
 
-
-def _dis(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np.float32]:
+def _flow(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np.float32]:
     """Dense inverse search (Kroeger et al., ECCV 2016)."""
     cv2.setNumThreads(1)  # its stripes, and so its result, follow the number of threads
     method = cv2.DISOpticalFlow.create(cv2.DISOPTICAL_FLOW_PRESET_MEDIUM)
     flow = np.zeros((*reference.shape, 2), np.float32)
     return np.asarray(method.calc(reference, moving, flow), np.float32)
-
-
-def _tvl1(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np.float32]:
-    """TV-L1 (Zach et al. 2007): finer, and much slower."""
-    from skimage.registration import optical_flow_tvl1
-
-    down, right = optical_flow_tvl1(
-        reference / np.float32(255), moving / np.float32(255), attachment=30, num_warp=3, num_iter=8
-    )
-    return np.stack([right, down], axis=-1).astype(np.float32)
-
-
-ALIGN_METHODS: dict[str, Flow] = {"dis": _dis, "tvl1": _tvl1}
 
 
 def align_map(
@@ -47,7 +30,6 @@ def align_map(
     seen: NDArray[np.uint8],
     reference: NDArray[np.float32],
     reference_seen: NDArray[np.uint8],
-    method: str = "dis",
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
     """Warp one map onto the reference.
 
@@ -60,12 +42,11 @@ def align_map(
         seen: (n,) where the map has values.
         reference: (n, C) of the reference.
         reference_seen: (n,) where the reference has values.
-        method: One of ALIGN_METHODS.
 
     Returns:
         Values and visibility, warped.
     """
-    flow = ALIGN_METHODS[method](
+    flow = _flow(
         _grey(atlas, np.where(reference_seen[:, None] > 0, reference, values), seen | reference_seen),
         _grey(atlas, np.where(seen[:, None] > 0, values, reference), seen | reference_seen),
     )
@@ -83,7 +64,7 @@ def align_map(
     return result.astype(np.float32), whole.astype(np.uint8)
 
 
-def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress: Progress | None = None) -> None:
+def align_maps(maps: TextureMaps, reference: int, progress: Progress | None = None) -> None:
     """Align all maps in place to one of them.
 
     The mean must be taken again afterwards (equation 1): it changes the fill of every map (equation 2).
@@ -91,7 +72,6 @@ def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress:
     Args:
         maps: Are changed.
         reference: Index of the map that stays.
-        method: One of ALIGN_METHODS.
         progress: Reports each map.
     """
     fixed, fixed_seen = np.array(maps.values[reference]), np.array(maps.seen[reference])
@@ -99,7 +79,7 @@ def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress:
     def align(index: int) -> None:
         if index != reference:
             maps.values[index], maps.seen[index] = align_map(
-                maps.atlas, maps.values[index], maps.seen[index], fixed, fixed_seen, method
+                maps.atlas, maps.values[index], maps.seen[index], fixed, fixed_seen
             )
 
     for _ in track(parallel_stream(align, range(maps.count)), "alignment", maps.count, progress):

@@ -40,7 +40,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
     """
     options, views = plan.options, plan.views
     resampling = resolved_value(options.resampling)
-    own = {"uvSsim": options.uv_ssim, "align": options.align, "resampling": resampling}
+    own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": resampling}
     colours = None
     with texture_maps(
         make_atlas(plan.mesh, *plan.atlas),
@@ -53,9 +53,9 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
         if options.harmonise is not None:
             own["harmonise"] = options.harmonise
             colours = _for_all_cameras(harmonise_maps(maps, options.harmonise, progress), views)
-        if options.align is not None:
+        if options.align:
             reference = views.taken_by.tolist().index(views.rig.reference)
-            align_maps(maps, reference, options.align, progress)
+            align_maps(maps, reference, progress)
         mean = _mean_of(maps, progress)  # equation 1
         spreader = make_spreader(maps.atlas, mean.seen)
         basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
@@ -85,7 +85,7 @@ def _basis_of(
     options, views = plan.options, plan.views
     gram = gram_matrix(maps, mean, progress)  # equation 3
     names, places = views.observation_names, views.coordinates[views.taken_by]
-    disagreement_of(maps, mean, gram, names, places, aligned=options.align is not None)
+    disagreement_of(maps, mean, gram, names, places, aligned=bool(options.align))
     decomposition = spectrum(gram)  # equation 4
     if options.uv_ssim is None:
         count = component_count(resolved_value(options.textures), maps.count)
