@@ -119,6 +119,6 @@ def test_headers_are_checked():
     with pytest.raises(FormatError) as caught:
         range_coder.check_numbers(bytes(10), 10**6, 2**28, "mesh")
     assert caught.value.code == "coded-size"
-    long_enough = range_coder.filled_up(bytes(10), 10**6)
+    long_enough = range_coder.pad_bytes(bytes(10), 10**6)
     range_coder.check_numbers(long_enough, 10**6, 2**28, "mesh")
     assert len(long_enough) < 10**6 / 15
