@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
+from eigenfield.coding.pictures.quantise import basis_scale, is_photographic, mean_codes, mean_values, texture_codes
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected import ATLAS_SIDE_CAP_TEXELS, Atlas, Spreader, make_atlas, make_spreader
@@ -191,7 +191,7 @@ def rounded_to_codes(scene: Scene) -> Scene:
         mean = mean_values(*mean_codes(plane.mean, harmonised))
         bases = []
         for basis in plane.bases:
-            scale, zero = basis_scale(basis, harmonised or photographic(plane.mean))
+            scale, zero = basis_scale(basis, harmonised or is_photographic(plane.mean))
             codes = [texture_codes(basis, index, scale, zero) for index in range(basis.count)]
             stored = np.stack(codes) if codes else basis.textures
             bases.append(Basis(stored, scale, zero, basis.weights))

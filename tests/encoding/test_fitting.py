@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.cli import group
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
@@ -201,7 +201,7 @@ def settings_of(textures: int = 3) -> PlaneSettings:
 def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     """The coded plane, dB before coding and after."""
     fit = fit_plane(Pixels(data, data, data), settings_of(), "test", rounds)
-    plane = code_plane(fit, Rate(1e-3, 1e-3, svt(8))).value
+    plane = code_plane(fit, Rate(1e-3, 1e-3, svt_coder(8))).value
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
 
@@ -284,7 +284,7 @@ def test_components_that_are_not_worth_their_bytes_are_left_out(world):
     fit = fit_plane(Pixels(data, data, data), settings, "test", 1)
     counts, reached = [], []
     for step in (1e-3, 0.05, 0.5):
-        plane = code_plane(fit, Rate(step, step, svt(8))).value
+        plane = code_plane(fit, Rate(step, step, svt_coder(8))).value
         counts.append(sum(basis.count for basis in plane.bases))
         reached.append(coded_psnr(fit, plane))
     assert counts[0] >= 3 and counts[0] > counts[1] >= counts[2] == 0, counts

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.encoding.fitted import rate
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean
 from eigenfield.encoding.fitted.model import Block, PlaneModel
@@ -67,23 +67,23 @@ def test_textures_are_coded_at_the_step_that_was_found(made):
     block, _, scales = made
     found = {}
     for search in (False, True):
-        coded = code_block_rd(block, SIZE, scales, Rate(STEP, STEP, svt(8), search=search), Lambdas(1e-4, 1e-4))
+        coded = code_block_rd(block, SIZE, scales, Rate(STEP, STEP, svt_coder(8), search=search), Lambdas(1e-4, 1e-4))
         assert coded.count == block.count
         found[search] = coded
-    finer = code_basis(rate._basis_of(block, SIZE), STEP / 1.2, svt(8))
+    finer = code_basis(rate._basis_of(block, SIZE), STEP / 1.2, svt_coder(8))
     assert [one.data for one in found[True].pictures] == [one.data for one in finer.pictures]
-    usual = code_basis(rate._basis_of(block, SIZE), STEP, svt(8))
+    usual = code_basis(rate._basis_of(block, SIZE), STEP, svt_coder(8))
     assert [one.data for one in found[False].pictures] == [one.data for one in usual.pictures]
 
 
 def test_what_a_byte_of_the_mean_takes_off_is_measured(made):
     _, model, scales = made
-    found = measure_lambda(model, scales, Rate(STEP, STEP, svt(8), search=True))
+    found = measure_lambda(model, scales, Rate(STEP, STEP, svt_coder(8), search=True))
     assert found.predicted == pytest.approx(lambda_of_step(STEP) * 10)
     values = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     errors, sizes = [], []
     for step in (STEP / 1.25, STEP * 1.25):
-        kept, file = code_mean(values, step, svt(8))
+        kept, file = code_mean(values, step, svt_coder(8))
         errors.append(10 * float(np.square(kept.astype(np.float64) - values).sum()))
         sizes.append(len(file.data))
     slope = (errors[1] - errors[0]) / (sizes[0] - sizes[1])
@@ -94,12 +94,14 @@ def test_what_a_byte_of_the_mean_takes_off_is_measured(made):
 def test_nothing_is_measured_where_nothing_is_looked_for(made):
     block, model, scales = made
     for plain in (
-        measure_lambda(model, scales, Rate(STEP, STEP, svt(8))),
-        measure_lambda(PlaneModel(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt(8), search=True)),
+        measure_lambda(model, scales, Rate(STEP, STEP, svt_coder(8))),
+        measure_lambda(
+            PlaneModel(model.matrix, model.mean, SIZE, []), scales, Rate(STEP, STEP, svt_coder(8), search=True)
+        ),
     ):
         assert plain.measured == plain.predicted
     flat = PlaneModel(model.matrix, np.full_like(model.mean, 0.5), SIZE, [block])  # of as many bytes at either step
-    even = measure_lambda(flat, scales, Rate(STEP, STEP, svt(8), search=True))
+    even = measure_lambda(flat, scales, Rate(STEP, STEP, svt_coder(8), search=True))
     assert even.measured == even.predicted
 
 

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
@@ -193,7 +193,7 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
     mean = np.kron(random.random((64, 64, 3)), np.ones((4, 4, 1))).astype(np.float32)
     for contrast, side in ((0.0, 64), (1.0, 128)):
         shown = 0.5 + contrast * (mean - 0.5)
-        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3)]
+        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt_coder(8)) for k in range(3)]
         values = tuple(plane.value for plane in planes)
         scene = replace(
             tiny_scene(cameras=4),

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from eigenfield.coding.pictures.quantise import mean_codes, mean_values
-from eigenfield.coding.pictures.stacking import encode, stacked
+from eigenfield.coding.pictures.stacking import encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
@@ -180,7 +180,7 @@ def encoded(made: Scene, payloads: Payloads) -> EncodedScene:
 
 
 def png_picture(basis: Basis, part: slice) -> PicturePayload:
-    codes = np.concatenate([stacked(texture) for texture in basis.textures[part]])
+    codes = np.concatenate([stacked_picture(texture) for texture in basis.textures[part]])
     affine = Affine(*(numbers[part].ravel().astype(np.float64) for numbers in (basis.scale, basis.zero)))
     data = encode(codes if codes.ndim == 3 else codes[..., None], "png", 0)
     return PicturePayload("png", data, len(basis.textures[part]), affine)

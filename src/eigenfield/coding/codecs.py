@@ -119,7 +119,7 @@ CODECS: dict[str, Codec] = {
     "jpeg": _picture_8bit("image/jpeg", None, False),
     "av1-10bit-1": PictureCodec(
         "picture", ten.encode_10bit, ten.decode_10bit, "bits", "1.2", PICTURE_LIMITS,
-        partial(eight.header_size, mime=AVIF), AVIF, ten.BITS,
+        partial(eight.header_size, mime=AVIF), AVIF, ten.PICTURE_BITS,
     ),
     "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

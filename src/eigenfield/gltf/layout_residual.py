@@ -8,7 +8,7 @@ import numpy as np
 
 from eigenfield.coding import limits
 from eigenfield.coding.codecs import CODECS
-from eigenfield.coding.pictures.pictures_10bit import SMALLEST
+from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS
 from eigenfield.coding.video.av1 import Planes
 from eigenfield.core.scene import Residual
 from eigenfield.gltf.document import UINT16, UINT32, Document
@@ -31,7 +31,7 @@ def read_residual(
     if document.cut_off(entry["bufferView"]):
         findings.note("warning", "residual-cut", entry.where, "the file ends within it: captured views go without")
         return None
-    columns, rows = (item.integer(SMALLEST, limits.MAX_CAMERA_SIDE) for item in entry["size"].items(2, 2))
+    columns, rows = (item.integer(MIN_SIDE_TEXELS, limits.MAX_CAMERA_SIDE) for item in entry["size"].items(2, 2))
     luma, chroma = (item.number(1) for item in entry["scale"].items(2, 2))
     if min(luma, chroma) <= 0:
         entry["scale"].fail("residual-scale", "a scale is not positive")

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import TOP, Coder, crf_of, decode_10bit
+from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, Coder, crf_of, decode_10bit
 from eigenfield.coding.pictures.precision import precision_codes, spread_precision
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.appearance import Basis, Plane
@@ -72,8 +72,8 @@ def code_mean(
 ) -> tuple[NDArray[np.float32], PicturePayload]:
     """(H, W, C) float32 as its file gives it back, and the picture.
 
-    One step for all channels. A photograph's means have the codes 0..TOP for 0..1; what a filter overshoots is cut off,
-    for codes twice as coarse need 2 to 3 % more bytes.
+    One step for all channels. A photograph's means have the codes 0..MAX_CODE for 0..1. The overshoot of a filter is
+    clipped, for codes twice as coarse need 2 to 3 % more bytes.
 
     Args:
         mean: (H, W, C) float32.
@@ -89,11 +89,11 @@ def code_mean(
         share = spread_precision(fineness, *mean.shape[:2])
         mean = mean * share
     if mean.shape[2] in (1, 3):
-        affine = Affine(np.full(mean.shape[2], 1 / TOP), np.zeros(mean.shape[2]))
+        affine = Affine(np.full(mean.shape[2], 1 / MAX_CODE), np.zeros(mean.shape[2]))
     else:  # differences of colours, to both sides of 0
         unit = _unit(float(mean.min()), float(mean.max()))
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO_CODE)))
-    codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
+    codes = np.rint(mean / affine.scale + affine.zero).clip(0, MAX_CODE).astype(np.uint16)
     data = coder(_stack(codes[None]), crf_of(step / float(affine.scale[0])))
     stored = _unstack(decode_10bit(data, False, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
@@ -116,7 +116,7 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
     def code(first: int) -> PicturePayload:
         part = slice(first, first + each)
         unit = _unit(float(values[part].min()), float(values[part].max()))
-        codes = np.rint(values[part] / np.float32(unit) + ZERO_CODE).clip(0, TOP).astype(np.uint16)
+        codes = np.rint(values[part] / np.float32(unit) + ZERO_CODE).clip(0, MAX_CODE).astype(np.uint16)
         data = coder(_stack(codes), crf_of(step / unit))
         stored[part], scale[part] = _unstack(decode_10bit(data, False, "textures"), codes.shape), unit
         numbers = len(codes) * channels
@@ -162,7 +162,7 @@ def coded_plane(
 
 def _unit(low: float, high: float) -> float:
     """What a code stands for, so that low..high have codes; of few digits."""
-    return math.ceil(max(CODE_MIN_UNIT, -low / ZERO_CODE, high / (TOP - ZERO_CODE)) * 1e6) / 1e6
+    return math.ceil(max(CODE_MIN_UNIT, -low / ZERO_CODE, high / (MAX_CODE - ZERO_CODE)) * 1e6) / 1e6
 
 
 def _stack(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.aom import aom_program, encode_aom
-from eigenfield.coding.pictures.pictures_10bit import SMALLEST, SVT, encoder_step
+from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS, SVT_CODER, encoder_step
 from eigenfield.core.appearance import Plane
 from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
@@ -82,7 +82,7 @@ class PlanePreset:
                 own; 5x4 views lose 0.14 dB by a search at high rates.
         """
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
-        coder, trial = (encode_aom, SVT) if patient else (SVT, None)
+        coder, trial = (encode_aom, SVT_CODER) if patient else (SVT_CODER, None)
         return Rate(mean_step, texture_step, coder, trial, search=self.searched and not few)
 
 
@@ -207,6 +207,6 @@ def plane_size(size: tuple[int, int], share: float) -> tuple[int, int]:
     if share == 1:
         return size
     rows, columns = (
-        max(SMALLEST, PLANE_SIDE_STEP_TEXELS * round(share * side / PLANE_SIDE_STEP_TEXELS)) for side in size
+        max(MIN_SIDE_TEXELS, PLANE_SIDE_STEP_TEXELS * round(share * side / PLANE_SIDE_STEP_TEXELS)) for side in size
     )
     return rows, columns

@@ -12,7 +12,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import Coder, svt
+from eigenfield.coding.pictures.pictures_10bit import Coder, svt_coder
 from eigenfield.core.appearance import Basis
 from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis, code_mean, first_pictures
 from eigenfield.encoding.fitted.model import Block, PlaneModel
@@ -26,7 +26,7 @@ RATE_WEIGHT_BYTES = 0.4  # of a coded weight of a weak component
 RATE_SLOPE_STEP_RATIO = 1.25  # the mean is coded at its step times and over this, for the slope of error over bytes
 RATE_MAX_LAMBDA_RATIO = 4.0  # of the measured lambda to the predicted one, or of this to that
 RATE_STEP_RATIOS = 1.2, 1 / 1.2  # of the usual step, at which textures may be coded instead
-RATE_STEP_CODER = svt(8)  # codes textures to find their step: in a quarter of the time, a few per cent larger
+RATE_STEP_CODER = svt_coder(8)  # codes textures to find their step: in a quarter of the time, a few per cent larger
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP
+from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, MIDDLE_CODE
 from eigenfield.coding.video.av1 import Planes
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.sampling import halved
@@ -44,7 +44,7 @@ def to_planes(
     converted[:height, :width] = difference @ RGB_TO_YCBCR.T
     if full:
         stacked = np.concatenate([_codes(converted[..., channel], scale[min(channel, 1)]) for channel in range(3)])
-        flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), FLAT, np.uint16)
+        flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), MIDDLE_CODE, np.uint16)
         return stacked, flat, flat
     blue, red = (halved(converted[..., channel]) for channel in (1, 2))
     return _codes(converted[..., 0], scale[0]), _codes(blue, scale[1]), _codes(red, scale[1])
@@ -55,9 +55,9 @@ def to_difference(
 ) -> NDArray[np.float32]:
     """(height, width, 3) differences of R, G, B from the top left part of a frame's planes. Others as `to_planes`."""
     if full:
-        luma, blue, red = np.split(planes[0].astype(np.float32) - FLAT, 3)
+        luma, blue, red = np.split(planes[0].astype(np.float32) - MIDDLE_CODE, 3)
     else:
-        luma, *halves = (plane.astype(np.float32) - FLAT for plane in planes)
+        luma, *halves = (plane.astype(np.float32) - MIDDLE_CODE for plane in planes)
         blue, red = (double_size(plane) for plane in halves)
     channels = luma * np.float32(scale[0]), blue * np.float32(scale[1]), red * np.float32(scale[1])
     converted = np.stack([channel[:height, :width] for channel in channels], axis=-1)
@@ -79,4 +79,4 @@ def double_size(plane: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _codes(values: NDArray[np.float32], scale: float) -> NDArray[np.uint16]:
-    return np.clip(np.rint(values / np.float32(scale)) + FLAT, 0, TOP).astype(np.uint16)
+    return np.clip(np.rint(values / np.float32(scale)) + MIDDLE_CODE, 0, MAX_CODE).astype(np.uint16)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from eigenfield.coding.pictures.pictures_10bit import SMALLEST
+from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS
 from eigenfield.coding.video.av1 import Planes, encode_video
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
@@ -100,4 +100,4 @@ def crf_of(quality: int) -> int:
 
 
 def _even(side: int) -> int:
-    return max(SMALLEST, side + side % 2)
+    return max(MIN_SIDE_TEXELS, side + side % 2)
