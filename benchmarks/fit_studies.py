@@ -94,17 +94,6 @@ def _rounds(count: int) -> Change:
     )
 
 
-def _one_lambda(which: str) -> Change:
-    """The search of steps by one of the two rate-distortion multipliers."""
-    both = rate.measure_lambda
-
-    def lambda_(*arguments: Any) -> rate.Lambdas:
-        value = getattr(both(*arguments), which)
-        return rate.Lambdas(value, value)
-
-    return _replaced(fit, "measure_lambda", lambda_)
-
-
 def _equal_steps(block: Any, scales: Any) -> NDArray[np.float32]:
     return np.full(block.count, np.median(_weight_steps(block, scales)), np.float32)
 
@@ -119,13 +108,7 @@ CODING = {
         partial(_all, _replaced(fit, "fit_weights", lambda *_: None), _replaced(fit, "FIT_CLOSING_ITERATIONS", 0)),
     ),
     "closing": Part("the mean not fitted again to the coded textures", _replaced(fit, "FIT_CLOSING_ITERATIONS", 0)),
-    "components": Part(
-        "all components kept, whatever they cost",
-        partial(_all, _replaced(rate, "RATE_LAMBDA_PER_SQUARED_STEP", 0.0), _replaced(rate, "RATE_STEP_RATIOS", ())),
-    ),
-    "step": Part("textures coded at their usual step", _replaced(rate, "RATE_STEP_RATIOS", ())),
-    "measured": Part("steps and components chosen by the predicted multiplier alone", _one_lambda("predicted")),
-    "reckoned": Part("steps and components chosen by the measured multiplier alone", _one_lambda("measured")),
+    "components": Part("all components kept, whatever they cost", _replaced(rate, "RATE_LAMBDA_PER_SQUARED_STEP", 0.0)),
     "precision": Part("the mean coded as finely everywhere", _replaced(planes, "mean_precision", lambda *_: None)),
     "weight-steps": Part("weights of all components quantised alike", _replaced(fit, "_weight_steps", _equal_steps)),
     "grid": Part(

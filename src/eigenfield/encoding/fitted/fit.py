@@ -27,7 +27,7 @@ from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
-from eigenfield.encoding.fitted.rate import Rate, code_block_rd, measure_lambda
+from eigenfield.encoding.fitted.rate import Rate, code_block_rd, plane_lambda
 from eigenfield.encoding.fitted.regions import find_regions
 from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.encoding.fitted.start import principal_block, residual_energy
@@ -213,7 +213,7 @@ def code_plane(
     tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[CodedBasis] = []
-    lambda_ = measure_lambda(open_loop, scales, rate, precision)
+    lambda_ = plane_lambda(scales, rate)
     for block in open_loop.blocks:
         coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:

@@ -44,7 +44,6 @@ class PlanePreset:
         texture_step: Quantiser step of the components, likewise.
         subsampled: Whether fewer pixels are fitted where there are many observations.
         ahead: Densities are as if the atlas had so many texels a pixel more, up to FIT_MAX_DENSITY.
-        searched: `Rate.search`, not of chroma, whose mean does not show what luma's bytes gain.
     """
 
     name: str
@@ -56,7 +55,6 @@ class PlanePreset:
     texture_step: float
     subsampled: bool
     ahead: float
-    searched: bool
 
     def settings(self, size: tuple[int, int], density: float, textures: int) -> PlaneSettings:
         """What the plane of a fit is to be.
@@ -72,24 +70,22 @@ class PlanePreset:
         mean, grid = plane_size(size, finer * self.mean_share), plane_size(size, finer * self.texture_share)
         return PlaneSettings(self.matrix, mean, grid, count, count)
 
-    def rate(self, step: float, patient: bool = False, few: bool = False) -> Rate:
+    def rate(self, step: float, patient: bool = False) -> Rate:
         """How finely the plane is coded.
 
         Args:
             step: See `step_of`.
             patient: Whether libaom codes it, which the machine must have.
-            few: Whether there are few observations. Their textures are about as many and draw each photograph on its
-                own; 5x4 views lose 0.14 dB by a search at high rates.
         """
         mean_step, texture_step = self.mean_step * self.mean_share * step, self.texture_step * self.texture_share * step
         coder, trial = (encode_aom, SVT_CODER) if patient else (SVT_CODER, None)
-        return Rate(mean_step, texture_step, coder, trial, search=self.searched and not few)
+        return Rate(mean_step, texture_step, coder, trial)
 
 
 _LUMA, _CHROMA = split_matrix()
 PLANE_PRESETS = (
-    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, True),
-    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, False),
+    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0),
+    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
 )
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
@@ -131,9 +127,8 @@ class Fits:
         """
         step = step_of(quality)
         precision = mean_precision(self.planes[0][1].scales)
-        few = len(self.planes[0][1].pixels.every) < SUBSAMPLE_MIN_OBSERVATIONS
         return {
-            plane.name: code_plane(fit, plane.rate(step, self.patient, few), grid, precision, progress)
+            plane.name: code_plane(fit, plane.rate(step, self.patient), grid, precision, progress)
             for plane, fit in self.planes
         }
 
