@@ -21,7 +21,7 @@ import measure
 from eigenfield.core.camera import Camera
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import OpenGLRenderer, novel_camera, view_weights
-from eigenfield.rendering.checks import FILTERS
+from eigenfield.rendering.checks import TEXTURE_FILTERS
 from eigenfield.rendering.opengl.renderer import make_context
 from render import COUNTS, SIDE, array, relief, scene_of
 
@@ -69,7 +69,7 @@ def main() -> None:
     for count in (0, *COUNTS):
         scene = scene_of(mesh, cameras, count)
         row: dict[str, Any] = {}
-        for filter in FILTERS:
+        for filter in TEXTURE_FILTERS:
             with OpenGLRenderer(scene, filter=filter, context=context) as renderer:
                 for name, frame in (("mono", mono), ("stereo", stereo)):
                     key = f"{name}_{filter}"

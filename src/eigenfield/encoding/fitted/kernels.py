@@ -18,8 +18,9 @@ from eigenfield.runtime.jit import kernel
 
 @kernel()
 def footprint_counts(near, spans, parted, finer, counts):
-    """Fill `counts` from a covered `Frame`; returns how many points that makes. Of a pixel at the border of the surface
-    those samples count that show something, if there are two: a single one says too little of a photograph's pixel."""
+    """Fill `counts` from a covered `Framebuffer`; returns how many points that makes. Of a pixel at the border of the
+    surface those samples count that show something, if there are two: a single one says too little of a photograph's
+    pixel."""
     total = 0
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
