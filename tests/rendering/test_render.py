@@ -19,7 +19,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import Renderer, ViewWeights, draw_texture, path_points, view_weights
 from eigenfield.rendering.software.drawing import (
-    MULTISAMPLE_OFFSETS_PIXELS,
+    MULTISAMPLE_OFFSETS_PX,
     Framebuffer,
     choose_sampling,
     make_surface,
@@ -251,7 +251,7 @@ def test_edges_are_the_mean_of_four_samples_and_the_rest_is_drawn_once(filter):
     smooth = draw_texture(mesh, texture, camera, filter=filter, background=behind)
     middle = draw_texture(mesh, texture, camera, filter=filter, background=behind, samples=1)
     four = []
-    for right, down in MULTISAMPLE_OFFSETS_PIXELS:
+    for right, down in MULTISAMPLE_OFFSETS_PX:
         shifted = replace(camera, K=camera.K - np.array([[0, 0, right], [0, 0, down], [0, 0, 0]]))
         four.append(draw_texture(mesh, texture, shifted, filter=filter, background=behind, samples=1))
     np.testing.assert_array_equal(smooth.coverage, np.mean([picture.coverage for picture in four], axis=0))

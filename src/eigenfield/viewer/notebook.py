@@ -11,7 +11,7 @@ from eigenfield.gltf import encode_scene
 from eigenfield.viewer.page import single_file
 
 NOTEBOOK_TITLE = "Eigen-texture scene"
-NOTEBOOK_HEIGHT_PIXELS = 480
+NOTEBOOK_HEIGHT_PX = 480
 NOTEBOOK_MAX_BYTES = 64 * 2**20  # of a scene's file; notebooks save what they show, and are slow with more
 NOTEBOOK_FEATURES = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
 
@@ -36,7 +36,7 @@ def scene_html(scene: Scene) -> str:
         return _line(str(error))
     return (
         f'<iframe srcdoc="{html.escape(page)}" title="{NOTEBOOK_TITLE}" width="100%" '
-        f'height="{NOTEBOOK_HEIGHT_PIXELS}" style="border: 0" '
+        f'height="{NOTEBOOK_HEIGHT_PX}" style="border: 0" '
         f'allow="{NOTEBOOK_FEATURES}" allowfullscreen sandbox="allow-scripts allow-downloads"></iframe>'
     )
 

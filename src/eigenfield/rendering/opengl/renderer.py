@@ -14,7 +14,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PIXELS, make_surface, median_footprint
+from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PX, make_surface, median_footprint
 from eigenfield.rendering.software.renderer import BLACK, background_of
 from eigenfield.rendering.weights import ViewWeights
 
@@ -212,7 +212,7 @@ class OpenGLRenderer:
         layout = [(vertices, "3f 2f", "position", "coordinate")]
         self._array = self._keep(context.vertex_array(self._program, layout, index_buffer=faces))
         detail = median_footprint(make_surface(mesh, *scene.appearance.atlas), scene.rig.cameras[scene.rig.reference])
-        set_uniforms(self._program, composed=np.int32(0), finest=RENDER_ONE_SAMPLE_PIXELS * max(detail, 1.0))
+        set_uniforms(self._program, composed=np.int32(0), finest=RENDER_ONE_SAMPLE_PX * max(detail, 1.0))
 
     def _frames(self, width: int, height: int) -> tuple[Any, Any]:
         """The framebuffer to draw into and the one to read, of a size; kept until another is asked for."""

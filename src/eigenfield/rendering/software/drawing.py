@@ -28,25 +28,25 @@ from eigenfield.imaging.raster import (
     sort_into_bands,
 )
 from eigenfield.rendering.software.edge_kernels import (
-    BLOCK_PIXELS,
+    BLOCK_PX,
     draw_samples,
     find_edge_pixels,
     keep_multisampled,
     mark_rims,
 )
 from eigenfield.rendering.software.kernels import LAYER_CHANNELS, TILE_TEXELS, draw_texels, mark_tiles, shade_rows
-from eigenfield.rendering.software.simd import LANE_PIXELS
+from eigenfield.rendering.software.simd import LANE_PX
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 FILTER_MARGIN_TEXELS = 2  # texels that the widest filter reaches
 RENDER_MAX_SAMPLES = 4  # along a side of a pixel, by default
-RENDER_ONE_SAMPLE_PIXELS = 1.5  # photograph pixels a pixel up to which one sample is enough
+RENDER_ONE_SAMPLE_PX = 1.5  # photograph pixels a pixel up to which one sample is enough
 FOOTPRINT_TRIANGLES = 256  # triangles from which the median footprint is taken
-CENTRE_OFFSETS_PIXELS = np.zeros((1, 2))
-MULTISAMPLE_OFFSETS_PIXELS = np.array([[-2, -6], [6, -2], [-6, 2], [2, 6]]) / 16  # as GPUs place four samples
+CENTRE_OFFSETS_PX = np.zeros((1, 2))
+MULTISAMPLE_OFFSETS_PX = np.array([[-2, -6], [6, -2], [-6, 2], [2, 6]]) / 16  # as GPUs place four samples
 # Texels, in photograph pixels, by which the middle of a pixel deviates from half way between opposite samples, if these
 # do not lie on one piece of the atlas
-EDGE_LIMIT_PIXELS = 1.0
+EDGE_LIMIT_PX = 1.0
 EDGE_CANDIDATE_RATIO = 0.5  # of that, between neighbouring pixels: then a pixel's samples are drawn
 
 
@@ -148,9 +148,9 @@ class Scratch:
         Args:
             width: W, of the picture.
         """
-        blocks = -(-width // BLOCK_PIXELS)
+        blocks = -(-width // BLOCK_PX)
         self.coordinates = np.empty((2, BAND + 2, width), np.float32)
-        self.marks = np.empty((BAND, blocks * BLOCK_PIXELS), np.bool_)
+        self.marks = np.empty((BAND, blocks * BLOCK_PX), np.bool_)
         self.places = np.empty(BAND * width, np.int32)
         self.starts = np.empty((BAND, blocks + 1), np.int64)
         self.sums = np.empty((BAND + 1, blocks + 1), np.int64)
@@ -166,7 +166,7 @@ class Framebuffer:
         edges: (m, 3, 3) edge functions of the triangles.
         bounds: (m, 4) their rows and columns.
         pixels: (n, 2) the vertices in the picture.
-        inverse_depth: (H k, W k + LANE_PIXELS), of `draw_texels`.
+        inverse_depth: (H k, W k + LANE_PX), of `draw_texels`.
         column_of: Likewise.
         row_of: Likewise.
         spans: (H, 2), of `keep_multisampled`.
@@ -191,7 +191,7 @@ class Framebuffer:
         self.edges = np.empty((count, 3, 3))
         self.bounds, self.pixels = np.empty((count, 4), np.int32), np.empty((len(surface.vertices), 2))
         # Never NaN, even where nothing was drawn yet
-        self.inverse_depth, self.column_of, self.row_of = np.zeros((3, height * k, width * k + LANE_PIXELS), np.float32)
+        self.inverse_depth, self.column_of, self.row_of = np.zeros((3, height * k, width * k + LANE_PX), np.float32)
         most = height * width if len(sampling.offsets) > 1 else 0
         self.spans = np.zeros((height, 2), np.int64)
         self.multisampled = sparse_zeros((most,), np.int32)
@@ -329,9 +329,9 @@ def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, 
     if asked is not None:
         if not isinstance(asked, int | np.integer) or not 1 <= asked <= 16:
             raise OptionError("samples", f"{asked} x {asked} samples a pixel", remedy="ask for 1 to 16")
-        return Sampling(int(asked), CENTRE_OFFSETS_PIXELS, 0)
+        return Sampling(int(asked), CENTRE_OFFSETS_PX, 0)
     side = grid_side(surface, camera, detail)
-    return smooth_edges(detail) if side == 1 else Sampling(side, CENTRE_OFFSETS_PIXELS, 0)
+    return smooth_edges(detail) if side == 1 else Sampling(side, CENTRE_OFFSETS_PX, 0)
 
 
 def grid_side(surface: Surface, camera: Camera, detail: float) -> int:
@@ -347,7 +347,7 @@ def grid_side(surface: Surface, camera: Camera, detail: float) -> int:
         detail: Texels for one pixel of the photographs.
     """
     footprint = median_footprint(surface, camera) / max(detail, 1.0)
-    return 1 if footprint <= RENDER_ONE_SAMPLE_PIXELS else min(int(np.ceil(footprint - 0.5)), RENDER_MAX_SAMPLES)
+    return 1 if footprint <= RENDER_ONE_SAMPLE_PX else min(int(np.ceil(footprint - 0.5)), RENDER_MAX_SAMPLES)
 
 
 def smooth_edges(detail: float) -> Sampling:
@@ -356,7 +356,7 @@ def smooth_edges(detail: float) -> Sampling:
     Args:
         detail: Texels for one pixel of the photographs; 0: unknown.
     """
-    return Sampling(1, MULTISAMPLE_OFFSETS_PIXELS, EDGE_LIMIT_PIXELS * (detail or 1.0))
+    return Sampling(1, MULTISAMPLE_OFFSETS_PX, EDGE_LIMIT_PX * (detail or 1.0))
 
 
 def median_footprint(surface: Surface, camera: Camera) -> float:

@@ -10,7 +10,7 @@ from eigenfield.imaging.raster import run_ends, run_of
 from eigenfield.rendering.software.simd import EDGE_SAMPLES, draw_four
 from eigenfield.runtime.jit import kernel
 
-BLOCK_PIXELS = 8  # of a row whose marks are one word
+BLOCK_PX = 8  # of a row whose marks are one word
 NOWHERE_TEXELS = np.float32(1e6)  # texels
 NEARER_RATIO = 1 + 1e-6  # of inverse depths: more than their rounding
 
@@ -109,14 +109,14 @@ def find_edge_pixels(near, column, row, first, last, limit, columns, rows, marks
         first, last: Range of rows.
         limit: Texels by which the middle of an edge pixel deviates.
         columns, rows: (at least last - first + 2, W) scratch.
-        marks: (at least last - first, BLOCK_PIXELS * blocks) of `mark_rims`, changed.
+        marks: (at least last - first, BLOCK_PX * blocks) of `mark_rims`, changed.
         places: Columns of the pixels found, row by row, written.
         starts: (last - first, blocks + 1) number of those before each block of a row, and before the row's end,
             written.
         sums: (last - first + 1, blocks + 1) number of those above a row and left of a block, written.
     """
     height, width, found = near.shape[0], columns.shape[1], 0
-    blocks, words = marks.shape[1] // BLOCK_PIXELS, marks.view(np.uint64)  # a word is a block
+    blocks, words = marks.shape[1] // BLOCK_PX, marks.view(np.uint64)  # a word is a block
     for line in range(max(first - 1, 0), min(last + 1, height)):
         at = line - first + 1
         to_texel_coordinates(near[line], column[line], row[line], columns[at], rows[at])
@@ -142,7 +142,7 @@ def find_edge_pixels(near, column, row, first, last, limit, columns, rows, marks
         for block in range(blocks):
             starts[at, block] = found
             if words[at, block]:
-                for i in range(block * BLOCK_PIXELS, block * BLOCK_PIXELS + BLOCK_PIXELS):
+                for i in range(block * BLOCK_PX, block * BLOCK_PX + BLOCK_PX):
                     if mark[i]:
                         places[found] = i
                         found += 1
@@ -167,7 +167,7 @@ def draw_samples(
     flat, more = samples.reshape(-1), np.empty(3 * EDGE_SAMPLES)
     for f in listing:
         left, right = bounds[f, 2], bounds[f, 3]
-        low, high = left // BLOCK_PIXELS, (right - 1) // BLOCK_PIXELS + 1
+        low, high = left // BLOCK_PX, (right - 1) // BLOCK_PX + 1
         top, bottom = max(first, bounds[f, 0]), min(last, bounds[f, 1])
         above, below = sums[top - first], sums[bottom - first]
         if below[high] - below[low] == above[high] - above[low]:

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from eigenfield.imaging.raster import run_ends, run_of
-from eigenfield.rendering.software.simd import LANE_PIXELS, blend_texels, draw_lanes, fetch_early
+from eigenfield.rendering.software.simd import LANE_PX, blend_texels, draw_lanes, fetch_early
 from eigenfield.runtime.jit import kernel
 
 TILE_TEXELS = 16  # texels along a side of a tile
@@ -33,7 +33,7 @@ def draw_texels(
         faces: (m, 3).
         texels: (n, 2) texel coordinates of the vertices.
         edges, bounds, listing, first, last, slack: As of `draw_band`.
-        inverse_depth: (H, W + LANE_PIXELS) float32 1 / depth, written; the last columns are room for vectors.
+        inverse_depth: (H, W + LANE_PX) float32 1 / depth, written; the last columns are room for vectors.
         column_of, row_of: Likewise texel coordinates over depth, written.
         seen: (m,) set to 1 for triangles that were nearest for a while; threads share it and only ever write ones.
     """
@@ -55,7 +55,7 @@ def draw_texels(
             q_start = np.float32(q[0] * x + (q[1] * y + q[2]))
             u_start, v_start = np.float32(ux * x + (uy * y + uc)), np.float32(vx * x + (vy * y + vc))
             nearest, columns, rows = inverse_depth[row], column_of[row], row_of[row]
-            for step in range(0, right - left, LANE_PIXELS):
+            for step in range(0, right - left, LANE_PX):
                 along = np.float32(np.int32(step))
                 drawn |= draw_lanes(
                     nearest, columns, rows, left + step, np.int32(right - left - step),

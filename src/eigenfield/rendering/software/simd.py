@@ -15,7 +15,7 @@ from numba.extending import intrinsic
 
 TEXEL_LANES = 4
 EDGE_SAMPLES = 4  # of an edge pixel
-LANE_PIXELS = 8  # drawn at once
+LANE_PX = 8  # drawn at once
 FASTMATH_FLAGS = ("fast",)
 
 
@@ -168,13 +168,13 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
     """
 
     def generate(context, builder, signature, arguments):
-        vector, whole = ir.VectorType(ir.FloatType(), LANE_PIXELS), ir.VectorType(ir.IntType(32), LANE_PIXELS)
+        vector, whole = ir.VectorType(ir.FloatType(), LANE_PX), ir.VectorType(ir.IntType(32), LANE_PX)
 
         def pointer(position):
             data = context.make_array(signature.args[position])(context, builder, arguments[position]).data
             return builder.bitcast(builder.gep(data, [arguments[3]]), vector.as_pointer())
 
-        steps = ir.Constant(vector, [float(i) for i in range(LANE_PIXELS)])
+        steps = ir.Constant(vector, [float(i) for i in range(LANE_PX)])
 
         def along(position):
             product = builder.fmul(steps, _splat(builder, arguments[position + 1], vector), flags=FASTMATH_FLAGS)
@@ -182,16 +182,14 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
 
         place, depth = pointer(0), along(5)
         before = builder.load(place, align=4)
-        meant = builder.icmp_signed(
-            "<", ir.Constant(whole, list(range(LANE_PIXELS))), _splat(builder, arguments[4], whole)
-        )
+        meant = builder.icmp_signed("<", ir.Constant(whole, list(range(LANE_PX))), _splat(builder, arguments[4], whole))
         drawn = builder.and_(meant, builder.fcmp_ordered(">", depth, before))
         builder.store(builder.select(drawn, depth, before), place, align=4)
         for array, value in ((1, along(7)), (2, along(9))):
             place = pointer(array)
             builder.store(builder.select(drawn, value, builder.load(place, align=4)), place, align=4)
         return builder.icmp_unsigned(
-            "!=", builder.bitcast(drawn, ir.IntType(LANE_PIXELS)), ir.Constant(ir.IntType(LANE_PIXELS), 0)
+            "!=", builder.bitcast(drawn, ir.IntType(LANE_PX)), ir.Constant(ir.IntType(LANE_PX), 0)
         )
 
     number = types.float32

@@ -23,8 +23,8 @@ from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
-QUILT_SIDE_PIXELS = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
-QUILT_MAX_SIDE_PIXELS = 16384
+QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
+QUILT_MAX_SIDE_PX = 16384
 QUILT_MAX_TILES = 64  # in a row, and in a column
 QUILT_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
 QUILT_SUFFIX = re.compile(r"_qs([1-9]\d?)x([1-9]\d?)a(\d+(?:\.\d+)?)$")
@@ -80,13 +80,13 @@ def quilt_of(
     if not 0 <= spread <= 1:
         raise OptionError("spread", f"a spread of {spread:g}", remedy="give 0 (one place) to 1 (the array's width)")
     camera = scene.rig.cameras[scene.rig.reference]
-    scale = min(1.0, QUILT_SIDE_PIXELS / (columns * camera.width), QUILT_SIDE_PIXELS / (rows * camera.height))
+    scale = min(1.0, QUILT_SIDE_PX / (columns * camera.width), QUILT_SIDE_PX / (rows * camera.height))
     width, height = resolution or (max(1, int(camera.width * scale)), max(1, int(camera.height * scale)))
-    if width < 1 or height < 1 or columns * width > QUILT_MAX_SIDE_PIXELS or rows * height > QUILT_MAX_SIDE_PIXELS:
+    if width < 1 or height < 1 or columns * width > QUILT_MAX_SIDE_PX or rows * height > QUILT_MAX_SIDE_PX:
         raise OptionError(
             "quilt",
             f"{columns}x{rows} views of {width}x{height}",
-            remedy=f"keep the quilt within {QUILT_MAX_SIDE_PIXELS}x{QUILT_MAX_SIDE_PIXELS} pixels",
+            remedy=f"keep the quilt within {QUILT_MAX_SIDE_PX}x{QUILT_MAX_SIDE_PX} pixels",
         )
     return Quilt(columns, rows, width, height, spread)
 
