@@ -353,7 +353,7 @@ def strecha(folder: Path) -> tuple[PhotoSet, LightField]:
         true.append(Camera.checked(v[:9].reshape(3, 3), R, -R @ v[21:24], 1536, 1024, path.name))
         shots.append(Shot(path.name, path, 1536, 1024))
     photos = PhotoSet(folder / "images", tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(true)
+    return photos, photos.with_cameras(true)
 
 
 def middlebury(folder: Path) -> tuple[PhotoSet, LightField]:
@@ -364,7 +364,7 @@ def middlebury(folder: Path) -> tuple[PhotoSet, LightField]:
         true.append(Camera.checked(v[:9].reshape(3, 3), v[9:18].reshape(3, 3), v[18:], 640, 480, name))
         shots.append(Shot(name, folder / "images" / name, 640, 480))
     photos = PhotoSet(folder / "images", tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(true)
+    return photos, photos.with_cameras(true)
 
 
 @pytest.mark.slow

@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from eigenfield.capture.photographs.read import EXTENSIONS
+from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
 
 LONGEST = 120  # bytes of a folder's or file's name, before its ending
 DEEPEST = 6  # folders in a path
@@ -36,7 +36,7 @@ def file_name(name: str, otherwise: str) -> str:
 
 def _parts(name: str) -> list[str]:
     stem = name
-    for extension in EXTENSIONS:
+    for extension in PHOTOGRAPH_EXTENSIONS:
         if name.lower().endswith(extension):
             stem = name[: -len(extension)]
             break
