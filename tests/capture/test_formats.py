@@ -29,7 +29,7 @@ from eigenfield.capture import (
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.cli.inspect import command
 from eigenfield.core.errors import CaptureError, EigenfieldError
-from eigenfield.core.observations import of_cameras
+from eigenfield.core.observations import select_cameras
 from support.captures import frame_of
 from support.named import CFG, hci, refused, write, write_video
 from support.scenes import row_grid
@@ -259,7 +259,7 @@ def test_each_photograph_is_an_observation_at_one_time(tmp_path):
     photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
     for capture in (photo_set, photo_set.with_cameras(row_grid(9))):
         assert [(capture.camera_of(i), capture.time_of(i)) for i in range(len(capture))] == [(i, 0) for i in range(9)]
-        some, part = of_cameras(capture, [7, 2]), capture.subset([7, 2])
+        some, part = select_cameras(capture, [7, 2]), capture.subset([7, 2])
         assert len(some) == len(part) == 2
         for index in range(2):
             assert (some.camera_of(index), some.time_of(index)) == (index, 0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.core.mesh import Mesh, barycentric, signed_areas, triangle_areas
+from eigenfield.core.mesh import Mesh, barycentric_coordinates, signed_areas, triangle_areas
 
 CORNERS = np.array(
     [[[0, 0, 0], [3, 0, 0], [0, 4, 0]], [[1, 1, 1], [1, 1, 2], [1, 2, 2]], [[0, 0, 0], [1, 1, 1], [2, 2, 2]]]
@@ -27,5 +27,5 @@ def test_areas_in_the_plane_have_the_sign_of_their_turn():
 
 def test_barycentric_coordinates_of_corners_sides_and_points_outside():
     corners = np.repeat(np.array([[[0, 0], [4, 0], [0, 4]]]), 4, axis=0)
-    found = barycentric(corners, np.array([[4, 0], [2, 2], [1, 1], [-4, 0]]))
+    found = barycentric_coordinates(corners, np.array([[4, 0], [2, 2], [1, 1], [-4, 0]]))
     np.testing.assert_array_equal(found, [[0, 1, 0], [0, 0.5, 0.5], [0.5, 0.25, 0.25], [2, -1, 0]])

@@ -103,7 +103,7 @@ def test_coarser_films_are_smaller_and_worse(base, capture):
     for quality in (20, 60, 90):
         scene = with_residual(base, capture, quality)
         figures.append(
-            (len(scene.residual.film), evaluate(scene, capture, png_maps="none")["image"]["residual"]["psnr"])
+            (len(scene.residual.video), evaluate(scene, capture, png_maps="none")["image"]["residual"]["psnr"])
         )
     assert figures == sorted(figures) and figures[0][1] < figures[2][1] - 3
 
@@ -149,12 +149,12 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
     path = stored(data, tmp_path)
     assert validate(path) == []
     found = ef.load(path)
-    assert found.residual.film == exact.residual.film and found.residual.scale == exact.residual.scale
+    assert found.residual.video == exact.residual.video and found.residual.scale == exact.residual.scale
     assert found.residual.size == (56, 64) or found.residual.size == (64, 64)
     assert found.residual.order.tolist() == exact.residual.order.tolist()
     assert encode_scene(found) == data
     sizes = parts(path)
-    assert sizes["residual"] == len(exact.residual.film)
+    assert sizes["residual"] == len(exact.residual.video)
     assert sizes["total"] == sum(count for name, count in sizes.items() if name != "total")
     gltf, _ = glb_surgery.split(data)
     extension = gltf["extensions"][limits.EXTENSION]
@@ -163,7 +163,7 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
         and extension["residual"]["smooth"] is True
         and "residual" not in extension["needs"]
     )
-    assert gltf["bufferViews"][-1]["byteLength"] == len(exact.residual.film)  # the last thing in the file
+    assert gltf["bufferViews"][-1]["byteLength"] == len(exact.residual.video)  # the last thing in the file
 
 
 def test_who_does_not_know_it_loses_nothing_else(base, data, tmp_path):
@@ -287,7 +287,7 @@ def test_shots_that_are_drawn_otherwise_have_none(exact):
 def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
     """Residuals of files before 1.5; of cameras half as fine as the reference, from 2 x 2."""
     smaller = replace(exact.proxy.mesh, vertices=exact.proxy.mesh.vertices * np.array([0.7, 0.7, 1], np.float32))
-    cameras = tuple(one.resized(32, 28) if index == 3 else one for index, one in enumerate(exact.rig.cameras))
+    cameras = tuple(one.resize(32, 28) if index == 3 else one for index, one in enumerate(exact.rig.cameras))
     older = replace(
         exact,
         proxy=Proxy(smaller),

@@ -304,7 +304,7 @@ def test_a_capture_of_something_else(scene, tmp_path):
 
 def test_photographs_of_another_size(scene, tmp_path):
     small = dataclasses.replace(
-        scene, rig=dataclasses.replace(scene.rig, cameras=tuple(camera.resized(24, 20) for camera in scene.rig.cameras))
+        scene, rig=dataclasses.replace(scene.rig, cameras=tuple(camera.resize(24, 20) for camera in scene.rig.cameras))
     )
     with pytest.raises(CaptureError) as caught:
         evaluate(scene, write_capture(small, tmp_path / "c"))

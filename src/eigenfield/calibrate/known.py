@@ -77,7 +77,7 @@ def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
     if len(values) != 9:
         return None
     K = values.reshape(3, 3)
-    Camera.checked(K, np.eye(3), np.zeros(3), 1, 1, path.name)
+    Camera.from_matrices(K, np.eye(3), np.zeros(3), 1, 1, path.name)
     return {"": (Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2])), None)}
 
 
@@ -110,7 +110,7 @@ def _scale_to_photograph(entry: LensEntry, shot: Shot, path: Path) -> KnownLens:
             path=shot.path,
             remedy="give the intrinsics of these photographs",
         )
-    camera = Camera.checked(intrinsics.matrix(*size), np.eye(3), np.zeros(3), *size, shot.name)
+    camera = Camera.from_matrices(intrinsics.matrix(*size), np.eye(3), np.zeros(3), *size, shot.name)
     if size != (shot.width, shot.height):
         camera = scale_camera(camera, shot.width, shot.height)
     return KnownLens(camera.K, lens)

@@ -88,7 +88,7 @@ class Entry:
         K = self.intrinsics.matrix(width, height)
         if (
             max(np.abs(K).max(), np.abs(self.centre).max()) > CALIBRATION_MAX_MAGNITUDE
-        ):  # False for NaN: `checked` finds those
+        ):  # False for NaN: `from_matrices` finds those
             raise CaptureError(
                 "camera-not-finite",
                 f"camera {self.label} has entries beyond {CALIBRATION_MAX_MAGNITUDE:g}",
@@ -96,8 +96,8 @@ class Entry:
                 remedy="mend or remove its entry",
             )
         try:
-            with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `checked` looks for
-                camera = Camera.checked(K, self.R, -(self.R @ self.centre), width, height, self.label)
+            with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `from_matrices` looks for
+                camera = Camera.from_matrices(K, self.R, -(self.R @ self.centre), width, height, self.label)
         except CaptureError as error:
             raise CaptureError(error.code, error.message, path=path, remedy=error.remedy) from None
         # the centre is what a calibration knows well: keep it where checking snapped a rotation of few digits

@@ -43,8 +43,12 @@ class View:
     """One photograph and its camera.
 
     Attributes:
-        name: As of `PhotographSource`, like path, lens, mask and upright.
+        name: As of `PhotographSource`.
+        path: Likewise.
         camera: The pinhole camera of the photograph after lens removal, at the photograph's own size.
+        lens: As of `PhotographSource`.
+        mask: Likewise.
+        upright: Likewise.
         bounds: Nearest and farthest depth of the scene along z in world units, a hint, where the calibration states
             them.
     """
@@ -123,7 +127,7 @@ class LightField:
 
     @property
     def metres_per_unit(self) -> float | None:
-        """1 where the capture's parameters were in metres; None where nothing says."""
+        """1 where the capture's parameters were in metres; None if the scale is unknown."""
         return 1.0 if self.format == "hci" and self.layout is not None and self.layout.measured else None
 
     def photograph(self, index: int) -> Photograph:

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A triangle mesh.
+    """A triangle mesh. Vertices on a seam are doubled: a vertex has one UV.
 
-    vertices: V, (n, 3) float32 world positions.
-    faces: W, (m, 3) int32 indices into `vertices`; counter-clockwise seen from outside, where that is known.
-    uv: U, (n, 2) float32 in [0, 1], origin at the top left of the atlas and v down (glTF); None before unwrapping.
-    Vertices on a seam are doubled: a vertex has one UV.
+    Attributes:
+        vertices: V, (n, 3) float32 world positions.
+        faces: W, (m, 3) int32 indices into `vertices`; counter-clockwise seen from outside, if the outside is known.
+        uv: U, (n, 2) float32 in [0, 1], origin at the top left of the atlas and v down (glTF); None before unwrapping.
     """
 
     vertices: NDArray[np.float32]
@@ -24,7 +24,7 @@ class Mesh:
 
     def face_normals(self) -> NDArray[np.float64]:
         """(m, 3) unit normals by the right-hand rule; zero for triangles without area."""
-        normal = _crossed(self.vertices[self.faces].astype(np.float64))
+        normal = _scaled_normals(self.vertices[self.faces].astype(np.float64))
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
 
@@ -35,7 +35,7 @@ class Mesh:
 
 def triangle_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(m,) areas of triangles in space, corners (m, 3, 3)."""
-    return np.asarray(np.linalg.norm(_crossed(corners), axis=1) / 2)
+    return np.asarray(np.linalg.norm(_scaled_normals(corners), axis=1) / 2)
 
 
 def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -44,7 +44,7 @@ def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
 
 
-def barycentric(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+def barycentric_coordinates(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
     """(n, 3) barycentric coordinates of points (n, 2) in triangles of the plane with area, corners (n, 3, 2)."""
     p = corners - points[:, None]
     one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
@@ -52,6 +52,6 @@ def barycentric(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArra
     return np.asarray(area / area.sum(axis=1, keepdims=True))
 
 
-def _crossed(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(m, 3) normals as long as twice the area."""
+def _scaled_normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3) normals by the right-hand rule, as long as twice the area, corners (m, 3, 3)."""
     return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))

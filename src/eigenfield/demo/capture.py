@@ -103,7 +103,7 @@ def draw_view(mesh: Mesh, camera: Camera, surface: NDArray[np.float32], room: ND
         room: Of `environment_map`.
     """
     assert mesh.uv is not None
-    fine = camera.resized(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
+    fine = camera.resize(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
     raster = rasterise_view(mesh, fine)
     rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
     picture = np.empty((camera.height, camera.width, 3), np.float32)

@@ -58,5 +58,5 @@ def read_residual(
 def residual_frames(residual: Residual) -> Iterator[Planes]:
     """The frames of a residual, in its order. FormatError `residual-damaged`."""
     where = f"/extensions/{limits.EXTENSION}/residual"
-    frames: Iterator[Planes] = CODECS[residual.codec].decode(residual.film, residual.frame, len(residual.order), where)
+    frames: Iterator[Planes] = CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where)
     return frames

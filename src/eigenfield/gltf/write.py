@@ -337,7 +337,7 @@ def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
         made["smooth"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
-    return made | _stream(Payload(residual.codec, residual.film), "residual", buffer)
+    return made | _stream(Payload(residual.codec, residual.video), "residual", buffer)
 
 
 def _needs(

@@ -23,7 +23,7 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
     encoded = scene.rig.encoded
     for row in np.flatnonzero(weights):
-        camera = scene.rig.cameras[encoded[row]].resized(reference.width, reference.height)
+        camera = scene.rig.cameras[encoded[row]].resize(reference.width, reference.height)
         K += weights[row] * camera.K
         R += weights[row] * camera.R
     rotation = nearest_rotation(R)

@@ -23,7 +23,7 @@ def scene_html(scene: Scene) -> str:
     origin of its own (`sandbox` without `allow-same-origin`): it can neither read the notebook nor act in it.
     """
     try:
-        glb = scene.derived("glb", lambda: encode_scene(replace(scene, residual=None)))
+        glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > MOST:
             return _line(
                 f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"

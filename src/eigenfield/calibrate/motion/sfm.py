@@ -351,7 +351,7 @@ def _solved_camera(image: Any, shot: Shot, known: KnownLens | None) -> tuple[Kno
         lens = Lens("brown", (k, 0.0, 0.0, 0.0, 0.0))
         known = KnownLens(np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1.0]]), None if lens.is_identity else lens)
     pose = np.asarray(image.cam_from_world().matrix())
-    return known, Camera.checked(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
+    return known, Camera.from_matrices(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
 
 
 def _points(model: SparseModel, chosen: Sequence[int], features: Sequence[Features]) -> SparsePoints:

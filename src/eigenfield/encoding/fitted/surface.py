@@ -32,7 +32,7 @@ from scipy.sparse.linalg import cg
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, cameras_of, of_cameras
+from eigenfield.core.observations import Observations, cameras_of, select_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
@@ -135,7 +135,7 @@ def fit_surface(
     Raises CaptureError, OutputError.
     """
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    some, used = of_cameras(observations, chosen), [cameras[index] for index in chosen]
+    some, used = select_cameras(observations, chosen), [cameras[index] for index in chosen]
     shape = (min(side, SIDE_MOST),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
     step = 2 if len(some) >= SUBSAMPLED_FROM or pixels > PIXELS else 1

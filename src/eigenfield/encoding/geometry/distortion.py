@@ -20,8 +20,8 @@ from scipy.ndimage import distance_transform_edt, uniform_filter
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh, barycentric, signed_areas
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.mesh import Mesh, barycentric_coordinates, signed_areas
+from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.raster import rasterise_view
@@ -83,7 +83,7 @@ def depth_effect(
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
 
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
 
     def look(index: int) -> NDArray[np.float64]:
         return _looked(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
@@ -126,7 +126,7 @@ def texel_weights(
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
     corners = faces[owners[row, column]]
-    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * STEPS + HALF)
+    return corners, barycentric_coordinates(places[corners], np.stack([column, row], axis=1) * STEPS + HALF)
 
 
 def _looked(
@@ -167,7 +167,7 @@ def opened(
     and the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of
     what lies behind."""
     chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
     error, seen = 0.0, []
     for index in range(len(some)):
         camera = cameras[chosen[some.camera_of(index)]]

@@ -21,7 +21,7 @@ from scipy.ndimage import uniform_filter
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, luma_of, spread_cameras
 from eigenfield.encoding.geometry.simplify_relief import LEFT
 from eigenfield.imaging.raster import rasterise_view
@@ -89,7 +89,7 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observa
             texel for a pixel.
     """
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
 
     def view(index: int) -> _View:
         return _view(mesh, cameras[chosen[some.camera_of(index)]], some.time_of(index), luma_of(some, index))
@@ -123,7 +123,7 @@ def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observa
 def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _View:
     pixels = max(1.0, camera.width * camera.height / LARGEST)
     if pixels > 1:
-        camera = camera.resized(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
+        camera = camera.resize(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
         grey = np.asarray(cv2.resize(grey, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.float32)
     mean = uniform_filter(grey, AROUND)
     around = np.maximum(uniform_filter(np.square(grey), AROUND) - np.square(mean), 0)

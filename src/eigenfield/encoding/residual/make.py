@@ -70,7 +70,7 @@ def with_residual(
     made = Residual(b"", (rows, columns), way, scale, full, smooth=True)
     film = encode_film(frames, made.frame, crf_of(quality), PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
-    return replace(scene, residual=replace(made, film=film), settings=settings)
+    return replace(scene, residual=replace(made, video=film), settings=settings)
 
 
 def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:

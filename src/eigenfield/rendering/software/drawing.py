@@ -144,7 +144,7 @@ class Frame:
 def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) -> None:
     """Rasterise: where each sample lands in the atlas, and which tiles are needed."""
     k, offsets = sampling.side, sampling.offsets
-    matrix = (camera.resized(camera.width * k, camera.height * k) if k > 1 else camera).matrix
+    matrix = (camera.resize(camera.width * k, camera.height * k) if k > 1 else camera).matrix
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
     height, width = camera.height * k, camera.width * k

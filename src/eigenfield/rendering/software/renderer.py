@@ -188,7 +188,7 @@ def draw_texture(
 
 def renderer_of(scene: Scene) -> Renderer:
     """The scene's renderer, made on the first call and kept as long as the scene."""
-    return scene.derived("software renderer", lambda: Renderer(scene))
+    return scene.derive("software renderer", lambda: Renderer(scene))
 
 
 def render(
@@ -258,8 +258,8 @@ def camera_index(scene: Scene, name: str) -> int:
 
 
 def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
-    """`camera.resized`, refusing what cannot be: OptionError `resolution`."""
+    """`Camera.resize`, refusing what cannot be: OptionError `resolution`."""
     width, height = resolution
     if not (1 <= width <= 16384 and 1 <= height <= 16384):
         raise OptionError("resolution", f"a picture of {width}x{height}", remedy="give 1x1 to 16384x16384")
-    return camera.resized(width, height)
+    return camera.resize(width, height)
