@@ -18,13 +18,13 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import (
-    BAND,
-    BOUND_SLACK,
-    EDGE_SLACK,
-    SET_UP,
+    RASTER_BAND_ROWS,
+    RASTER_BOUND_SLACK_PIXELS,
+    RASTER_EDGE_SLACK_FRACTION,
+    RASTER_SET_UP_TRIANGLES,
     bound_faces,
     edge_functions,
-    find_pixels,
+    project_corners,
     sort_into_bands,
 )
 from eigenfield.rendering.software.edge_kernels import BLOCK, draw_samples, find_bends, keep_parted, mark_ends
@@ -106,12 +106,12 @@ class Scratch:
 
     def __init__(self, width: int) -> None:
         blocks = -(-width // BLOCK)
-        self.flat = np.empty((2, BAND + 2, width), np.float32)
-        self.marks = np.empty((BAND, blocks * BLOCK), np.bool_)
-        self.places = np.empty(BAND * width, np.int32)
-        self.starts = np.empty((BAND, blocks + 1), np.int64)
-        self.sums = np.empty((BAND + 1, blocks + 1), np.int64)
-        self.samples = np.empty((BAND * width, 3, 4), np.float32)
+        self.flat = np.empty((2, RASTER_BAND_ROWS + 2, width), np.float32)
+        self.marks = np.empty((RASTER_BAND_ROWS, blocks * BLOCK), np.bool_)
+        self.places = np.empty(RASTER_BAND_ROWS * width, np.int32)
+        self.starts = np.empty((RASTER_BAND_ROWS, blocks + 1), np.int64)
+        self.sums = np.empty((RASTER_BAND_ROWS + 1, blocks + 1), np.int64)
+        self.samples = np.empty((RASTER_BAND_ROWS * width, 3, 4), np.float32)
 
 
 class Frame:
@@ -148,18 +148,18 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
     height, width = camera.height * k, camera.width * k
-    slack = BOUND_SLACK + float(np.abs(offsets).max())
+    slack = RASTER_BOUND_SLACK_PIXELS + float(np.abs(offsets).max())
     frame.seen[:] = 0
-    find_pixels(corners, frame.pixels)
+    project_corners(corners, frame.pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, surface.faces, *part, frame.edges)
         bound_faces(corners, frame.pixels, surface.faces, frame.edges, width, height, slack, *part, frame.bounds)
 
-    parallel_map(set_up, pieces(len(surface.faces), SET_UP))
-    bands = pieces(height, BAND)
+    parallel_map(set_up, pieces(len(surface.faces), RASTER_SET_UP_TRIANGLES))
+    bands = pieces(height, RASTER_BAND_ROWS)
     starts = np.empty(len(bands) + 1, np.int64)
-    listing = sort_into_bands(frame.bounds, BAND, starts)
+    listing = sort_into_bands(frame.bounds, RASTER_BAND_ROWS, starts)
     middles = frame.inverse_depth, frame.column_of, frame.row_of
 
     def triangles_of(band: int) -> tuple[NDArray[Any], ...]:
@@ -167,7 +167,7 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
         return surface.faces, surface.texels, frame.edges, frame.bounds, some
 
     def draw(band: int) -> None:
-        draw_texels(*triangles_of(band), *bands[band], EDGE_SLACK, *middles, frame.seen)
+        draw_texels(*triangles_of(band), *bands[band], RASTER_EDGE_SLACK_FRACTION, *middles, frame.seen)
 
     def smooth(band: int) -> None:
         try:
@@ -175,10 +175,10 @@ def cover(surface: Surface, camera: Camera, sampling: Sampling, frame: Frame) ->
         except IndexError:  # this thread is the first, or another was faster
             room = Scratch(width)
         triangles, rows, limit = triangles_of(band), bands[band], np.float32(sampling.limit)
-        mark_ends(*triangles[2:], surface.rims, middles[0], *rows, EDGE_SLACK, offsets, room.marks)
+        mark_ends(*triangles[2:], surface.rims, middles[0], *rows, RASTER_EDGE_SLACK_FRACTION, offsets, room.marks)
         listed = room.places, room.starts, room.sums
         find_bends(*middles, *rows, limit * np.float32(LOOKED_AT), *room.flat, room.marks, *listed)
-        draw_samples(*triangles, *rows, EDGE_SLACK, offsets, *listed, room.samples, frame.seen)
+        draw_samples(*triangles, *rows, RASTER_EDGE_SLACK_FRACTION, offsets, *listed, room.samples, frame.seen)
         keep_parted(
             *middles, room.places, room.starts, room.samples, limit, *rows, frame.spans, frame.parted, frame.finer
         )
@@ -210,7 +210,7 @@ def shade(
             width, height, filter == "bicubic", frame.sampling.side, behind, picture.dtype == np.uint8, *rows, picture,
             coverage,
         ),
-        pieces(picture.shape[0], BAND),
+        pieces(picture.shape[0], RASTER_BAND_ROWS),
     )  # fmt: skip
 
 

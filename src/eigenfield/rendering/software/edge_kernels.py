@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.raster import run_ends, run_of
+from eigenfield.imaging.raster import edge_spans, row_span
 from eigenfield.rendering.software.simd import SAMPLES, draw_four
 from eigenfield.runtime.jit import kernel
 
@@ -60,13 +60,13 @@ def mark_ends(edges, bounds, listing, rims, near, first, last, slack, offsets, m
                 wide[i, k] = narrow[i, k] = e[i, k]
             wide[i, 2] += more
             narrow[i, 2] -= more
-        a, b, c, _ = run_ends(wide, slack)
-        a_in, b_in, c_in, q = run_ends(narrow, slack)
+        a, b, c, _ = edge_spans(wide, slack)
+        a_in, b_in, c_in, q = edge_spans(narrow, slack)
         x, y = q[0] * NEARER, q[1] * NEARER  # 1 / depth is linear; the most of it within a pixel, and its rounding
         one = (e[0, 2] + e[1, 2] + e[2, 2]) * NEARER + (x + y + abs(x) + abs(y)) / 2
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
-            left, right = run_of(a, b, c, row + 0.5, *columns)
-            inner = run_of(a_in, b_in, c_in, row + 0.5, *columns)
+            left, right = row_span(a, b, c, row + 0.5, *columns)
+            inner = row_span(a_in, b_in, c_in, row + 0.5, *columns)
             start, mark = y * row + one, marks[row - first]
             if inner[0] < inner[1]:
                 mark_near(near[row], start, x, left, inner[0], mark)
