@@ -19,7 +19,7 @@ from eigenfield.capture.readers.transforms import TRANSFORMS_FILE
 from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import mended
+from eigenfield.runtime.files import current_umask, output_errors
 
 log = logging.getLogger("eigenfield.capture")
 
@@ -63,7 +63,7 @@ def save_calibration(
             )
     files = _make_files(light_field, place, points)
     files |= more or {}
-    with mended(place), _temporary_folder(place) as part:
+    with output_errors(place), _temporary_folder(place) as part:
         for name, data in files.items():
             (part / name).parent.mkdir(parents=True, exist_ok=True)
             with (part / name).open("wb") as file:
@@ -77,7 +77,7 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError where a calibration may not or cannot be written to `folder`."""
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
-    with mended(folder):
+    with output_errors(folder):
         if folder.is_dir() and not overwrite and any(folder.iterdir()):
             raise OutputError(
                 "output-exists",
@@ -131,7 +131,7 @@ def _temporary_folder(place: Path) -> Iterator[Path]:
 
 def _move_into_place(part: Path, place: Path) -> None:
     """`part` as `place` by rename; entry by entry where `place` holds something that is to stay."""
-    mode = place.stat().st_mode & 0o7777 if place.is_dir() else 0o777 & ~_umask()
+    mode = place.stat().st_mode & 0o7777 if place.is_dir() else 0o777 & ~current_umask()
     part.chmod(mode)
     if not place.exists() or not any(place.iterdir()):
         if place.exists():
@@ -143,9 +143,3 @@ def _move_into_place(part: Path, place: Path) -> None:
         if target.is_dir() and not target.is_symlink():
             target.replace(part / f"old-{entry.name}")  # goes with `part`
         entry.replace(target)
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

@@ -13,7 +13,7 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
-from eigenfield.runtime.files import flush_folder, mended
+from eigenfield.runtime.files import flush_folder, output_errors
 
 LISTING = "eigenfield.json"
 MOST = 16 * 2**20  # bytes of a listing that is read back
@@ -28,7 +28,7 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
     if not os.access(folder if folder.is_dir() else parent, os.W_OK):
         raise OutputError("not-writable", "cannot be written to", path=folder, remedy="name another place")
-    with mended(folder):
+    with output_errors(folder):
         if not folder.is_dir() or not any(folder.iterdir()):
             return
         if not overwrite:
@@ -52,7 +52,7 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
     Where `folder` exists, what it holds is replaced entry by entry, and put back if that fails.
     """
     refuse_folder(folder, overwrite)
-    with mended(folder):
+    with output_errors(folder):
         there = folder.is_dir()
         beside = folder if there else folder.absolute().parent
         part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=beside))
