@@ -31,7 +31,7 @@ from scipy.sparse.linalg import cg
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, vertex_normals
 from eigenfield.core.observations import Observations, cameras_of, select_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
@@ -263,12 +263,7 @@ def _lines(
         exact = lattice.coordinates(points)
         lines = lattice.points(exact + np.array([0, 0, 1])) - lattice.points(exact)
     else:
-        corners = points[faces]
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals = np.zeros_like(points)
-        for k in range(3):
-            np.add.at(normals, faces[:, k], across)
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+        normals = vertex_normals(points, faces)
         middle = np.mean([camera.centre for camera in cameras], axis=0)
         lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
     few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SOME)).astype(int))
