@@ -41,7 +41,7 @@ class Arrangement:
     Attributes:
         format: The reader's name.
         files: The photographs.
-        layout: Their nodes, in the order of `files`; None where names say nothing.
+        layout: Their nodes, in the order of `files`; None if the names state none.
         problems: Lines for people.
         others: Photographs beside them that have other names.
         calibration: Whole cameras, where the names or a file beside them state them.

@@ -26,7 +26,7 @@ from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.core.errors import CaptureError, OptionError
 
-# the order of claims: of those that claim a folder, the lowest rank wins; two of one rank are a question
+# of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
 RANK_FIRST, RANK_SECOND, RANK_CAMERAS, RANK_NAMES, RANK_ON_REQUEST, RANK_ANY = range(6)
 
 
@@ -111,7 +111,7 @@ FORMATS = (
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
-# what a folder does not hold by chance; where no reader takes one of these up, it is damaged or incomplete
+# files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
 CALIBRATION_PATTERNS = (
     "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
     "sparse/0/images.*", "sparse/0/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",

@@ -17,7 +17,7 @@ class Basis:
         textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
         scale: (N, C) float32: value = (stored - zero) * scale; ones for float textures.
         zero: (N, C) float32; zeros for float textures.
-        weights: (No, N) float32, the paper's ω(c, j), a row for each observation (`Scene.rows` says which).
+        weights: (No, N) float32, the paper's ω(c, j), a row for each observation, in the order of `Scene.rows`.
         grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
         corner: Row and column of the grid at which the textures begin; they are zero elsewhere.
     """

@@ -1,9 +1,8 @@
 """Coded streams that travel with a scene, each found by the content that it decodes to.
 
-A payload is kept under a key: the kind of the content and a SHA-256 digest of its arrays. Whoever saves a scene
-computes the keys of its parts and writes what it finds under them. So a part that was edited is coded anew, even one
-that was edited in place. A part that was not keeps its bytes through copies, pickles, `dataclasses.replace` and other
-processes.
+A payload is cached under a key: the kind of the content and a SHA-256 digest of its arrays. `save` computes the keys of
+a scene's parts and writes the payloads under them. A part that was edited, even in place, has another key and is
+encoded again. All others keep their bytes through copies, pickles, `dataclasses.replace` and other processes.
 """
 
 from __future__ import annotations

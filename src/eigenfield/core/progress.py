@@ -25,7 +25,7 @@ def track(items: Iterable[T], stage: str, total: int, progress: Progress | None)
         items: Those to yield.
         stage: Name of the work.
         total: Number of items.
-        progress: Called before the first and after each; None: nobody.
+        progress: Called before the first item and after each; None: not called.
     """
     if progress is not None:
         progress(stage, 0, total)

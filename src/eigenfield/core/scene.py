@@ -125,8 +125,8 @@ class Scene:
 class EncodedScene(Scene):
     """A scene with the payloads of its parts, as `encode` and `load` return it.
 
-    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes those whose content is still there, byte
-    for byte, and codes anew what was edited.
+    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes them byte for byte for parts that are
+    unchanged, and encodes parts that were edited.
 
     Attributes:
         payloads: Of mesh, cameras, means, eigen textures, weights and the picture for other viewers, each under the key

@@ -58,7 +58,7 @@ def refuse_existing(path: Path, overwrite: bool) -> None:
 
 
 def is_numbered(path: Path) -> bool:
-    """Whether a .png's name stands for many: it has a place for a number, `%04d` or `%d`."""
+    """Whether a .png's name is a pattern with a place for a number, `%04d` or `%d`."""
     return path.suffix.lower() == ".png" and _NUMBER_PLACE.search(path.name) is not None
 
 

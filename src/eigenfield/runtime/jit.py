@@ -41,8 +41,8 @@ def _cache_folder() -> str:
 
 
 def _widen_literals(compiled: Any) -> None:
-    """Let kernels that pass constants share one compilation: numba compiles a kernel anew for each constant with which
-    another kernel calls it. LLVM still folds the constants of what it inlines."""
+    """Let kernels that pass constants share one compilation: otherwise numba compiles a kernel for each constant with
+    which another kernel calls it. LLVM still folds the constants of inlined kernels."""
     resolve, widen = compiled.get_call_template, numba.types.unliteral
     compiled.get_call_template = lambda args, kws: resolve(
         tuple(widen(kind) for kind in args), {name: widen(kind) for name, kind in kws.items()}

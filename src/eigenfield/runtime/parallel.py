@@ -58,7 +58,7 @@ class _Pool:
         return future
 
     def close(self) -> None:
-        """Let the threads end once what is queued is done."""
+        """Let the threads end once the queue is empty."""
         with self._gate:
             self._open = False
             for _ in range(self._count):

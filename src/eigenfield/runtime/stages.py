@@ -1,7 +1,7 @@
-"""Finished stages of long work in a folder, so that the same command goes on after a crash.
+"""Finished stages of long work in a folder, so that the same command resumes after a crash.
 
-A stage's folder carries a digest of all that its result depends on: a changed option, photograph or program finds
-nothing and builds anew. It is built beside its place and appears there by rename: what exists is whole.
+The name of a stage's folder has a digest of everything that its result depends on: with another option, photograph or
+program, the stage is built again. It is built beside its place and renamed: a folder that exists is whole.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ class Stages:
         return place
 
     def close(self) -> None:
-        """Remove what was only temporary."""
+        """Remove the folder if it is temporary."""
         if self._temporary is not None:
             with contextlib.suppress(OSError):
                 self._temporary.cleanup()

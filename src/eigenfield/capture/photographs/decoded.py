@@ -51,7 +51,7 @@ def decode_with_mask(
 
 
 def size_on_disk(path: Path) -> int:
-    """Bytes of a file; CaptureError `image-missing` where it is gone."""
+    """Bytes of a file; CaptureError `image-missing` where it no longer exists."""
     try:
         return path.stat().st_size
     except OSError as error:

@@ -2,7 +2,7 @@
 
     linear = curve(value);  xyz = [rXYZ gXYZ bXYZ] linear;  srgb = encode(M^-1 xyz)
 
-Both matrices are for the profile connection space (D50), so no further adaptation is due; what lies outside sRGB is
+Both matrices are for the profile connection space (D50), so no further adaptation is needed; colours outside sRGB are
 clipped. Profiles with tables (A2B0) are left to littleCMS, at 8 bit.
 """
 

@@ -226,7 +226,7 @@ def _png_orientation(file: Any) -> Any:
 
 
 def _read_at(file: Any, offset: int, size: int) -> bytes:
-    """Bytes of the file, which Pillow is reading too: its place is put back."""
+    """Bytes of the file; its position is restored, since Pillow is reading it too."""
     place = file.tell()
     file.seek(offset)
     data: bytes = file.read(size)

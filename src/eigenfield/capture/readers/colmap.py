@@ -40,7 +40,14 @@ QUATERNION_TOLERANCE = 1e-3
 
 @dataclass(frozen=True)
 class _ImageRecord:
-    """One line of `images`: the pose as it stands."""
+    """One line of `images`, not yet checked.
+
+    Attributes:
+        quaternion: w, x, y, z, world to camera.
+        translation: World to camera.
+        camera: Its number in `cameras`.
+        name: Of the photograph.
+    """
 
     quaternion: tuple[float, ...]
     translation: tuple[float, ...]
@@ -56,7 +63,7 @@ def is_model(folder: Path) -> bool:
 
 
 def find_colmap(folder: Path) -> Path | None:
-    """The model in a folder, where COLMAP and those who follow it put it."""
+    """The model in a folder, where COLMAP and tools with its layout write it."""
     return next((folder / inner for inner in COLMAP_FOLDERS if is_model(folder / inner)), None)
 
 
@@ -166,6 +173,7 @@ class _Bytes:
         self.data, self.path, self.at = data, path, 0
 
     def need(self, size: int) -> None:
+        """Raise CaptureError `colmap-truncated` where fewer bytes are left."""
         if size > len(self.data) - self.at:
             raise CaptureError(
                 "colmap-truncated",
@@ -175,6 +183,7 @@ class _Bytes:
             )
 
     def take(self, layout: str) -> tuple[int | float, ...]:
+        """The next numbers, in a layout of `struct`."""
         size = struct.calcsize(layout)
         self.need(size)
         values = struct.unpack(layout, self.data[self.at : self.at + size])
@@ -182,6 +191,7 @@ class _Bytes:
         return values
 
     def name(self) -> str:
+        """The next text, which ends with a NUL."""
         end = self.data.find(b"\0", self.at, self.at + COLMAP_MAX_NAME_BYTES)
         if end < 0:
             self.need(COLMAP_MAX_NAME_BYTES)
@@ -193,12 +203,13 @@ class _Bytes:
         return raw.decode("utf-8", "surrogateescape")
 
     def count(self, smallest: int) -> int:
-        """A count of records of at least `smallest` bytes each: they must fit into what is left."""
+        """A count of records of at least `smallest` bytes each, which must fit into the remaining bytes."""
         count = int(self.take("<Q")[0])
         self.need(count * smallest)
         return count
 
     def end(self) -> None:
+        """Raise CaptureError `colmap-damaged` where bytes are left."""
         if self.at != len(self.data):
             raise CaptureError(
                 "colmap-damaged",
@@ -283,7 +294,7 @@ def _read_cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
 
 
 def _read_images_text(path: Path) -> Iterator[_ImageRecord]:
-    """Two lines an image; the second, its points, may be empty and is only checked to be what it should."""
+    """Two lines an image; of the second, its points, which may be empty, only the number of words is checked."""
     lines = _read_lines(path)
     for number, line in lines:
         if not line or line.startswith("#"):

@@ -137,7 +137,7 @@ def _make_entry(path: Path, layout: GridLayout, index: int, parameters: HciParam
 def _find_parameters(
     inner: Path, folder: Path, last: int, grid: tuple[int, int] | None
 ) -> tuple[HciParameters | None, list[str]]:
-    """The cfg beside the photographs or in the folder above, if it can be used; else a line that says why not."""
+    """The cfg beside the photographs or in the folder above, if it can be used; else a line with the reason."""
     path = next((p for p in (inner / HCI_PARAMETERS_FILE, folder / HCI_PARAMETERS_FILE) if p.is_file()), None)
     if path is None:
         return None, [f"no {HCI_PARAMETERS_FILE}: the grid is known, but neither focal length nor distance"]

@@ -43,7 +43,13 @@ METASHAPE_ROTATION_TOLERANCE = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """x_world = scale rotation x_chunk + shift."""
+    """A similarity transform: x_world = scale rotation x_chunk + shift.
+
+    Attributes:
+        rotation: (3, 3).
+        shift: (3,) world units.
+        scale: World units in one unit of the chunk.
+    """
 
     rotation: NDArray[np.float64]
     shift: NDArray[np.float64]

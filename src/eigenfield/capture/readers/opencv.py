@@ -237,7 +237,7 @@ def _walk_mappings(node: Any, name: str, depth: int = 0) -> Iterator[tuple[str, 
 
 
 def _match_role(key: str, value: Any) -> tuple[str | None, str]:
-    """What a name means and the camera that its ending stands for; None where name or value do not fit."""
+    """The role of a name, and the camera that its ending names; None where name or value do not fit."""
     low = key.lower()
     for word, role in OPENCV_WORDS:
         ending = key[len(word) :]

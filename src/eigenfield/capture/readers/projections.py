@@ -3,8 +3,8 @@
 Files `NAME_P.txt` or `NAME.P` beside the photographs or in a folder, or `NAME.txt` in a folder named for it (PMVS's
 `txt/`, with its first line CONTOUR and photographs in `visualize/`). P is taken apart by RQ decomposition with
 positive focal lengths and a right-handed rotation, which makes it unique: of P and -P, the one whose left 3 x 3 has
-a positive determinant. What is left of skew goes the way of a lens. Nothing says where a pixel's centre is: P is taken
-as it stands. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
+a positive determinant. Remaining skew is removed as a lens. The format does not specify the centre of a pixel: P is used
+as it is. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
 """
 
 from __future__ import annotations

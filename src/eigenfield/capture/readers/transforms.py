@@ -244,7 +244,7 @@ def _read_lens(top: Mapping[str, Any], frame: Mapping[str, Any], label: str, pat
 
 
 def _read_own_lens(value: Any, label: str, path: Path) -> Lens:
-    """A lens as `transforms_write` puts it."""
+    """A lens as `writers.transforms` writes it."""
     model = value.get("model") if isinstance(value, dict) else None
     numbers = value.get("coefficients") if isinstance(value, dict) else None
     if model not in TRANSFORMS_OWN_COEFFICIENTS or not isinstance(numbers, list) or not all(map(_is_number, numbers)):

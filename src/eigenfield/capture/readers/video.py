@@ -66,7 +66,7 @@ def find_videos(folder: Path) -> Path | None:
 
 
 def parse_frame(frame: int | str | None) -> int | float:
-    """An index (int) or a time in seconds (float) from what a person says; OptionError `frame-unknown`."""
+    """An index (int) or a time in seconds (float) from the option's text; OptionError `frame-unknown`."""
     if frame is None:
         return 0
     word = str(frame).strip()
@@ -81,7 +81,7 @@ def parse_frame(frame: int | str | None) -> int | float:
 
 
 def read_videos(folder: Path, options: OpenOptions) -> Arrangement:
-    """One frame of each video as PNG, in `options.work` (taken up again if it is there) or in a temporary folder.
+    """One frame of each video as PNG, in `options.work` (reused if it is there) or in a temporary folder.
 
     Raises CaptureError: `names-unknown`, `video-unreadable`, `video-short`; OptionError `frame-unknown`.
     """

@@ -119,7 +119,7 @@ def _pack_ply(points: SparsePoints) -> bytes:
 
 @contextlib.contextmanager
 def _temporary_folder(place: Path) -> Iterator[Path]:
-    """A folder beside `place`, on the same disk, gone after the block."""
+    """A folder beside `place`, on the same disk, deleted after the block."""
     parent = place.absolute().parent
     parent.mkdir(parents=True, exist_ok=True)
     part = Path(tempfile.mkdtemp(prefix=f".{place.name}-", suffix=".part", dir=parent))
