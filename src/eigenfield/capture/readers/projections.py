@@ -3,7 +3,7 @@
 Files `NAME_P.txt` or `NAME.P` beside the photographs or in a folder, or `NAME.txt` in a folder named for it (PMVS's
 `txt/`, with its first line CONTOUR and photographs in `visualize/`). P is taken apart by RQ decomposition with
 positive focal lengths and a right-handed rotation, which makes it unique: of P and -P, the one whose left 3 x 3 has
-a positive determinant. Remaining skew is removed as a lens. The format does not specify the centre of a pixel: P is used
+a positive determinant. Remaining skew is removed as a lens. The format does not specify a pixel's centre: P is used
 as it is. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
 """
 
