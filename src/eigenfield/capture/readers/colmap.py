@@ -35,7 +35,7 @@ COLMAP_UNREAD_MODELS = {
 COLMAP_MODEL_NAMES = {number: name for name, (number, _) in COLMAP_MODELS.items()}
 COLMAP_MAX_NAME_BYTES = 4096  # of an image's name
 COLMAP_POINT_BYTES = 24  # of a 2D point: x, y, point id
-QUATERNION_TOLERANCE = 1e-3
+COLMAP_QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | 
             path=path,
             remedy="mend or remove its entry",
         )
-    if abs(length - 1) > QUATERNION_TOLERANCE:
+    if abs(length - 1) > COLMAP_QUATERNION_TOLERANCE:
         raise CaptureError(
             "camera-not-rotation",
             f"camera {label}: its quaternion has a length of {length:.4g}",
