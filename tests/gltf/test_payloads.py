@@ -239,4 +239,4 @@ def test_what_is_derived_is_kept_as_long_as_the_object(scene):
     assert renderer_of(scene) is renderer
     for other in (copy.copy(scene), copy.deepcopy(scene), pickle.loads(pickle.dumps(scene)), replace(scene)):
         assert renderer_of(other) is not renderer
-        np.testing.assert_array_equal(view_weights(other, (0.2, 0.1)), view_weights(scene, (0.2, 0.1)))
+        np.testing.assert_array_equal(view_weights(other, (0.2, 0.1)).values, view_weights(scene, (0.2, 0.1)).values)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures import quantise
 from eigenfield.coding.pictures.pictures_8bit import encode_preview
-from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked
+from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress, track
@@ -74,7 +74,9 @@ def code_pictures(
     fine = round(100 - MEAN_SHARE * (100 - quality))
     planned = []
     for p, plane in enumerate(scene.appearance.planes):
-        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.appearance.to_rgb is not None
+        one_unit = (
+            _is_harmonised(scene, plane) or quantise.is_photographic(plane.mean) or scene.appearance.to_rgb is not None
+        )
         parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
         ways = [partial(_mean, scene, plane, codec or DEFAULT_CODEC, fine)]
         ways += [partial(_textures, basis, codec or DEFAULT_CODEC, quality, one_unit) for basis in plane.bases]
@@ -97,7 +99,7 @@ def code_pictures(
 
 
 def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:
-    codes, affine = quantise.mean_codes(plane.mean, _harmonised(scene, plane))
+    codes, affine = quantise.mean_codes(plane.mean, _is_harmonised(scene, plane))
     return [partial(_code, codes, codec, quality, affine)]
 
 
@@ -110,7 +112,7 @@ def _itself(picture: PicturePayload) -> PicturePayload:
     return picture
 
 
-def _harmonised(scene: Scene, plane: Plane) -> bool:
+def _is_harmonised(scene: Scene, plane: Plane) -> bool:
     """Whether a plane holds colours brought together by gains, which may lie beyond 0..1 and yet are photographs'."""
     return scene.appearance.colours is not None and plane is scene.appearance.planes[0]
 
@@ -135,13 +137,13 @@ def _preview(scene: Scene, coded: int) -> bytes:
     if scene.appearance.colours is not None:
         mean = mean.clip(0, 1)
     shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
-    if not quantise.photographic(mean) and not quantise.unit_range(shown):
+    if not quantise.is_photographic(mean) and not quantise.is_unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
     if scene.appearance.to_rgb is None:
-        return encode_preview(stacked(codes))
-    return affordable((encode_preview(stacked(codes), *small) for small in SMALL_PREVIEWS), len, coded)
+        return encode_preview(stacked_picture(codes))
+    return affordable((encode_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded)
 
 
 def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

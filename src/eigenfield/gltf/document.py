@@ -151,5 +151,5 @@ class Document:
 
 
 def all_finite(array: NDArray[Any]) -> bool:
-    """Whether every number is finite and at most `limits.LARGEST`."""
-    return bool((np.abs(array) <= limits.LARGEST).all())  # False for NaN
+    """Whether every number is finite and at most `limits.MAX_NUMBER`."""
+    return bool((np.abs(array) <= limits.MAX_NUMBER).all())  # False for NaN

@@ -166,17 +166,19 @@ def _check_calibration(
     def refuse(key: str, bad: NDArray[np.bool_], what: str) -> None:
         _refuse(entry, names, key, bad, what)
 
-    inside = np.abs(intrinsics) <= limits.LARGEST
+    inside = np.abs(intrinsics) <= limits.MAX_NUMBER
     refuse(
         "intrinsics",
         ~inside.all(axis=1) | (intrinsics[:, :2] <= 1e-6).any(axis=1),
         "has no valid focal length or centre",
     )
-    refuse("poses", ~(np.abs(poses) <= limits.LARGEST).all(axis=(1, 2)), "has a pose that is not finite")
+    refuse("poses", ~(np.abs(poses) <= limits.MAX_NUMBER).all(axis=(1, 2)), "has a pose that is not finite")
     rotations = poses[:, :, :3].astype(np.float64)
     refuse("poses", np.abs(rotations).max(axis=(1, 2)) > 2, "has a pose that is no rotation")
     off = np.abs(rotations @ rotations.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))
-    refuse("poses", (off > limits.ORTHONORMAL) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation")
+    refuse(
+        "poses", (off > limits.ORTHONORMAL_TOLERANCE) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation"
+    )
     area = sizes[:, 0] * sizes[:, 1]
     bad = (sizes < 1).any(axis=1) | (sizes > limits.MAX_CAMERA_SIDE).any(axis=1) | (area > limits.MAX_CAMERA_PIXELS)
     refuse("sizes", bad, "has an impossible size")
@@ -185,11 +187,11 @@ def _check_calibration(
 def read_view_plane(entry: Value) -> ViewPlane:
     """FormatError: `view-plane`."""
     origin, right, up = (
-        np.array([n.number(limits.LARGEST) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
+        np.array([n.number(limits.MAX_NUMBER) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
     )
-    extent = np.array([n.number(limits.LARGEST) for n in entry["extent"].items(2, 2)])
+    extent = np.array([n.number(limits.MAX_NUMBER) for n in entry["extent"].items(2, 2)])
     gram = np.array([right @ right, up @ up, right @ up])
-    if not np.abs(gram - (1, 1, 0)).max() <= limits.ORTHONORMAL:
+    if not np.abs(gram - (1, 1, 0)).max() <= limits.ORTHONORMAL_TOLERANCE:
         entry.fail("view-plane", "right and up are not of length 1 and at right angles")
     if extent.min() < 0:
         entry["extent"].fail("view-plane", "a negative extent")

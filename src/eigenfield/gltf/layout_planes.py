@@ -264,7 +264,7 @@ def _precision(document: Document, entry: Value, mean: PictureLayout) -> Picture
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
     """(channels * count,): C numbers for each texture, or C that stand for all."""
-    given = [item.number(limits.LARGEST) for item in entry.items(channels * count, channels)]
+    given = [item.number(limits.MAX_NUMBER) for item in entry.items(channels * count, channels)]
     if len(given) not in (channels, channels * count):
         entry.fail("json-value", f"{len(given)} numbers, {channels} or {channels * count} expected")
     return np.tile(np.array(given), 1 if len(given) == channels * count else count)
