@@ -34,7 +34,7 @@ def array(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def with_cameras(tmp_path_factory):
+def calibrated(tmp_path_factory):
     """Nine photographs with cameras and a proxy."""
     return write_capture(tmp_path_factory.mktemp("calibrated") / "nine")
 
