@@ -1,4 +1,4 @@
-"""The residual of a scene file: what captured views have beyond what is drawn of them."""
+"""The residual of a scene file: photographs of captured views minus what is drawn of them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,8 @@ def read_residual(
 ) -> Residual | None:
     """The residual, its video not decoded; None where there is none, or where the file is cut off in it.
 
-    FormatError: `residual-*`, `codec-unknown`, `view-*`, `accessor-*`, `json-*`.
+    Raises:
+        FormatError: `residual-*`, `codec-unknown`, `view-*`, `accessor-*`, `json-*`.
     """
     if not extension.has("residual"):
         return None
@@ -56,7 +57,11 @@ def read_residual(
 
 
 def residual_frames(residual: Residual) -> Iterator[Planes]:
-    """The frames of a residual, in its order. FormatError `residual-damaged`."""
+    """The frames of a residual, in its order.
+
+    Raises:
+        FormatError: `residual-damaged`.
+    """
     where = f"/extensions/{limits.EXTENSION}/residual"
     frames: Iterator[Planes] = CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where)
     return frames
