@@ -234,7 +234,7 @@ def test_a_world_far_from_its_origin_is_said(caplog):
     cameras = [Camera(c.K, c.R, c.t - c.R @ far, c.width, c.height) for c in row_grid(4)]
     mesh = ef.Mesh((np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]) + far).astype(np.float32), np.array([[0, 1, 2]]))
     with caplog.at_level(logging.WARNING):
-        _warn_of_rounding(cameras, [camera.rounded() for camera in cameras], mesh)
+        _warn_of_rounding(cameras, [camera.to_float32() for camera in cameras], mesh)
     assert "origin" in caplog.text
 
 

@@ -94,7 +94,7 @@ def test_composition_is_equation_8(stored, channels):
         )
     weights = view_weights(scene, (0.2, -0.4))
     for count in (None, 0, 3):
-        part = basis.truncated(basis.count if count is None else count)
+        part = basis.truncate(basis.count if count is None else count)
         expected = reference.texture(
             scene.appearance.planes[0].mean.astype(float), part.values(), weights.blend(part.weights)
         )
@@ -201,7 +201,7 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
     whole = Renderer(scene).draw(scene.rig.cameras[1], ViewWeights.one(1)).image
     rest = Basis(basis.textures[2:], basis.scale[2:], basis.zero[2:], basis.weights[:, 2:])
     halves = replace(
-        scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
+        scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncate(2), rest)),))
     )
     np.testing.assert_allclose(Renderer(halves).draw(scene.rig.cameras[1], ViewWeights.one(1)).image, whole, atol=1e-6)
 

@@ -29,7 +29,7 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     reference = scene.rig.cameras[scene.rig.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
     for index, weight in zip(cameras, weights, strict=True):
-        camera = scene.rig.cameras[index].resized(reference.width, reference.height)
+        camera = scene.rig.cameras[index].resize(reference.width, reference.height)
         K += weight * camera.K
         R += weight * camera.R
     rotation = nearest_rotation(R)

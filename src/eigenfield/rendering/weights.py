@@ -194,7 +194,7 @@ def _coordinates(scene: Scene) -> NDArray[np.float64]:
             np.array([scene.rig.cameras[index].centre for index in scene.rig.encoded])
         )
 
-    return scene.derived("view-plane coordinates", make)
+    return scene.derive("view-plane coordinates", make)
 
 
 def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -131,7 +131,7 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
 def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:
     """The textures of the first `count` pictures."""
     pictures = coded.pictures[:count]
-    return CodedBasis(coded.basis.truncated(sum(picture.count for picture in pictures)), pictures)
+    return CodedBasis(coded.basis.truncate(sum(picture.count for picture in pictures)), pictures)
 
 
 def with_weights(coded: CodedBasis, weights: NDArray[np.float32], payload: Payload) -> CodedBasis:
@@ -156,7 +156,7 @@ def coded_plane(
         precision: As `code_mean`.
     """
     values, picture = code_mean(mean, step, coder, precision)
-    payloads = Payloads.joined(coded.payloads for coded in bases) | {mean_key(values): [picture]}
+    payloads = Payloads.merge(coded.payloads for coded in bases) | {mean_key(values): [picture]}
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
 
 

@@ -18,13 +18,13 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.graph import face_edges
 from eigenfield.imaging.raster import (
-    BAND,
-    BOUND_SLACK,
-    EDGE_SLACK,
-    SET_UP,
+    RASTER_BAND_ROWS,
+    RASTER_BOUND_SLACK_PIXELS,
+    RASTER_EDGE_SLACK_FRACTION,
+    RASTER_SET_UP_TRIANGLES,
     bound_faces,
     edge_functions,
-    find_pixels,
+    project_corners,
     sort_into_bands,
 )
 from eigenfield.rendering.software.edge_kernels import (
@@ -222,22 +222,22 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
         frame: Of the camera's size and this sampling, written.
     """
     k, offsets = sampling.side, sampling.offsets
-    matrix = (camera.resized(camera.width * k, camera.height * k) if k > 1 else camera).matrix
+    matrix = (camera.resize(camera.width * k, camera.height * k) if k > 1 else camera).matrix
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
     height, width = camera.height * k, camera.width * k
-    slack = BOUND_SLACK + float(np.abs(offsets).max())
+    slack = RASTER_BOUND_SLACK_PIXELS + float(np.abs(offsets).max())
     frame.seen[:] = 0
-    find_pixels(corners, frame.pixels)
+    project_corners(corners, frame.pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, surface.faces, *part, frame.edges)
         bound_faces(corners, frame.pixels, surface.faces, frame.edges, width, height, slack, *part, frame.bounds)
 
-    parallel_map(set_up, pieces(len(surface.faces), SET_UP))
-    bands = pieces(height, BAND)
+    parallel_map(set_up, pieces(len(surface.faces), RASTER_SET_UP_TRIANGLES))
+    bands = pieces(height, RASTER_BAND_ROWS)
     starts = np.empty(len(bands) + 1, np.int64)
-    listing = sort_into_bands(frame.bounds, BAND, starts)
+    listing = sort_into_bands(frame.bounds, RASTER_BAND_ROWS, starts)
     middles = frame.inverse_depth, frame.column_of, frame.row_of
 
     def triangles_of(band: int) -> tuple[NDArray[Any], ...]:
@@ -245,7 +245,7 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
         return surface.faces, surface.texels, frame.edges, frame.bounds, some
 
     def draw(band: int) -> None:
-        draw_texels(*triangles_of(band), *bands[band], EDGE_SLACK, *middles, frame.seen)
+        draw_texels(*triangles_of(band), *bands[band], RASTER_EDGE_SLACK_FRACTION, *middles, frame.seen)
 
     def smooth(band: int) -> None:
         try:
@@ -307,7 +307,7 @@ def shade(
             layers, width, height, filter == "bicubic", frame.sampling.side, behind, picture.dtype == np.uint8, *rows,
             picture, coverage,
         ),
-        pieces(picture.shape[0], BAND),
+        pieces(picture.shape[0], RASTER_BAND_ROWS),
     )  # fmt: skip
 
 

@@ -87,8 +87,8 @@ def mark_rims(edges, bounds, listing, rims, near, first, last, slack, offsets, m
         )  # 1 / depth is linear; the most of it within a pixel, and its rounding
         one = (e[0, 2] + e[1, 2] + e[2, 2]) * NEARER_RATIO + (x + y + abs(x) + abs(y)) / 2
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
-            left, right = run_of(a, b, c, row + 0.5, *columns)
-            inner = run_of(a_in, b_in, c_in, row + 0.5, *columns)
+            left, right = row_span(a, b, c, row + 0.5, *columns)
+            inner = row_span(a_in, b_in, c_in, row + 0.5, *columns)
             start, mark = y * row + one, marks[row - first]
             if inner[0] < inner[1]:
                 mark_near(near[row], start, x, left, inner[0], mark)

@@ -40,7 +40,7 @@ def draw_texels(
     inverse_depth[first:last] = 0
     for f in listing:
         e = edges[f]
-        a, b, c, q = run_ends(e, slack)
+        a, b, c, q = edge_spans(e, slack)
         u0, u1, u2 = texels[faces[f, 0], 0], texels[faces[f, 1], 0], texels[faces[f, 2], 0]
         v0, v1, v2 = texels[faces[f, 0], 1], texels[faces[f, 1], 1], texels[faces[f, 2], 1]
         ux, vx = u0 * e[0, 0] + u1 * e[1, 0] + u2 * e[2, 0], v0 * e[0, 0] + v1 * e[1, 0] + v2 * e[2, 0]
@@ -50,7 +50,7 @@ def draw_texels(
         drawn = False
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             y = row + 0.5
-            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            left, right = row_span(a, b, c, y, bounds[f, 2], bounds[f, 3])
             x = left + 0.5
             q_start = np.float32(q[0] * x + (q[1] * y + q[2]))
             u_start, v_start = np.float32(ux * x + (uy * y + uc)), np.float32(vx * x + (vy * y + vc))

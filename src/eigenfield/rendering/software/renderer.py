@@ -378,4 +378,4 @@ def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
     width, height = resolution
     if not (1 <= width <= 16384 and 1 <= height <= 16384):
         raise OptionError("resolution", f"a picture of {width}x{height}", remedy="give 1x1 to 16384x16384")
-    return camera.resized(width, height)
+    return camera.resize(width, height)

@@ -13,7 +13,7 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
-from eigenfield.runtime.files import flush_folder, mended
+from eigenfield.runtime.files import flush_folder, output_errors
 
 LISTING_FILE = "eigenfield.json"
 LISTING_MAX_BYTES = 16 * 2**20  # larger ones are not read back
@@ -36,7 +36,7 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
     if not os.access(folder if folder.is_dir() else parent, os.W_OK):
         raise OutputError("not-writable", "cannot be written to", path=folder, remedy="name another place")
-    with mended(folder):
+    with output_errors(folder):
         if not folder.is_dir() or not any(folder.iterdir()):
             return
         if not overwrite:
@@ -67,7 +67,7 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
         OutputError: As `refuse_folder`; the folder cannot be written.
     """
     refuse_folder(folder, overwrite)
-    with mended(folder):
+    with output_errors(folder):
         there = folder.is_dir()
         beside = folder if there else folder.absolute().parent
         part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=beside))

@@ -97,7 +97,7 @@ def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDAr
         OptionError: `not-a-picture`.
     """
     count = scene.appearance.textures if textures is None else textures
-    kept = [[basis.truncated(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
+    kept = [[basis.truncate(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
     total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
     for plane, bases in zip(scene.appearance.planes, kept, strict=True):
         alone = []

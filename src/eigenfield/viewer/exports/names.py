@@ -6,7 +6,7 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from eigenfield.capture.photographs.read import EXTENSIONS
+from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
 
 NAME_MAX_BYTES = 120  # of a folder's or file's name, without its ending
 PATH_MAX_PARTS = 6  # folders and file of a path
@@ -47,7 +47,7 @@ def file_name(name: str, otherwise: str) -> str:
 
 def _parts(name: str) -> list[str]:
     stem = name
-    for extension in EXTENSIONS:
+    for extension in PHOTOGRAPH_EXTENSIONS:
         if name.lower().endswith(extension):
             stem = name[: -len(extension)]
             break
