@@ -26,7 +26,7 @@ def scene_html(scene: Scene) -> str:
         scene: The scene.
     """
     try:
-        glb = scene.derived("glb", lambda: encode_scene(replace(scene, residual=None)))
+        glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
         if len(glb) > NOTEBOOK_MAX_BYTES:
             return _line(
                 f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"

@@ -134,7 +134,7 @@ class Scratch:
     """Memory in which a thread finds a band's edge pixels.
 
     Attributes:
-        coordinates: (2, BAND + 2, W) scratch of `find_edge_pixels`.
+        coordinates: (2, RASTER_BAND_ROWS + 2, W) scratch of `find_edge_pixels`.
         marks: Of `mark_rims`.
         places: Of `find_edge_pixels`.
         starts: Of `find_edge_pixels`.
@@ -149,12 +149,12 @@ class Scratch:
             width: W, of the picture.
         """
         blocks = -(-width // BLOCK_PX)
-        self.coordinates = np.empty((2, BAND + 2, width), np.float32)
-        self.marks = np.empty((BAND, blocks * BLOCK_PX), np.bool_)
-        self.places = np.empty(BAND * width, np.int32)
-        self.starts = np.empty((BAND, blocks + 1), np.int64)
-        self.sums = np.empty((BAND + 1, blocks + 1), np.int64)
-        self.samples = np.empty((BAND * width, 3, 4), np.float32)
+        self.coordinates = np.empty((2, RASTER_BAND_ROWS + 2, width), np.float32)
+        self.marks = np.empty((RASTER_BAND_ROWS, blocks * BLOCK_PX), np.bool_)
+        self.places = np.empty(RASTER_BAND_ROWS * width, np.int32)
+        self.starts = np.empty((RASTER_BAND_ROWS, blocks + 1), np.int64)
+        self.sums = np.empty((RASTER_BAND_ROWS + 1, blocks + 1), np.int64)
+        self.samples = np.empty((RASTER_BAND_ROWS * width, 3, 4), np.float32)
 
 
 class Framebuffer:
@@ -253,12 +253,12 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
         except IndexError:  # this thread is the first, or another was faster
             room = Scratch(width)
         triangles, rows, limit = triangles_of(band), bands[band], np.float32(sampling.limit)
-        mark_rims(*triangles[2:], surface.rims, middles[0], *rows, EDGE_SLACK, offsets, room.marks)
+        mark_rims(*triangles[2:], surface.rims, middles[0], *rows, RASTER_EDGE_SLACK_FRACTION, offsets, room.marks)
         listed = room.places, room.starts, room.sums
         find_edge_pixels(
             *middles, *rows, limit * np.float32(EDGE_CANDIDATE_RATIO), *room.coordinates, room.marks, *listed
         )
-        draw_samples(*triangles, *rows, EDGE_SLACK, offsets, *listed, room.samples, frame.seen)
+        draw_samples(*triangles, *rows, RASTER_EDGE_SLACK_FRACTION, offsets, *listed, room.samples, frame.seen)
         keep_multisampled(
             *middles,
             room.places,

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.raster import run_ends, run_of
+from eigenfield.imaging.raster import edge_spans, row_span
 from eigenfield.rendering.software.simd import EDGE_SAMPLES, draw_four
 from eigenfield.runtime.jit import kernel
 
@@ -79,8 +79,8 @@ def mark_rims(edges, bounds, listing, rims, near, first, last, slack, offsets, m
                 wide[i, k] = narrow[i, k] = e[i, k]
             wide[i, 2] += more
             narrow[i, 2] -= more
-        a, b, c, _ = run_ends(wide, slack)
-        a_in, b_in, c_in, q = run_ends(narrow, slack)
+        a, b, c, _ = edge_spans(wide, slack)
+        a_in, b_in, c_in, q = edge_spans(narrow, slack)
         x, y = (
             q[0] * NEARER_RATIO,
             q[1] * NEARER_RATIO,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.raster import run_ends, run_of
+from eigenfield.imaging.raster import edge_spans, row_span
 from eigenfield.rendering.software.simd import LANE_PX, blend_texels, draw_lanes, fetch_early
 from eigenfield.runtime.jit import kernel
 

@@ -256,7 +256,7 @@ def renderer_of(scene: Scene) -> Renderer:
     Args:
         scene: The scene.
     """
-    return scene.derived("software renderer", lambda: Renderer(scene))
+    return scene.derive("software renderer", lambda: Renderer(scene))
 
 
 def render(
