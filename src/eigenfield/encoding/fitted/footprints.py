@@ -71,18 +71,18 @@ def open_footprints(
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])
 
-    def cover_camera(camera: int) -> tuple[Frame, NDArray[np.uint8]]:
+    def covered(camera: int) -> tuple[Frame, NDArray[np.uint8]]:
         sampling = smooth_edges(detail)
         frame = Frame(surface, *shapes[camera], sampling)
         cover(surface, cameras[camera], sampling, frame)
         return frame, counts[pixels[camera] : pixels[camera + 1]].reshape(shapes[camera])
 
     def count(camera: int) -> int:
-        frame, part = cover_camera(camera)
+        frame, part = covered(camera)
         return int(footprint_counts(frame.inverse_depth, frame.spans, frame.parted, frame.finer, part))
 
     def put(camera: int) -> None:
-        frame, part = cover_camera(camera)
+        frame, part = covered(camera)
         into = coordinates[offsets[camera] : offsets[camera + 1]]
         footprint_coordinates(
             frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.parted, frame.finer, *surface.size,
