@@ -267,11 +267,11 @@ def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
      ("photographs", {"photographs", "fit luma", "fit chroma", "code luma", "code chroma"})],
 )  # fmt: skip
 def test_progress_is_told_from_start_to_end(folder, capture, fit, stages):
-    told = {}
+    reported = {}
     ef.encode(
         capture, proxy=folder / "proxy.ply", atlas=64, textures=2, fit=fit,
-        progress=lambda stage, done, total: told.setdefault(stage, []).append((done, total)),
+        progress=lambda stage, done, total: reported.setdefault(stage, []).append((done, total)),
     )  # fmt: skip
-    assert stages <= set(told)
-    for steps in told.values():
+    assert stages <= set(reported)
+    for steps in reported.values():
         assert steps[0][0] == 0 and steps[-1][0] == steps[-1][1]

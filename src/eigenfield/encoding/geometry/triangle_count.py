@@ -145,7 +145,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     view = views[number]
     step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / TRIANGLE_VIEW_SAMPLES)))
     row, column = step * np.array(np.nonzero(view.inverse_depth[::step, ::step] > 0))
-    world = _unprojected(view.camera, row, column, view.inverse_depth[row, column])
+    world = _unproject(view.camera, row, column, view.inverse_depth[row, column])
     beside = []
     for other in views:
         if other is not view and other.time == view.time:
@@ -161,7 +161,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     return _Points((row, column), world, each, beside)
 
 
-def _unprojected(
+def _unproject(
     camera: Camera, row: NDArray[np.int64], column: NDArray[np.int64], inverse_depth: NDArray[np.float32]
 ) -> NDArray[np.float64]:
     """(n, 3) the points in the middles of pixels."""
@@ -178,7 +178,7 @@ def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> flo
         black = (drawn <= 0) & (view.inverse_depth > 0)
         holes = float(np.square(view.grey[black], dtype=np.float64).sum())
         here = drawn[points.pixel]
-        moved = _unprojected(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
+        moved = _unproject(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
         error = np.zeros(len(moved))
         for other, there, at, gradient in points.beside:
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)
