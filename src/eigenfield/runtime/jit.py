@@ -23,8 +23,8 @@ _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
 
 @cache
 def _cache_folder() -> str:
-    """A folder for this state of all kernels and of what they import: numba sees a change of a kernel's own file, but
-    none of a kernel or a constant from another. A change elsewhere compiles nothing anew."""
+    """A folder for this state of all kernels and of their imports. Numba notices a change of a kernel's own file, but
+    not of a kernel or a constant from another one. A change elsewhere recompiles nothing."""
     root = Path(__file__).parents[1]
     texts = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
     waiting = [path for path, text in texts.items() if "from eigenfield.runtime.jit import" in text]
@@ -41,8 +41,8 @@ def _cache_folder() -> str:
 
 
 def _widen_literals(compiled: Any) -> None:
-    """Let kernels that pass constants share one compilation: numba compiles a kernel anew for each constant with which
-    another kernel calls it. LLVM still folds the constants of what it inlines."""
+    """Let kernels that pass constants share one compilation: otherwise numba compiles a kernel for each constant with
+    which another kernel calls it. LLVM still folds the constants of inlined kernels."""
     resolve, widen = compiled.get_call_template, numba.types.unliteral
     compiled.get_call_template = lambda args, kws: resolve(
         tuple(widen(kind) for kind in args), {name: widen(kind) for name, kind in kws.items()}
@@ -52,8 +52,9 @@ def _widen_literals(compiled: Any) -> None:
 def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
     """Decorator: compile with numba (nopython, nogil), keep the machine code between processes.
 
-    fastmath: allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
-    inline: for small functions that other kernels call in their inner loops.
+    Args:
+        fastmath: Allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
+        inline: For small functions that other kernels call in their inner loops.
     """
 
     def decorate(function: Kernel) -> Kernel:
