@@ -237,10 +237,9 @@ class Fit:
     def _fitted(self, ready: EncodePlan, data: FitData, options: Mapping[str, Any]) -> Iterator[FittedEncoder]:
         """A plan's fit with other options, on footprints that are there."""
         ready = replace(ready, options=replace(ready.options, **options))
-        with (
-            patch.object(encoder, "open_fit_data", lambda *_: nullcontext(data)),
-            open_encoder(ready, self.work, warn=False) as made,
-        ):
+        with ExitStack() as opened:
+            with patch.object(encoder, "open_fit_data", lambda *_: nullcontext(data)):
+                made = opened.enter_context(open_encoder(ready, self.work, warn=False))
             yield made
 
 
