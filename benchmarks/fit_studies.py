@@ -1,20 +1,26 @@
-"""What each part of a fit is worth, and what its bytes buy between the cameras.
+"""What each part of the fit is worth: it is taken away, and the file that is left is compared with the whole fit's.
 
-    EIGENFIELD_DATA=captures python benchmarks/fit_studies.py [CAPTURE] [--levers planes,...] [--out studies] [--store]
+    EIGENFIELD_DATA=captures python benchmarks/fit_studies.py [CAPTURE ...] [--parts regions,...] [--store]
+    EIGENFIELD_DATA=captures python benchmarks/fit_studies.py CAPTURE --held-out [--store]
 
-Levers: every second row and column of a dense capture, fitted and coded with one lever off at a time, everything else
-as it is; bytes at equal quality against all levers on (Bjøntegaard), and what is reached without coding. Held out: the
-capture's hold-out rule, one fit, quality against bytes in captured views and in those left out. What is done stays in
-OUT, and a run that was stopped goes on there while the code is the same.
+Five captures unless some are named: every second row and column of dense arrays, all views of sparse ones. The whole
+fit is coded at three qualities, which make a curve; without a part it is coded once, at the default's quality, and both
+differences are read off that curve: bytes at equal quality, and quality at equal bytes. Parts that only code share one
+fit, and parts that only fit share one mesh, so that all of it takes about an hour on two cores.
+
+`--held-out`: the capture's hold-out rule, one fit, quality against bytes in captured views and in those left out.
+
+What is done stays in OUT, and a run that was stopped goes on there while the code is the same.
 """
 
 from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -25,11 +31,13 @@ from numpy.typing import NDArray
 import eigenfield as ef
 import measure
 from eigenfield import LightField
+from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding import EncodeOptions, plan
 from eigenfield.encoding import options as encode_options
-from eigenfield.encoding.fitted import fit, planes, rate
-from eigenfield.encoding.fitted.encoder import open_fitted
-from eigenfield.encoding.geometry.coded import coded_mesh
+from eigenfield.encoding.fitted import encoder, fit, planes, rate
+from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder, open_fitted
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data
+from eigenfield.encoding.plan import EncodePlan
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering import Renderer, camera_weights
@@ -39,191 +47,294 @@ from evidence import captures, ours, prepared, rates
 from evidence.prepared import Prepared
 from evidence.runner import kept
 
-QUALITIES = (80, 88, 94)
-NO_OPTIONS = EncodeOptions()
+CAPTURES = ("tarot", "boxes", "shop", "cube", "tarot-5x4")
+QUALITY = encode_options.PRESETS["balanced"].quality
+QUALITIES = (80, QUALITY, 94)
 KEYS = ("psnr", "psnr_luma", "ssim")
+Change = Callable[[], AbstractContextManager[Any]]
 
 
 @dataclass(frozen=True)
-class Lever:
-    """A part of the fit that is taken away. change: what makes the fit without it; coding: what codes without it."""
+class Part:
+    """A part of the fit that is taken away.
+
+    Attributes:
+        words: What the fit is without it.
+        change: Takes it away.
+        options: Likewise, by options of `encode`.
+        few: Whether it is about captures of few cameras alone.
+    """
 
     words: str
-    change: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
-    coding: Callable[[], contextlib.AbstractContextManager[Any]] = contextlib.nullcontext
-    options: EncodeOptions = NO_OPTIONS
-    filter: str = "bicubic"
+    change: Change = nullcontext
+    options: Mapping[str, Any] | None = None
+    few: bool = False
 
 
-def _plane_presets(
-    change: Callable[[planes.PlanePreset], planes.PlanePreset],
-) -> contextlib.AbstractContextManager[Any]:
-    return patch.dict(planes.PLANE_PRESETS, {"luma-chroma": tuple(map(change, planes.PLANE_PRESETS["luma-chroma"]))})
+def _replaced(module: Any, name: str, value: Any) -> Change:
+    return lambda: patch.object(module, name, value)
 
 
-def _open_loop() -> contextlib.AbstractContextManager[Any]:
-    """Weights and mean as they were before the textures were coded."""
-    stack = contextlib.ExitStack()
-    stack.enter_context(patch.object(fit, "fit_weights", lambda *_: None))
-    stack.enter_context(patch.object(fit, "CLOSING_STEPS", 0))
-    return stack
+def _plane_presets(change: Callable[[planes.PlanePreset], planes.PlanePreset]) -> Change:
+    return lambda: patch.dict(
+        planes.PLANE_PRESETS, {"luma-chroma": tuple(map(change, planes.PLANE_PRESETS["luma-chroma"]))}
+    )
 
 
-def _whole(proxy: Any, cameras: Any, reference: int, *_: Any) -> Any:
-    return coded_mesh(proxy, cameras, reference)
+@contextlib.contextmanager
+def _all(*changes: Change) -> Iterator[None]:
+    with ExitStack() as stack:
+        for change in changes:
+            stack.enter_context(change())
+        yield
 
 
-def _no_rounds() -> contextlib.AbstractContextManager[Any]:
-    none = {name: replace(one, rounds=0) for name, one in encode_options.PRESETS.items()}
-    stack = contextlib.ExitStack()
-    stack.enter_context(patch.dict(encode_options.PRESETS, none))
-    stack.enter_context(patch.object(planes, "FEW_ROUNDS", 0))
-    return stack
+def _rounds(count: int) -> Change:
+    presets = {name: replace(one, rounds=count) for name, one in encode_options.PRESETS.items()}
+    return partial(
+        _all, lambda: patch.dict(encode_options.PRESETS, presets), _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", count)
+    )
 
 
-def _all_kept() -> contextlib.AbstractContextManager[Any]:
-    stack = contextlib.ExitStack()
-    stack.enter_context(patch.object(rate, "LAGRANGE", 0.0))
-    stack.enter_context(patch.object(rate, "OTHER_STEPS", ()))  # without a price the finest would always be best
-    return stack
+def _one_lambda(which: str) -> Change:
+    """The search of steps by one of the two rate-distortion multipliers."""
+    both = rate.measure_lambda
+
+    def lambda_(*arguments: Any) -> rate.Lambdas:
+        value = getattr(both(*arguments), which)
+        return rate.Lambdas(value, value)
+
+    return _replaced(fit, "measure_lambda", lambda_)
 
 
-LEVERS = {
-    "all": Lever("all on"),
-    "rounds": Lever("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
-    "loop": Lever("open loop: weights and mean not fitted to the coded textures", coding=_open_loop),
-    "planes": Lever("R, G and B in one plane (`--planes rgb`)", options=EncodeOptions(planes="rgb")),
-    "dense": Lever(
-        "the mean as coarse as the textures",
-        lambda: _plane_presets(lambda one: replace(one, mean_share=one.texture_share)),
+def _equal_steps(block: Any, scales: Any) -> NDArray[np.float32]:
+    return np.full(block.count, np.median(_weight_steps(block, scales)), np.float32)
+
+
+_weight_steps = fit._weight_steps
+_code_plane = fit.code_plane
+_one_sample = _replaced(drawing, "STANDARD", drawing.CENTRE)
+
+CODING = {
+    "loop": Part(
+        "open loop: weights and mean not fitted to the coded textures",
+        partial(_all, _replaced(fit, "fit_weights", lambda *_: None), _replaced(fit, "FIT_CLOSING_ITERATIONS", 0)),
     ),
-    "coarse": Lever(
-        "textures as dense as the mean",
-        lambda: _plane_presets(lambda one: replace(one, texture_share=one.mean_share)),
+    "closing": Part("the mean not fitted again to the coded textures", _replaced(fit, "FIT_CLOSING_ITERATIONS", 0)),
+    "components": Part(
+        "all components kept, whatever they cost",
+        partial(_all, _replaced(rate, "RATE_LAMBDA_PER_SQUARED_STEP", 0.0), _replaced(rate, "RATE_STEP_RATIOS", ())),
     ),
-    "rank": Lever("15 textures", options=EncodeOptions(textures=15)),
-    "regions": Lever("no regions", lambda: patch.object(fit, "find_regions", lambda *_: [])),
-    "worth": Lever("all components kept, worth their bytes or not", coding=_all_kept),
-    "step": Lever("textures coded at their usual step", coding=lambda: patch.object(rate, "OTHER_STEPS", ())),
-    "precision": Lever(
-        "the mean coded as finely everywhere", coding=lambda: patch.object(planes, "mean_precision", lambda *_: None)
+    "step": Part("textures coded at their usual step", _replaced(rate, "RATE_STEP_RATIOS", ())),
+    "measured": Part("steps and components chosen by the predicted multiplier alone", _one_lambda("predicted")),
+    "reckoned": Part("steps and components chosen by the measured multiplier alone", _one_lambda("measured")),
+    "precision": Part("the mean coded as finely everywhere", _replaced(planes, "mean_precision", lambda *_: None)),
+    "weight-steps": Part("weights of all components quantised alike", _replaced(fit, "_weight_steps", _equal_steps)),
+    "grid": Part(
+        "weights not predicted across the camera grid",
+        _replaced(planes, "code_plane", lambda made, rate, grid, *rest: _code_plane(made, rate, None, *rest)),
     ),
-    "unseen": Lever("texels that no photograph sees left as they are", lambda: patch.object(fit, "fill_unseen")),
-    "surface": Lever(
-        "the proxy's surface as it was given", lambda: patch.object(plan, "fit_surface", lambda mesh, *_: mesh)
-    ),
-    "edges": Lever(
-        "one sample a pixel at edges too, in the fit and in drawing",
-        lambda: patch.object(drawing, "STANDARD", drawing.CENTRE),
-    ),
-    "relief": Lever("the relief not simplified", lambda: patch.object(plan, "simplify_proxy_rd", _whole)),
-    "bilinear": Lever("fitted for bicubic drawing, drawn bilinearly", filter="bilinear"),
 }
+FITTING = {
+    "rounds": Part("no fit in the pictures: the mean, then the decomposition of what it leaves", _rounds(0)),
+    "few-rounds": Part(
+        "as many rounds as with many cameras", _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", 0), few=True
+    ),
+    "robust": Part(
+        "all pixels count alike", _replaced(planes, "with_robust_weights", lambda data, _: nullcontext(data)), few=True
+    ),
+    "planes": Part("R, G and B in one plane (`--planes rgb`)", options={"planes": "rgb"}),
+    "coarse": Part(
+        "textures as dense as the mean", _plane_presets(lambda one: replace(one, texture_share=one.mean_share))
+    ),
+    "ahead": Part("chroma no denser than the atlas asks", _plane_presets(lambda one: replace(one, ahead=0.0))),
+    "regions": Part("no regions", _replaced(fit, "find_regions", lambda *_: [])),
+    "unseen": Part("texels that no photograph sees left as they are", _replaced(fit, "fill_unseen", lambda *_: None)),
+}
+PLANNING = {
+    "surface": Part("the proxy's surface as it was given", _replaced(plan, "fit_surface", lambda mesh, *_: mesh)),
+    "triangles": Part("triangles not chosen by what they cost", _replaced(plan, "_simplifies", lambda _: False)),
+    "edges": Part("one sample a pixel at edges too, in the fit and in drawing", _one_sample),
+}
+PARTS = CODING | FITTING | PLANNING
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("capture", nargs="?", default="tarot", metavar="CAPTURE")
-    parser.add_argument(
-        "--levers", default=",".join(list(LEVERS)[1:]), help="commas between; none: held-out views alone"
-    )
+    parser.add_argument("capture", nargs="*", default=CAPTURES, metavar="CAPTURE")
+    parser.add_argument("--parts", default=",".join(PARTS), help="commas between")
+    parser.add_argument("--held-out", action="store_true", help="held-out views against bytes instead")
     parser.add_argument("--out", type=Path, default=Path("studies"))
     parser.add_argument("--store", action="store_true", help="append to benchmarks/results/fit-studies.json")
     options = parser.parse_args()
-    out = options.out.resolve()
-    capture = captures.named(options.capture, out)
-    figures = of_capture(capture, out / capture.name, options.levers.split(","))
-    if options.store:
-        print(measure.store("fit-studies", {"captures": prepared.as_json({capture.name: figures})}))
+    out, figures = options.out.resolve(), {}
+    for name in options.capture:
+        capture = captures.named(name, out)
+        work = out / capture.name
+        prepared.estimate(capture, work)
+        ready = prepared.prepare(capture, work)
+        if options.held_out:
+            found = {"held_out": _kept(work / "held-out.json", partial(held_out, ready))}
+        else:
+            found = {"parts": of_parts(ready, options.parts.split(","))}
+        figures[capture.name] = found
+        if options.store:
+            print(measure.store("fit-studies", {"captures": prepared.as_json({capture.name: found})}))
 
 
-def of_capture(capture: captures.Capture, work: Path, levers: list[str]) -> dict[str, Any]:
-    """Both studies of one capture."""
-    prepared.estimate(capture, work)
-    ready = prepared.prepare(capture, work)
-    chosen = (
-        ["all", *(name for name in LEVERS if name in levers and name != "all")] if set(levers) & set(LEVERS) else []
-    )
-    return {
-        "levers": of_levers(ready, chosen),
-        "held_out": _kept(ready.work / "held-out.json", partial(held_out, ready)),
-    }
+@dataclass(frozen=True, eq=False)
+class Views:
+    """The photographs that files are measured by, and which of their pixels count.
+
+    Attributes:
+        field: The capture.
+        photographs: (H, W, 3) of each.
+        covered: (H, W) of each, by the first file that is measured, so that the same pixels count for all.
+    """
+
+    field: LightField
+    photographs: list[NDArray[np.uint8]]
+    covered: list[NDArray[np.bool_]]
+
+    def point(self, scene: EncodedScene, path: Path) -> dict[str, Any]:
+        """`rates.point` of the scene's file, its bytes and its textures."""
+        save(scene, path, overwrite=True)
+        loaded = ef.load(path)
+        renderer = Renderer(loaded)
+
+        def pictures() -> Iterator[NDArray[np.uint8]]:
+            for index in range(len(self.photographs)):
+                picture = renderer.draw(loaded.rig.cameras[index], camera_weights(loaded, index), filter="bicubic")
+                yield to_codes(picture.image)
+
+        point = rates.point(pictures(), self.photographs, self.counted(path), self.field.names)
+        return {"bytes": path.stat().st_size, "textures": loaded.appearance.textures, **point}
+
+    def counted(self, path: Path) -> list[NDArray[np.bool_]]:
+        if not self.covered:
+            self.covered.extend(ours.covered_pixels(path, range(len(self.field)), self.field))
+        return self.covered
 
 
-def of_levers(ready: Prepared, chosen: list[str]) -> dict[str, Any]:
-    """For each lever the curve without it, and Bjøntegaard's rates against all of them on."""
-    field = prepared.every(ready.light_field, 2)
-    photographs = parallel_map(lambda index: prepared.codes(field, index), range(len(field)))
+class Fit:
+    """A capture's fit: mesh, footprints and planes, each made when it is first needed."""
 
-    @cache
-    def covered() -> list[NDArray[np.bool_]]:
-        """By the files of all levers on, which come first: the same pixels count for all."""
-        return ours.covered_pixels(ready.work / f"all-{QUALITIES[0]}.glb", range(len(field)), field)
+    def __init__(self, field: LightField, mesh: Any, work: Path, opened: ExitStack) -> None:
+        self.field, self.mesh, self.work, self._opened = field, mesh, work, opened
 
-    found: dict[str, Any] = {}
-    for name in chosen:
-        curve = _kept(ready.work / f"{name}.json", partial(of_lever, ready, name, field, photographs, covered))
-        points = curve["points"]
-        base = found["all"]["points"] if found else points
-        dearer = {key: rates.bd_rate(base, points, key) for key in KEYS}
-        gain = {key: rates.bd_quality(base, points, key) for key in KEYS}
-        found[name] = {"words": LEVERS[name].words, **curve, "rate": dearer, "gain": gain}
-        said = "; ".join(f"{p['bytes'] / 1000:.1f} kB {p['psnr']:.2f} / {p['psnr_luma']:.2f} dB" for p in points)
-        print(f"{LEVERS[name].words}: {said}; rate {dearer}", flush=True)
+    @cached_property
+    def plan(self) -> EncodePlan:
+        return plan.plan_encoding(self.field, self.mesh, EncodeOptions(fit="photographs"), self.work)
+
+    @cached_property
+    def data(self) -> FitData:
+        ready, views = self.plan, self.plan.views
+        size = ready.atlas[1], ready.atlas[0]
+        cameras, reference = views.rig.encoded_cameras, views.rig.encoded_reference
+        return self._opened.enter_context(
+            open_fit_data(cameras, views.observations, ready.mesh, size, self.work, reference=reference)
+        )
+
+    @cached_property
+    def whole(self) -> FittedEncoder:
+        return self._opened.enter_context(self._fitted(self.plan, self.data, {}))
+
+    def without(self, name: str) -> EncodedScene:
+        """The scene coded at the default's quality without a part."""
+        part = PARTS[name]
+        if name in CODING:
+            whole = self.whole
+            with part.change():
+                return whole.encode(QUALITY)
+        if name in FITTING:
+            fitted = self._fitted(self.plan, self.data, part.options or {})
+        else:
+            fitted = open_fitted(self.field, self.mesh, EncodeOptions(**(part.options or {})), self.work)
+        with part.change(), fitted as made:
+            return made.encode(QUALITY)
+
+    @contextlib.contextmanager
+    def _fitted(self, ready: EncodePlan, data: FitData, options: Mapping[str, Any]) -> Iterator[FittedEncoder]:
+        """A plan's fit with other options, on footprints that are there."""
+        ready = replace(ready, options=replace(ready.options, **options))
+        with (
+            patch.object(encoder, "open_fit_data", lambda *_: nullcontext(data)),
+            open_encoder(ready, self.work, warn=False) as made,
+        ):
+            yield made
+
+
+def of_parts(ready: Prepared, chosen: Sequence[str]) -> dict[str, Any]:
+    """The whole fit's curve, and for each part what is lost without it (`beside`)."""
+    field = ready.light_field
+    if prepared.grid_of(field) is not None and len(field) >= planes.SUBSAMPLE_MIN_OBSERVATIONS:
+        field = prepared.every(field, 2)
+    few = len(field) < planes.SUBSAMPLE_MIN_OBSERVATIONS
+    chosen = [name for name in PARTS if name in chosen and (few or not PARTS[name].few)]
+    views = Views(field, parallel_map(lambda index: prepared.codes(field, index), range(len(field))), [])
+    with ExitStack() as opened:
+        made = Fit(field, ready.mesh, ready.work, opened)
+
+        def curve() -> dict[str, Any]:
+            points = [
+                {"parameter": quality, **views.point(made.whole.encode(quality), ready.work / f"whole-{quality}.glb")}
+                for quality in QUALITIES
+            ]
+            return {"points": points}
+
+        whole = _kept(ready.work / "whole.json", curve)
+        views.counted(ready.work / f"whole-{QUALITIES[0]}.glb")
+        found: dict[str, Any] = {"whole": {"words": "the whole fit", **whole}}
+        for name in chosen:
+
+            def point(name: str = name) -> dict[str, Any]:
+                return views.point(made.without(name), ready.work / f"{name}.glb")
+
+            one = _kept(ready.work / f"{name}.json", point)
+            found[name] = {"words": PARTS[name].words, **one, **beside(whole["points"], one)}
+            rate, gain = found[name]["rate"], found[name]["gain"]
+            print(
+                f"{ready.capture.name}, {PARTS[name].words}: {one['bytes'] / 1e3:.1f} kB {one['psnr']:.2f} /"
+                f" {one['psnr_luma']:.2f} dB; bytes {rate['psnr']:+.1f} / {rate['psnr_luma']:+.1f} %,"
+                f" {gain['psnr']:+.2f} / {gain['psnr_luma']:+.2f} dB",
+                flush=True,
+            )
     return found
 
 
-def of_lever(
-    ready: Prepared,
-    name: str,
-    field: LightField,
-    photographs: list[NDArray[np.uint8]],
-    covered: Callable[[], list[NDArray[np.bool_]]],
-) -> dict[str, Any]:
-    """The curve without a lever, and what is reached without coding. covered: asked for once there is a file."""
-    lever, points = LEVERS[name], []
-    with lever.change(), open_fitted(field, ready.mesh, lever.options, work=ready.work) as encoder:
-        for quality in QUALITIES:
-            with lever.coding():
-                scene = encoder.coded(quality)
-            path = ready.work / f"{name}-{quality}.glb"
-            save(scene, path, overwrite=True)
-            figures = drawn_figures(path, photographs, covered(), field.names, lever.filter)
-            points.append({"parameter": quality, "bytes": path.stat().st_size, **figures})
-    uncoded = {plane: one["uncoded"] for plane, one in scene.settings["fitted"]["psnr"].items()}
-    return {"points": points, "uncoded": uncoded}
+def beside(points: Sequence[Mapping[str, Any]], one: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """A file beside a curve of quality over log bytes, which is a line between its points and goes on beyond them.
+
+    rate: by how many percent the file is larger than the curve's of equal quality. gain: by how much it is better than
+    the curve's of equal bytes.
+    """
+    sizes = np.log([point["bytes"] for point in points])
+    rate, gain = {}, {}
+    for key in KEYS:
+        values = np.array([point[key] for point in points])
+        rate[key] = float(100 * np.expm1(np.log(one["bytes"]) - _line(values, sizes, one[key])))
+        gain[key] = float(one[key] - _line(sizes, values, float(np.log(one["bytes"]))))
+    return {"rate": rate, "gain": gain}
+
+
+def _line(x: NDArray[np.float64], y: NDArray[np.float64], at: float) -> float:
+    """Through the two points around `at`, or at the end nearest to it."""
+    piece = min(max(int(np.searchsorted(x, at)) - 1, 0), len(x) - 2)
+    slope = (y[piece + 1] - y[piece]) / (x[piece + 1] - x[piece])
+    return float(y[piece] + slope * (at - x[piece]))
 
 
 def _kept(place: Path, make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
     return kept(place, Path(__file__), make, str(QUALITIES))
 
 
-def drawn_figures(
-    path: Path,
-    photographs: list[NDArray[np.uint8]],
-    covered: list[NDArray[np.bool_]],
-    names: Sequence[str],
-    filter: str,
-) -> dict[str, Any]:
-    """`rates.point` of a file's captured views, drawn with a filter."""
-    scene = ef.load(path)
-    renderer = Renderer(scene)
-
-    def pictures() -> Iterator[NDArray[np.uint8]]:
-        for index in range(len(photographs)):
-            picture = renderer.draw(scene.rig.cameras[index], camera_weights(scene, index), filter=filter)
-            yield to_codes(picture.image)
-
-    return rates.point(pictures(), photographs, covered, names)
-
-
 def held_out(ready: Prepared) -> dict[str, Any]:
     """Quality of captured and of held-out views against bytes, all of a view and outside the capture's circles."""
     points = []
-    with open_fitted(ready.light_field, ready.mesh, EncodeOptions(hold_out=ready.hold_out), work=ready.work) as encoder:
+    with open_fitted(ready.light_field, ready.mesh, EncodeOptions(hold_out=ready.hold_out), work=ready.work) as made:
         for quality in QUALITIES:
             path = ready.work / f"held-{quality}.glb"
-            save(encoder.coded(quality), path, overwrite=True)
+            save(made.encode(quality), path, overwrite=True)
             scene = ef.load(path)
             figures = ef.evaluate(scene, ready.light_field, path=path, circles=ready.circles(), png_maps="none")
             image = figures["image"]

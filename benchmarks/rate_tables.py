@@ -12,6 +12,7 @@ from measure import RESULTS, runs
 
 ANCHOR, FASTER = "SVT-AV1 preset 2, 4:2:0", "SVT-AV1 preset 6, 4:2:0"
 
+DEFAULT = 89  # the default's quality
 BALANCED = 88  # the quality measured that is nearest the default's
 KEYS = ("psnr", "psnr_luma")
 FIVE = {  # of the README: far ahead of the codec, about level, far behind
@@ -76,31 +77,46 @@ def _studies() -> str:
     """What each part of the fit contributes, and held-out views against bytes (benchmarks/fit_studies.py)."""
     if not (RESULTS / "fit-studies.json").exists():
         return ""
-    captures, shown = newest(runs("fit-studies"))
-    levers = [_lever(name, key, one) for name, found in captures.items() for key, one in found["levers"].items()]
-    held = [
+    source = "../benchmarks/results/fit-studies.json"
+    parts, shown = newest(
+        [run for run in runs("fit-studies") if any("parts" in one for one in run["captures"].values())]
+    )
+    text = ""
+    if parts:
+        text += (
+            "### What each part of the fit contributes\n\nEach cell is the fit without a part: how much larger the"
+            " file is at equal RGB PSNR, and how much worse the pictures are at equal bytes. A dense array has every"
+            f" second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
+        )
+    held, shown = newest(
+        [run for run in runs("fit-studies") if any("held_out" in one for one in run["captures"].values())]
+    )
+    rows = [
         [f"`{name}`, {found['held_out']['rule']}", *_held(point)]
-        for name, found in captures.items()
+        for name, found in held.items()
         for point in found["held_out"]["points"]
     ]
-    parts = []
-    if levers:
-        head = ["every second row and column of", "without", "bytes at equal RGB", "luma", "dB luma at equal bytes"]
-        parts += ["### What each part of the fit contributes\n", table([*head, "luma uncoded"], levers)]
-    parts.append("### Views that were held out\n")
-    parts.append(
-        table(["held out", "kB", "N", "captured views, RGB / luma", "held-out views", "outside circles"], held)
-    )
-    return "\n".join(parts) + f"\n{origin(shown, '../benchmarks/results/fit-studies.json')}\n"
+    if rows:
+        head = ["held out", "kB", "N", "captured views, RGB / luma", "held-out views", "outside circles"]
+        text += f"### Views that were held out\n\n{table(head, rows)}\n{origin(shown, source)}\n"
+    return text
 
 
-def _lever(name: str, key: str, lever: Mapping[str, Any]) -> list[str]:
-    rate, gain, uncoded = lever["rate"], lever["gain"]["psnr_luma"], lever["uncoded"].get("luma")
-    against = [percent(rate["psnr"]), percent(rate["psnr_luma"]), NONE if gain is None else f"{gain:+.2f}"]
-    return [
-        f"`{name}`", lever["words"], *(("", "", "") if key == "all" else against),
-        NONE if uncoded is None else f"{uncoded:.2f}",
-    ]  # fmt: skip
+def _parts(captures: Mapping[str, Any]) -> str:
+    """A part in each row, a capture in each column; a part that is not about a capture has none there."""
+    found = {name: one["parts"] for name, one in captures.items()}
+    words = {key: part["words"] for parts in found.values() for key, part in parts.items() if key != "whole"}
+    rows = [[words[key], *(_lost(parts.get(key)) for parts in found.values())] for key in words]
+    sizes = ["the whole fit", *(f"{_at_default(one['whole'])['bytes'] / 1e3:.1f} kB" for one in found.values())]
+    return table(["without", *(f"`{name}`" for name in found)], [sizes, *rows])
+
+
+def _at_default(whole: Mapping[str, Any]) -> Mapping[str, Any]:
+    return next(point for point in whole["points"] if point["parameter"] == DEFAULT)
+
+
+def _lost(part: Mapping[str, Any] | None) -> str:
+    return NONE if part is None else f"{part['rate']['psnr']:+.1f} %, {part['gain']['psnr']:+.2f} dB"
 
 
 def _held(point: Mapping[str, Any]) -> list[str]:

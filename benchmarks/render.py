@@ -140,7 +140,7 @@ def composition(scene: Scene) -> dict[str, Any]:
     """Equation 8 alone, over the whole atlas, beside NumPy's matrix product of weights and float32 textures."""
     plane = scene.appearance.planes[0]
     basis = plane.bases[0]
-    omega = view_weights(scene, (0.31, -0.17)) @ basis.weights
+    omega = view_weights(scene, (0.31, -0.17)).blend(basis.weights)
     tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE, SIDE // TILE), bool), 3)
     layers, tiles = empty_layers(SIDE, SIDE, 3), np.arange(len(tiled.places))
     ours = best(lambda: compose(tiled, omega, tiles, layers))

@@ -81,7 +81,7 @@ def free_view(scene, camera):
     along = ((plane.origin - points) @ normal) / ((eye - points) @ normal)
     places = plane.coordinates(np.where(along[:, None] > 0, points + along[:, None] * (eye - points), eye))
     mean, basis = scene.appearance.planes[0].mean, scene.appearance.planes[0].bases[0]
-    weights = np.stack([view_weights(scene, place) for place in places]) @ basis.weights
+    weights = np.stack([view_weights(scene, place).dense(scene.observations) for place in places]) @ basis.weights
     colours = bilinear(mean, uv)
     for j, eigen in enumerate(basis.values()):
         colours += weights[:, j, None] * bilinear(eigen, uv)
@@ -119,7 +119,7 @@ def finer(texture, size):
 
 
 def composite(scene, mix):
-    """(H, W, D): what is drawn for view weights mix (Ne,): each plane's mean and sums made as fine as the finest,
+    """(H, W, D): what is drawn for view weights mix (No,): each plane's mean and sums made as fine as the finest,
     channels side by side, then joined by `to_rgb`."""
     channels = []
     for plane in scene.appearance.planes:

@@ -22,7 +22,7 @@ from eigenfield.evaluation import ExcludedCircle, match_photographs
 from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import MODES, Renderer, camera_weights, view_weights
+from eigenfield.rendering import MODES, Renderer, ViewWeights, camera_weights, view_weights
 from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
 from evidence.spread import spread_over_array
 
@@ -128,8 +128,7 @@ def ways_of(stage: Stage, peers: Peers) -> dict[str, Way]:
 
 def covered_by_proxy(stage: Stage, index: int, mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:
     """(H, W) the pixels that count for a camera: the proxy on all of a pixel's samples, and within the mask."""
-    weights = np.zeros(len(stage.scene.rig.encoded))
-    covered = stage.renderer.draw(stage.scene.rig.cameras[index], weights, textures=0).covered
+    covered = stage.renderer.draw(stage.scene.rig.cameras[index], ViewWeights(), textures=0).covered
     return covered if mask is None else covered & (mask > 0.5)
 
 
@@ -147,7 +146,8 @@ def _blend(stage: Stage, peers: Peers, index: int) -> NDArray[np.float32]:
     """The four neighbours of a grid with bilinear weights; without one, those of the Delaunay triangle."""
     scene = stage.scene
     x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
-    weights = view_weights(scene, (float(x), float(y)), _blended_by(scene))[np.isin(scene.rig.encoded, peers.shown)]
+    dense = view_weights(scene, (float(x), float(y)), _blended_by(scene)).dense(scene.observations)
+    weights = dense[np.isin(scene.rig.encoded, peers.shown)]
     total = np.zeros((scene.rig.cameras[index].height, scene.rig.cameras[index].width, 3), np.float32)
     for near in np.flatnonzero(weights):
         photograph = _as_large(peers.lumigraph.photograph(int(near)), stage, index)

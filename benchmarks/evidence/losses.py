@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 import eigenfield as ef
 from eigenfield.capture import LightField
-from eigenfield.coding.pictures.quantise import basis_scale, mean_codes, mean_values, photographic, texture_codes
+from eigenfield.coding.pictures.quantise import basis_scale, is_photographic, mean_codes, mean_values, texture_codes
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.projected import SIDE_CAP, Atlas, Spreader, make_atlas, make_spreader
+from eigenfield.encoding.projected import ATLAS_SIDE_CAP_TEXELS, Atlas, Spreader, make_atlas, make_spreader
 from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
@@ -111,7 +111,7 @@ def losses(
     own = own_maps(exact, chosen)
     rungs["truncation"] = views.measure(own)
     note = f" The atlas has {_side(scene)} texels a side: resampling was not separated."
-    if _side(scene) < SIDE_CAP:
+    if _side(scene) < ATLAS_SIDE_CAP_TEXELS:
         note = ""
         rungs["resampling"] = views.measure(own_maps(denser(exact), chosen))
     result = {
@@ -191,7 +191,7 @@ def rounded_to_codes(scene: Scene) -> Scene:
         mean = mean_values(*mean_codes(plane.mean, harmonised))
         bases = []
         for basis in plane.bases:
-            scale, zero = basis_scale(basis, harmonised or photographic(plane.mean))
+            scale, zero = basis_scale(basis, harmonised or is_photographic(plane.mean))
             codes = [texture_codes(basis, index, scale, zero) for index in range(basis.count)]
             stored = np.stack(codes) if codes else basis.textures
             bases.append(Basis(stored, scale, zero, basis.weights))
@@ -223,9 +223,9 @@ def own_maps(session: Session, chosen: Sequence[int]) -> Pictures:
 
 
 def denser(session: Session) -> Session:
-    """The same session on an atlas of twice the side, at most SIDE_CAP."""
+    """The same session on an atlas of twice the side, at most ATLAS_SIDE_CAP_TEXELS."""
     assert session.atlas is not None
-    factor = min(2.0, SIDE_CAP / max(session.atlas.width, session.atlas.height))
+    factor = min(2.0, ATLAS_SIDE_CAP_TEXELS / max(session.atlas.width, session.atlas.height))
     width, height = round(session.atlas.width * factor), round(session.atlas.height * factor)
     finer = replace(session, reference=None, atlas=make_atlas(session.scene.proxy.mesh, width, height))
     if session.align is None:
@@ -312,7 +312,9 @@ def _alone(
     ]
     for key, (title, options, textures) in plans.items():
         row: dict[str, Any] = {"key": key, "title": title}
-        if textures * height * width * channels * 4 > ROOM or (key == "resampling" and 2 * _side(scene) > SIDE_CAP):
+        if textures * height * width * channels * 4 > ROOM or (
+            key == "resampling" and 2 * _side(scene) > ATLAS_SIDE_CAP_TEXELS
+        ):
             rows.append({**row, "left_out": "too large to encode again"})
             continue
         with tempfile.TemporaryDirectory() as folder:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding.projected import push_pull
-from eigenfield.encoding.projected.project import DEPTH_BIAS
+from eigenfield.encoding.projected.project import DEPTH_BIAS_RATIO
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.parallel import parallel_map, pieces
@@ -73,7 +73,7 @@ def make_lumigraph(
         depth = rasterise_view(mesh, cameras[index]).inverse_depth
         seen = depth[depth > 0]
         if len(seen):
-            biases[index] = DEPTH_BIAS * float(np.ptp(seen)) + 1e-6 * float(seen.max())
+            biases[index] = DEPTH_BIAS_RATIO * float(np.ptp(seen)) + 1e-6 * float(seen.max())
         if mask is not None:
             depth = np.where(mask > 0.5, depth, np.float32(np.inf))
         codes[3 * starts[index] : 3 * ends[index]] = to_codes(pixels).reshape(-1)

@@ -63,7 +63,7 @@ def fitted(
             fit = time.perf_counter() - started
             for quality in some:
                 started = time.perf_counter()
-                scene = encoder.coded(quality)
+                scene = encoder.encode(quality)
                 path = ready.work / f"{stem}-{quality}.glb"
                 save(scene, path, overwrite=True)
                 seconds = time.perf_counter() - started

@@ -13,7 +13,7 @@ from eigenfield.capture import LightField
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.options import DEFAULT_DENSITY
 from eigenfield.gltf import encode_scene
-from eigenfield.gltf.write import QUALITY
+from eigenfield.gltf.write import DEFAULT_AVIF_QUALITY
 from eigenfield.imaging.metrics import psnr, ssim
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.parallel import parallel_map
@@ -129,7 +129,7 @@ def _codecs(prepared: Prepared, base: Base) -> dict[str, Any]:
     rows: list[list[Any]] = [["none", "", *_row(base.scene, prepared.light_field, None)]]
     rows += [[codec, "", *_measured(base.scene, prepared, codec)] for codec in ("png", "webp")]
     for quality in QUALITIES:
-        row = base.row if quality == QUALITY else _measured(base.scene, prepared, "avif", quality)
+        row = base.row if quality == DEFAULT_AVIF_QUALITY else _measured(base.scene, prepared, "avif", quality)
         rows.append(["avif", quality, *row])
     return {"title": "Codec and quality", "columns": ["codec", "quality", *HEAD], "rows": rows, "words": ""}
 

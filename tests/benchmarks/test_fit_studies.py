@@ -1,13 +1,15 @@
-"""benchmarks/fit_studies.py: every lever does something, nothing stays changed, and the tables say what was found."""
+"""benchmarks/fit_studies.py: every part is something, nothing stays changed, and the tables say what was found."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 import fit_studies
 import rate_tables
 from eigenfield.encoding import options, plan
 from eigenfield.encoding.fitted import fit, planes, rate
+from eigenfield.rendering.software import drawing
 from evidence import prepared
 from evidence.captures import Capture
 from support.captures import write_capture
@@ -21,43 +23,46 @@ def ready(tmp_path_factory):
     return prepared.prepare(capture, work)
 
 
-def test_levers_are_put_back():
-    before = (
-        options.PRESETS.copy(),
-        planes.PLANE_PRESETS.copy(),
-        fit.find_regions,
-        fit.fit_weights,
-        (rate.LAGRANGE, rate.OTHER_STEPS),
-        plan.simplify_proxy_rd,
-        planes.mean_precision,
-        fit.fill_unseen,
-        plan.fit_surface,
-    )
-    for lever in fit_studies.LEVERS.values():
-        with lever.change(), lever.coding():
-            pass
-    after = (
-        options.PRESETS, planes.PLANE_PRESETS, fit.find_regions, fit.fit_weights, (rate.LAGRANGE, rate.OTHER_STEPS),
-        plan.simplify_proxy_rd, planes.mean_precision, fit.fill_unseen, plan.fit_surface,
-    )  # fmt: skip
-    assert before == after
+def test_parts_are_put_back():
+    modules = (options, plan, fit, planes, rate, drawing)
+
+    def state():
+        return [dict(vars(module)) | {"PRESETS": dict(options.PRESETS), "PLANES": dict(planes.PLANE_PRESETS)}
+                for module in modules]  # fmt: skip
+
+    before = state()
+    for name, part in fit_studies.PARTS.items():
+        with part.change():
+            assert part.options or any(a is not b for one, other in zip(state(), before, strict=True)
+                                       for a, b in zip(one.values(), other.values(), strict=True)), name  # fmt: skip
+    after = state()
+    assert all(a is b or a == b for one, other in zip(after, before, strict=True)
+               for a, b in zip(one.values(), other.values(), strict=True))  # fmt: skip
 
 
-def test_each_lever_changes_the_files_or_the_pictures(ready, monkeypatch):
-    monkeypatch.setattr(fit_studies, "QUALITIES", (70, 90))
+def test_a_part_that_is_taken_away_changes_the_file_or_the_pictures(ready, monkeypatch):
+    monkeypatch.setattr(fit_studies, "QUALITIES", (70, fit_studies.QUALITY))
     # four cameras have no region, one round of textures at most, and a square for a proxy
-    chosen = ["all", "rounds", "loop", "planes", "dense", "coarse", "bilinear"]
-    found = fit_studies.of_levers(ready, chosen)
-    assert list(found) == chosen
-    monkeypatch.setattr(fit_studies, "open_fitted", None)  # all of it is there now
-    assert fit_studies.of_levers(ready, chosen) == found
-    base = found["all"]
-    assert base["rate"]["psnr"] == pytest.approx(0, abs=1e-9) and base["uncoded"]["luma"] > 35
-    for name in chosen[1:]:
-        pairs = zip(base["points"], found[name]["points"], strict=True)
-        assert any(abs(a["psnr"] - b["psnr"]) > 0.02 or a["bytes"] != b["bytes"] for a, b in pairs), name
-    assert found["rounds"]["uncoded"]["luma"] < base["uncoded"]["luma"]
-    assert found["bilinear"]["points"][1]["psnr"] < base["points"][1]["psnr"]
+    chosen = ["rounds", "loop", "coarse"]
+    found = fit_studies.of_parts(ready, chosen)
+    assert set(found) == {"whole", *chosen}
+    monkeypatch.setattr(fit_studies, "Fit", None)  # all of it is there now
+    whole = found["whole"]["points"][1]
+    for name in chosen:
+        assert found[name]["psnr"] != whole["psnr"] or found[name]["bytes"] != whole["bytes"], name
+    assert found["rounds"]["gain"]["psnr"] < 0 < found["rounds"]["rate"]["psnr"]
+
+
+def test_a_file_beside_a_curve():
+    figures = [(100, 30.0, 1.0, 0.5), (200, 31.0, 2.0, 0.6), (400, 33.0, 3.0, 0.7)]
+    points = [dict(zip(("bytes", *fit_studies.KEYS), figure, strict=True)) for figure in figures]
+    same = fit_studies.beside(points, points[1])
+    assert same["rate"] == pytest.approx(dict.fromkeys(fit_studies.KEYS, 0), abs=1e-9)
+    assert same["gain"] == pytest.approx(dict.fromkeys(fit_studies.KEYS, 0), abs=1e-12)
+    dearer = fit_studies.beside(points, {"bytes": 400, "psnr": 31.0, "psnr_luma": 2.0, "ssim": 0.6})
+    assert dearer["rate"]["psnr"] == pytest.approx(100) and dearer["gain"]["psnr"] == pytest.approx(-2)
+    beyond = fit_studies.beside(points, {"bytes": 800, "psnr": 35.0, "psnr_luma": 4.0, "ssim": 0.8})
+    assert beyond["rate"]["psnr"] == pytest.approx(0) and np.isclose(beyond["gain"]["ssim"], 0)
 
 
 def test_held_out_views_against_bytes(ready, monkeypatch, tmp_path):
@@ -66,18 +71,17 @@ def test_held_out_views_against_bytes(ready, monkeypatch, tmp_path):
     coarse, fine = found["points"]
     assert coarse["bytes"] < fine["bytes"] and coarse["encoded"]["psnr"] < fine["encoded"]["psnr"]
     assert found["rule"] == "odd" and fine["held_out"]["psnr"] > 25
-    lever = {
-        "words": "all on",
-        "uncoded": {"luma": 40.0},
-        "rate": dict.fromkeys(("psnr", "psnr_luma")),
-        "gain": {"psnr_luma": None},
-    }
-    without = {**lever, "words": "no rounds", "rate": {"psnr": 12.3, "psnr_luma": 9.9}, "gain": {"psnr_luma": -0.5}}
-    figures = {"nine": {"levers": {"all": lever, "rounds": without}, "held_out": found}}
-    monkeypatch.setattr(rate_tables, "newest", lambda history: (figures, []))
-    monkeypatch.setattr(rate_tables, "runs", lambda name: [])
+    whole = {"words": "the whole fit", "points": [{"parameter": 89, "bytes": 12300}]}
+    without = {"words": "no rounds", "rate": {"psnr": 12.3}, "gain": {"psnr": -0.5}}
+    history = [
+        {"captures": {"nine": {"parts": {"whole": whole, "rounds": without}}}},
+        {"captures": {"nine": {"held_out": found}}},
+    ]
+    monkeypatch.setattr(rate_tables, "newest", lambda runs: (runs[-1]["captures"], []))
+    monkeypatch.setattr(rate_tables, "origin", lambda *_: "")
+    monkeypatch.setattr(rate_tables, "runs", lambda name: history)
     monkeypatch.setattr(rate_tables, "RESULTS", tmp_path)
     assert rate_tables._studies() == ""
     (tmp_path / "fit-studies.json").touch()
     text = rate_tables._studies()
-    assert "no rounds | +12 % | +10 % | -0.50 | 40.00 |" in text and "| `nine`, odd |" in text
+    assert "no rounds | +12.3 %, -0.50 dB |" in text and "| `nine`, odd |" in text and "12.3 kB" in text

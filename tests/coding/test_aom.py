@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from eigenfield.coding.pictures import aom
-from eigenfield.coding.pictures.pictures_10bit import SVT, TOP, decode_10bit, encode_10bit
+from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, SVT_CODER, decode_10bit, encode_10bit
 from eigenfield.encoding.fitted import planes
 from eigenfield.encoding.options import PRESETS
 
@@ -31,7 +31,7 @@ def codes() -> np.ndarray:
         away = np.hypot(rows - rng.uniform(0, 256), columns - rng.uniform(0, 320)) / rng.uniform(4, 40)
         picture = np.where(away < 1, 0.5 + 0.4 * np.sin(away * rng.uniform(0, 20) + rng.uniform(0, 6)), picture)
     picture = picture + rng.normal(0, 0.01, picture.shape)
-    return np.rint(picture * TOP).clip(0, TOP).astype(np.uint16)
+    return np.rint(picture * MAX_CODE).clip(0, MAX_CODE).astype(np.uint16)
 
 
 def error(data: bytes) -> float:
@@ -50,7 +50,7 @@ def test_fewer_bytes_at_the_same_error():
 @pytest.mark.skipif(not HAS_AOM, reason="no ffmpeg program with libaom")
 def test_every_code_is_kept_within_the_step_and_all_sides_fit():
     for height, width in ((64, 64), (66, 130), (64, 4096)):
-        ramp = np.broadcast_to(np.linspace(0, TOP, width), (height, width)).astype(np.uint16)
+        ramp = np.broadcast_to(np.linspace(0, MAX_CODE, width), (height, width)).astype(np.uint16)
         back = decode_10bit(aom.encode_aom(ramp, 4), False, "ramp")
         assert back.shape == ramp.shape
         assert np.abs(back.astype(int) - ramp).max() <= 8
@@ -80,7 +80,7 @@ def test_a_program_that_fails_later_is_replaced_with_a_warning(tmp_path, monkeyp
     fake(tmp_path, monkeypatch, "echo out of luck >&2; exit 1")
     monkeypatch.setattr(aom, "aom_program", lambda: str(tmp_path / "ffmpeg"))
     data = aom.encode_aom(codes(), 30)
-    assert data == SVT(codes(), 30)
+    assert data == SVT_CODER(codes(), 30)
     assert "out of luck" in caplog.text
 
 
@@ -101,4 +101,4 @@ def test_the_best_preset_alone_is_patient():
     assert [name for name, preset in PRESETS.items() if preset.patient] == ["best"]
     rate = planes.PLANE_PRESETS["luma-chroma"][0].rate(0.01, patient=True)
     assert rate.coder is aom.encode_aom
-    assert rate.trial is SVT
+    assert rate.trial is SVT_CODER

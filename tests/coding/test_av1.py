@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenfield.coding.video.av1 import decode_film, encode_film
+from eigenfield.coding.video.av1 import decode_video, encode_video
 from eigenfield.core.errors import FormatError
-from eigenfield.encoding.residual.colour import doubled, to_difference, to_planes
+from eigenfield.encoding.residual.colour import double_size, to_difference, to_planes
 
 SCALE = 1 / 510, 1 / 816
 SMALL = 64, 72
@@ -19,18 +19,18 @@ def flat(count, value=512, size=SMALL):
         yield np.full(size, value, np.uint16), half, half
 
 
-def test_a_film_of_no_difference_is_none_and_costs_nothing():
-    film = encode_film(flat(12), SMALL, 40, 2)
-    assert len(film) < 500
-    frames = list(decode_film(film, SMALL, 12, "here"))
+def test_a_video_of_no_difference_is_none_and_costs_nothing():
+    video = encode_video(flat(12), SMALL, 40, 2)
+    assert len(video) < 500
+    frames = list(decode_video(video, SMALL, 12, "here"))
     assert len(frames) == 12
     assert all((plane == 512).all() for planes in frames for plane in planes)
 
 
-def test_a_film_has_the_same_bytes_each_time():
+def test_a_video_has_the_same_bytes_each_time():
     random = np.random.default_rng(1)
     noise = [tuple(random.integers(300, 700, plane.shape).astype(np.uint16) for plane in f) for f in flat(5)]
-    assert encode_film(noise, SMALL, 30, 2) == encode_film(noise, SMALL, 30, 2)
+    assert encode_video(noise, SMALL, 30, 2) == encode_video(noise, SMALL, 30, 2)
 
 
 @pytest.mark.parametrize(
@@ -38,15 +38,15 @@ def test_a_film_has_the_same_bytes_each_time():
     [((64, 74), 6, None), ((62, 72), 6, None), (SMALL, 7, None), (SMALL, 6, 60), (SMALL, 6, 0)],
     ids=["wider", "lower", "more", "cut", "nothing"],
 )
-def test_films_that_are_not_what_was_said(size, count, cut):
-    film = encode_film(flat(6, 700), SMALL, 40, 2)
+def test_videos_that_are_not_what_was_said(size, count, cut):
+    video = encode_video(flat(6, 700), SMALL, 40, 2)
     with pytest.raises(FormatError) as caught:
-        list(decode_film(film if cut is None else film[:cut], size, count, "here"))
+        list(decode_video(video if cut is None else video[:cut], size, count, "here"))
     assert caught.value.code == "residual-damaged" and caught.value.where == "here"
 
 
 def test_no_more_frames_are_decoded_than_were_said():
-    assert len(list(decode_film(encode_film(flat(6), SMALL, 40, 2), SMALL, 2, "here"))) == 2
+    assert len(list(decode_video(encode_video(flat(6), SMALL, 40, 2), SMALL, 2, "here"))) == 2
 
 
 def test_planes_and_back():
@@ -79,4 +79,4 @@ def test_what_a_code_stands_for():
 def test_doubling_is_catmull_and_roms():
     line = np.zeros((1, 9), np.float32)
     line[0, 4] = 128
-    assert doubled(line)[0].tolist() == [0, 0, 0, 0, 0, -3, -9, 29, 111, 111, 29, -9, -3, 0, 0, 0, 0, 0]
+    assert double_size(line)[0].tolist() == [0, 0, 0, 0, 0, -3, -9, 29, 111, 111, 29, -9, -3, 0, 0, 0, 0, 0]

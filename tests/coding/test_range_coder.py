@@ -29,7 +29,7 @@ def encoded(values, contexts=4, room=4096):
         for k, value in enumerate(values):
             code_integer(coder, np.int64(value), k % contexts, contexts, contexts + 1, 0)
 
-    return range_coder.coded(run, contexts + 2, 1, room=room)
+    return range_coder.coded_bytes(run, contexts + 2, 1, room=room)
 
 
 def decoded(data, count, contexts=4):
@@ -58,7 +58,7 @@ def test_raw_numbers_and_flags_come_back():
         code_flag(coder, np.int64(1), 0, 1, 2, 0)
         code_raw(coder, np.int64(5), 3)
 
-    coder = range_coder.decoder(range_coder.coded(run, 3, 1, room=64), 3, 1)
+    coder = range_coder.decoder(range_coder.coded_bytes(run, 3, 1, room=64), 3, 1)
     assert code_raw(coder, np.int64(0), 32) == 0xDEADBEEF
     assert code_flag(coder, np.int64(0), 0, 1, 2, 0) == 1
     assert code_raw(coder, np.int64(0), 3) == 5
@@ -119,6 +119,6 @@ def test_headers_are_checked():
     with pytest.raises(FormatError) as caught:
         range_coder.check_numbers(bytes(10), 10**6, 2**28, "mesh")
     assert caught.value.code == "coded-size"
-    long_enough = range_coder.filled_up(bytes(10), 10**6)
+    long_enough = range_coder.pad_bytes(bytes(10), 10**6)
     range_coder.check_numbers(long_enough, 10**6, 2**28, "mesh")
     assert len(long_enough) < 10**6 / 15

@@ -44,7 +44,7 @@ def test_mean_and_fill_are_equations_1_and_2():
     expected = reference.filled_maps(maps.values, maps.seen)
     for camera in range(maps.count):
         np.testing.assert_allclose(
-            basis.filled(maps.values[camera], maps.seen[camera], average.values), expected[camera], atol=1e-6
+            basis.filled_map(maps.values[camera], maps.seen[camera], average.values), expected[camera], atol=1e-6
         )
 
 
@@ -97,8 +97,8 @@ def test_analytic_decomposition():
 
 def test_same_bytes_at_any_number_of_threads(monkeypatch):
     maps = random_maps(cameras=12, texels=3000)
-    monkeypatch.setattr(eigen, "TILE", 256)
-    monkeypatch.setattr(mean, "TILE", 256)
+    monkeypatch.setattr(eigen, "MAP_TILE_TEXELS", 256)
+    monkeypatch.setattr(mean, "MAP_TILE_TEXELS", 256)
     results = []
     for count in (1, 2, 3):
         set_threads(count)

@@ -19,7 +19,7 @@ from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.encoding.projected import (
     eigen_textures,
-    filled,
+    filled_map,
     gram_matrix,
     make_atlas,
     make_spreader,
@@ -144,7 +144,7 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
         weights = weights_of(spectrum(gram_matrix(maps, mean)), 8)
         textures = eigen_textures(maps, mean, weights)
         spread = make_spreader(atlas, mean.seen)
-        expected = np.stack([filled(maps.values[c], maps.seen[c], mean.values) for c in range(9)])[:, mean.seen]
+        expected = np.stack([filled_map(maps.values[c], maps.seen[c], mean.values) for c in range(9)])[:, mean.seen]
     ones = np.ones((8, channels), np.float32)
     basis = Basis(np.stack([spread(texture) for texture in textures]), ones, 0 * ones, weights)
     plane = fit_view_plane(cameras)
@@ -185,7 +185,7 @@ def test_held_out_cameras_take_no_part(folder, capture, tmp_path):
     )
     held = int(np.flatnonzero(kept.rig.held_out)[0])
     weights = camera_weights(kept, held)
-    assert weights.shape == (4,) and weights.sum() == pytest.approx(1)
+    assert weights.rows.max() < 4 and weights.values.sum() == pytest.approx(1)
     picture = renderer_of(kept).draw(kept.rig.cameras[held], weights)
     photograph = capture.photograph(held).pixels
     assert psnr(picture.image, photograph, picture.coverage > 0.5) > 20

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
@@ -25,7 +25,7 @@ from eigenfield.encoding.fitted import (
     fit_plane,
     fitted_textures,
     open_fit_data,
-    subsampled,
+    open_subsampled,
 )
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
 from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
@@ -37,7 +37,7 @@ from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, save, validate
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering import Renderer, ViewWeights, camera_weights
 from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.parallel import set_threads
 from support.observations import InMemory
@@ -85,7 +85,7 @@ def world():
         texture += model.mean
         plain = replace(scene.appearance.planes[0], mean=np.ascontiguousarray(texture.transpose(1, 2, 0)), bases=())
         drawn = Renderer(replace(scene, appearance=replace(scene.appearance, planes=(plain,)))).draw(
-            camera, np.zeros(9)
+            camera, ViewWeights()
         )
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
     with open_fit_data(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as data:
@@ -102,7 +102,7 @@ def test_the_fit_draws_what_the_renderer_draws(world):
 
 def test_subsampled_pixels_are_some_of_all(world):
     data, _, _ = world
-    with subsampled(data, 2) as some:
+    with open_subsampled(data, 2) as some:
         assert len(some) == len(data)
         for index in range(len(data)):
             (counts, points), (fewer, left) = data.footprint(index), some.footprint(index)
@@ -113,7 +113,7 @@ def test_subsampled_pixels_are_some_of_all(world):
             np.testing.assert_array_equal(fewer, counts[rows, columns])
             np.testing.assert_array_equal(middles(some, index), middles(data, index)[rows, columns])
             assert 0.2 < codes[0].size / codes[1].size < 0.3
-    with subsampled(data, 1) as same:
+    with open_subsampled(data, 1) as same:
         assert same is data
 
 
@@ -199,7 +199,7 @@ def settings_of(textures: int = 3) -> PlaneSettings:
 def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     """The coded plane, dB before coding and after."""
     fit = fit_plane(Pixels(data, data, data), settings_of(), "test", rounds)
-    plane = code_plane(fit, Rate(1e-3, 1e-3, svt(8))).value
+    plane = code_plane(fit, Rate(1e-3, 1e-3, svt_coder(8))).value
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
 
@@ -214,7 +214,7 @@ def test_a_fit_beats_its_start_and_is_what_is_drawn(world):
         rig=replace(tiny_scene(cameras=9).rig, cameras=CAMERAS),
         appearance=replace(tiny_scene(cameras=9).appearance, planes=(plane,)),
     )
-    drawn = [Renderer(scene).draw(camera, np.eye(9)[i]) for i, camera in enumerate(CAMERAS)]
+    drawn = [Renderer(scene).draw(camera, ViewWeights.one(i)) for i, camera in enumerate(CAMERAS)]
     photographs = [data.observations.codes_of(i) / np.float32(255) for i in range(9)]
     errors = [
         (d.image - d.coverage[..., None] * photograph)[d.coverage > 0.25]
@@ -282,7 +282,7 @@ def test_components_that_are_not_worth_their_bytes_are_left_out(world):
     fit = fit_plane(Pixels(data, data, data), settings, "test", 1)
     counts, reached = [], []
     for step in (1e-3, 0.05, 0.5):
-        plane = code_plane(fit, Rate(step, step, svt(8))).value
+        plane = code_plane(fit, Rate(step, step, svt_coder(8))).value
         counts.append(sum(basis.count for basis in plane.bases))
         reached.append(coded_psnr(fit, plane))
     assert counts[0] >= 3 and counts[0] > counts[1] >= counts[2] == 0, counts
@@ -378,8 +378,8 @@ def test_saving_again_codes_nothing_twice(fitted, tmp_path):
     assert (tmp_path / "again.glb").read_bytes() == output.read_bytes()
     save(ef.load(output), tmp_path / "eight.glb", codec="png")
     first, again = ef.load(output), ef.load(tmp_path / "eight.glb")
-    mix = np.eye(9)[0]
-    assert np.abs(Renderer(first).texture(mix) - Renderer(again).texture(mix)).mean() < 2 / 255
+    weights = ViewWeights.one(0)
+    assert np.abs(Renderer(first).texture(weights) - Renderer(again).texture(weights)).mean() < 2 / 255
 
 
 def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted, run):

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.fitted.coverage import CELL, COARSEST, fill_unseen, mean_precision
+from eigenfield.encoding.fitted.coverage import PRECISION_CELL_TEXELS, PRECISION_MIN_FACTOR, fill_unseen, mean_precision
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.rendering.software.drawing import make_surface
@@ -23,10 +23,10 @@ def chart(left, right):
     return make_surface(Mesh(np.zeros((4, 3), np.float32), faces, corners), 96, 96)
 
 
-@pytest.mark.parametrize(("fewer", "expected"), [(4, 0.5), (2, 2**-0.5), (1000, COARSEST)])
+@pytest.mark.parametrize(("fewer", "expected"), [(4, 0.5), (2, 2**-0.5), (1000, PRECISION_MIN_FACTOR)])
 def test_steps_grow_with_the_root_of_what_is_not_seen(fewer, expected):
-    share = np.full((8 * CELL, 8 * CELL), 40.0)
-    share[:, 6 * CELL :] /= fewer
+    share = np.full((8 * PRECISION_CELL_TEXELS, 8 * PRECISION_CELL_TEXELS), 40.0)
+    share[:, 6 * PRECISION_CELL_TEXELS :] /= fewer
     precision = mean_precision(scales(share))
     assert precision.shape == (8, 8)
     assert np.allclose(precision[:, :6], 1) and np.allclose(precision[:, 6:], expected, rtol=0.02)
@@ -39,8 +39,8 @@ def test_what_is_seen_alike_and_what_is_not_seen_at_all_need_no_precision():
 
 def test_texels_that_are_seen_often_are_no_measure():
     """More than the median is as precise as the median."""
-    share = np.full((6 * CELL, 6 * CELL), 10.0)
-    share[: 2 * CELL] = 1000
+    share = np.full((6 * PRECISION_CELL_TEXELS, 6 * PRECISION_CELL_TEXELS), 10.0)
+    share[: 2 * PRECISION_CELL_TEXELS] = 1000
     assert mean_precision(scales(share)) is None
 
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from eigenfield.encoding.fitted.regions import SIDE, best_rectangle, find_regions
+from eigenfield.encoding.fitted.regions import REGION_BLOCK_TEXELS, best_rectangle, find_regions
 
 
 def test_a_square_of_large_error_is_found():
@@ -58,6 +58,11 @@ def test_no_rectangle_has_a_larger_sum(value):
 
 
 def test_blocks_are_of_the_stated_side():
-    energy, seen = np.ones((4 * SIDE, 4 * SIDE), np.float32), np.ones((4 * SIDE, 4 * SIDE), np.float32)
-    energy[SIDE + 1, SIDE + 1] = 500
-    assert find_regions(energy, seen) == [(SIDE, 2 * SIDE, SIDE, 2 * SIDE)]
+    energy, seen = (
+        np.ones((4 * REGION_BLOCK_TEXELS, 4 * REGION_BLOCK_TEXELS), np.float32),
+        np.ones((4 * REGION_BLOCK_TEXELS, 4 * REGION_BLOCK_TEXELS), np.float32),
+    )
+    energy[REGION_BLOCK_TEXELS + 1, REGION_BLOCK_TEXELS + 1] = 500
+    assert find_regions(energy, seen) == [
+        (REGION_BLOCK_TEXELS, 2 * REGION_BLOCK_TEXELS, REGION_BLOCK_TEXELS, 2 * REGION_BLOCK_TEXELS)
+    ]

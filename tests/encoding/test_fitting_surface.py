@@ -10,9 +10,9 @@ import pytest
 import eigenfield as ef
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.fitted import fit_surface
+from eigenfield.encoding.fitted import fit_surface, surface
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX
 from eigenfield.gltf import encode_scene
 from eigenfield.proxy.relief.find_lattice import relief_lattice
 from eigenfield.rendering import draw_texture
@@ -75,7 +75,7 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     cameras = row_grid(9, 64, 56)
     true = relief(cameras[4], 0.5, False)
     observations = photographs_of(true, cameras)
-    lattice = relief_lattice(true, cameras, DEPTH_ERROR)
+    lattice = relief_lattice(true, cameras, DEPTH_ERROR_PX)
     assert lattice is not None
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
@@ -85,7 +85,7 @@ def test_a_relief_stays_on_the_rays_it_was_made_on():
     np.testing.assert_allclose(now[:, :2], exact[:, :2], atol=0.02)
     right = lattice.coordinates(true.vertices)[:, 2]
     assert np.median(np.abs(now[:, 2] - right)) < 0.3 * np.median(np.abs(exact[:, 2] - right))
-    again = relief_lattice(found, cameras, DEPTH_ERROR)
+    again = relief_lattice(found, cameras, DEPTH_ERROR_PX)
     assert again is not None and again.fine == lattice.fine
 
 
@@ -188,13 +188,13 @@ def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
     cameras = row_grid(9, 64, 56)
     true = relief(cameras[4], 0.5, False)
     folder = write_capture(tmp_path / "relief", cameras, true)
-    lattice = relief_lattice(true, cameras, DEPTH_ERROR)
+    lattice = relief_lattice(true, cameras, DEPTH_ERROR_PX)
     exact = lattice.coordinates(true.vertices)
     exact[:, 2] *= 1.03
     wrong = replace(true, vertices=lattice.points(exact).astype(np.float32))
     capture, made = ef.open_capture(folder), {}
     for rounds in (4, 0):
-        monkeypatch.setattr("eigenfield.encoding.fitted.surface.ROUNDS", rounds)
+        monkeypatch.setattr(surface, "SURFACE_TUNING", replace(surface.SURFACE_TUNING, rounds=rounds))
         scene = ef.encode(capture, wrong, textures=2, fit="photographs")
         made[rounds] = len(encode_scene(scene)), scene.settings["fitted"]["psnr"]["luma"]["coded"]
     assert made[4][1] > made[0][1] + 0.3 and made[4][0] < 1.03 * made[0][0]

@@ -8,8 +8,8 @@ import eigenfield as ef
 from eigenfield.core.payloads import mesh_key, size_of
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fitted import PLANE_PRESETS, coded_psnr
-from eigenfield.encoding.fitted.planes import scaled
-from eigenfield.encoding.options import density_of
+from eigenfield.encoding.fitted.planes import plane_size
+from eigenfield.encoding.options import density_for_quality
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, validate
 from support.captures import write_capture
@@ -64,10 +64,10 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     asked = Target(psnr=28)
     with caplog.at_level("INFO", "eigenfield.encode"):
-        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 0.1)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.REFIT_MIN_MESH_RATIO", 0.1)
         once = ef.encode(capture, **options, target=asked)
         assert "fitted again for quality" not in caplog.text  # the meshes differ by less
-        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", 1e-3)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.REFIT_MIN_MESH_RATIO", 1e-3)
         found = ef.encode(capture, **options, target=asked)
     assert "fitted again for quality" in caplog.text and "not kept" not in caplog.text
     assert len(found.proxy.mesh.faces) < len(once.proxy.mesh.faces)
@@ -89,7 +89,7 @@ def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     capture, options = ef.open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
     made = []
     for share in (1.0, 1e-3):
-        monkeypatch.setattr("eigenfield.encoding.fitted.reach.MESH_SHARE", share)
+        monkeypatch.setattr("eigenfield.encoding.fitted.reach.REFIT_MIN_MESH_RATIO", share)
         with caplog.at_level("INFO", "eigenfield.encode"):
             made.append(ef.encode(capture, **options, target=asked))
         assert ("fitted again" in caplog.text) == (share < 1)
@@ -111,9 +111,9 @@ def test_a_target_far_from_the_preset_has_an_atlas_of_its_own(tmp_path, caplog):
 
 
 def test_the_density_is_what_a_quality_pays_for():
-    found = [density_of(quality) for quality in (0, 60, 79, 89, 91, 100)]
+    found = [density_for_quality(quality) for quality in (0, 60, 79, 89, 91, 100)]
     assert found == sorted(found) and found[:2] == [0.9, 0.9] and found[-2:] == [1.5, 1.5]
-    assert EncodeOptions(preset="small").resolved().density == density_of(79)
+    assert EncodeOptions(preset="small").resolved().density == density_for_quality(79)
     assert EncodeOptions(quality=60).resolved().density == 0.9
     assert EncodeOptions(quality=60, density=1.2).resolved().density == 1.2
     assert EncodeOptions(fit="none").resolved().density == 1.5
@@ -124,4 +124,4 @@ def test_chroma_gets_less_dense_later_than_luma():
     for density, share in ((0.9, 1.1 / 0.9), (1.2, 1.4 / 1.2), (1.4, 1.5 / 1.4), (1.5, 1.0), (2.0, 1.0), (0.01, 2.0)):
         assert luma.settings((800, 960), density, 20).mean == (800, 960)
         found = chroma.settings((800, 960), density, 20)
-        assert found.mean == scaled((800, 960), 0.5 * share) and found.grid == scaled((800, 960), 0.3 * share)
+        assert found.mean == plane_size((800, 960), 0.5 * share) and found.grid == plane_size((800, 960), 0.3 * share)

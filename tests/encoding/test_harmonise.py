@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.encoding.projected import fit_colours, harmonised, make_atlas, texture_map
+from eigenfield.encoding.projected import fit_colours, harmonised_map, make_atlas, texture_map
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, save, validate
 from eigenfield.imaging.png import png_bytes
@@ -333,4 +333,4 @@ def test_harmonised_maps_are_the_maps_of_harmonised_photographs(folders):
     values, seen = texture_map(atlas, scene.rig.cameras[3], pixels)
     gain, offset = np.float32([1.2, 0.9, 1.1]), np.float32([0.01, -0.02, 0])
     first, _ = texture_map(atlas, scene.rig.cameras[3], pixels * gain + offset)
-    np.testing.assert_allclose(harmonised(values, seen, np.stack([gain, offset])), first, atol=1e-5)
+    np.testing.assert_allclose(harmonised_map(values, seen, np.stack([gain, offset])), first, atol=1e-5)

@@ -16,8 +16,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fields import options_of
 from eigenfield.encoding.fitted import PLANE_PRESETS
-from eigenfield.encoding.options import PRESETS, UNKNOWN, density_of
-from eigenfield.encoding.projected import FILTERS, METHODS
+from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_for_quality
+from eigenfield.encoding.projected import ALIGN_METHODS, RESAMPLING_FILTERS
 from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
@@ -80,8 +80,9 @@ def test_the_rest_is_fitted():
     ("asked", "meant"),
     [
         ({}, {"fit": "photographs", "preset": "balanced", "planes": "luma-chroma", "quality": 89,
-              "density": density_of(89)}),
-        ({"preset": "small", "planes": "rgb"}, {"fit": "photographs", "quality": 79, "density": density_of(79)}),
+              "density": density_for_quality(89)}),
+        ({"preset": "small", "planes": "rgb"}, {"fit": "photographs", "quality": 79,
+                                                "density": density_for_quality(79)}),
         ({"quality": 60, "density": 1.2, "textures": 4}, {"fit": "photographs", "preset": "balanced",
                                                           "planes": "luma-chroma"}),
         ({"target": Target(psnr=30)}, {"fit": "photographs", "preset": "balanced", "planes": "luma-chroma"}),
@@ -97,10 +98,10 @@ def test_what_options_mean(asked, meant):
 
 
 def test_choices_are_what_there_is_to_choose():
-    tables = {"preset": PRESETS, "planes": PLANE_PRESETS, "resampling": FILTERS, "align": METHODS}
+    tables = {"preset": PRESETS, "planes": PLANE_PRESETS, "resampling": RESAMPLING_FILTERS, "align": ALIGN_METHODS}
     choices = {name: set(one.choices) for name, one in options_of(EncodeOptions) if one.choices}
     assert all(choices[name] == set(table) for name, table in tables.items())
-    assert set(choices) == {*UNKNOWN, "codec"}
+    assert set(choices) == {*UNKNOWN_CHOICE_TEXTS, "codec"}
     for name in choices:
         with pytest.raises(OptionError, match=r"called magic|codec 'magic'") as caught:
             EncodeOptions(**{name: "magic"})

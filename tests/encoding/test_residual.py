@@ -20,13 +20,13 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.residual import (
     captured_pixels,
     check_residual,
-    corrected,
+    corrected_picture,
     difference_of,
     differences,
     with_residual,
 )
 from eigenfield.encoding.residual.make import crf_of
-from eigenfield.encoding.residual.orders import film_order
+from eigenfield.encoding.residual.orders import video_order
 from eigenfield.encoding.residual.views import captured_samples
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, read_scene, validate, without_residual
@@ -76,21 +76,21 @@ def test_qualities_and_crf():
 
 def test_a_grid_is_walked_to_and_fro():
     cameras = row_grid(9, 64, 56)
-    order = film_order(cameras)
+    order = video_order(cameras)
     assert sorted(order.tolist()) == list(range(9))
     centres = np.array([camera.centre for camera in cameras])
     steps = np.linalg.norm(np.diff(centres[order], axis=0), axis=1)
     assert steps.max() < 1.5 * steps.min()
-    some = film_order([cameras[index] for index in (0, 1, 3, 8)])
+    some = video_order([cameras[index] for index in (0, 1, 3, 8)])
     assert sorted(some.tolist()) == list(range(4))
-    assert film_order(cameras[:1]).tolist() == [0]
+    assert video_order(cameras[:1]).tolist() == [0]
 
 
 def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
     for index, difference in differences(exact):
         camera, photograph = exact.rig.cameras[index], to_codes(capture.photograph(index).pixels)
         drawn = ef.render(base, camera=base.rig.names[index])
-        made = corrected(drawn, difference)
+        made = corrected_picture(drawn, difference)
         covered = drawn.coverage > 0.999
         assert made.image.shape == (camera.height, camera.width, 3)
         assert psnr(made.image, photograph, covered) >= 50 > 40 > psnr(drawn.image, photograph, covered)
@@ -98,12 +98,12 @@ def test_captured_views_are_exact_and_others_as_before(base, exact, capture):
         np.testing.assert_array_equal(ef.render(exact, **where).image, ef.render(base, **where).image)
 
 
-def test_coarser_films_are_smaller_and_worse(base, capture):
+def test_coarser_videos_are_smaller_and_worse(base, capture):
     figures = []
     for quality in (20, 60, 90):
         scene = with_residual(base, capture, quality)
         figures.append(
-            (len(scene.residual.film), evaluate(scene, capture, png_maps="none")["image"]["residual"]["psnr"])
+            (len(scene.residual.video), evaluate(scene, capture, png_maps="none")["image"]["residual"]["psnr"])
         )
     assert figures == sorted(figures) and figures[0][1] < figures[2][1] - 3
 
@@ -136,7 +136,7 @@ def test_a_background_shines_through_as_before(base, exact):
     pictures = {}
     for background in ((0.0, 0.0, 0.0), (1.0, 0.5, 0.0)):
         drawn = ef.render(small, camera=small.rig.names[index], background=background, samples=3)
-        made = corrected(drawn, ones, background)
+        made = corrected_picture(drawn, ones, background)
         none = drawn.coverage == 0
         assert none.any() and (drawn.coverage > 0).any()
         np.testing.assert_allclose(made.image[none], np.broadcast_to(background, (none.sum(), 3)))
@@ -149,12 +149,12 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
     path = stored(data, tmp_path)
     assert validate(path) == []
     found = ef.load(path)
-    assert found.residual.film == exact.residual.film and found.residual.scale == exact.residual.scale
+    assert found.residual.video == exact.residual.video and found.residual.scale == exact.residual.scale
     assert found.residual.size == (56, 64) or found.residual.size == (64, 64)
     assert found.residual.order.tolist() == exact.residual.order.tolist()
     assert encode_scene(found) == data
     sizes = parts(path)
-    assert sizes["residual"] == len(exact.residual.film)
+    assert sizes["residual"] == len(exact.residual.video)
     assert sizes["total"] == sum(count for name, count in sizes.items() if name != "total")
     gltf, _ = glb_surgery.split(data)
     extension = gltf["extensions"][limits.EXTENSION]
@@ -163,7 +163,7 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
         and extension["residual"]["smooth"] is True
         and "residual" not in extension["needs"]
     )
-    assert gltf["bufferViews"][-1]["byteLength"] == len(exact.residual.film)  # the last thing in the file
+    assert gltf["bufferViews"][-1]["byteLength"] == len(exact.residual.video)  # the last thing in the file
 
 
 def test_who_does_not_know_it_loses_nothing_else(base, data, tmp_path):
@@ -192,7 +192,7 @@ def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplo
     length = parts(stored(data, tmp_path))["residual"]
     gltf, binary = glb_surgery.split(data)
     ends = [view.get("byteOffset", 0) + view["byteLength"] for view in gltf["bufferViews"]]
-    start = len(data) - len(binary) + sorted(ends)[-3]  # after it the order of the frames, its own too, and the film
+    start = len(data) - len(binary) + sorted(ends)[-3]  # after it the order of the frames, its own too, and the video
     for keep in (start, start + 4, start + 1, len(data) - length // 2, len(data) - 5):
         path = stored(data[:keep], tmp_path)
         found = ef.load(path)
@@ -251,11 +251,11 @@ def test_an_order_is_one_of_all_encoded_cameras(data, tmp_path):
 
 
 def test_limits_hold(data, tmp_path, monkeypatch):
-    monkeypatch.setattr(limits, "MAX_FILM", 64 * 64 * 3 * 7)
+    monkeypatch.setattr(limits, "MAX_VIDEO", 64 * 64 * 3 * 7)
     assert outcome(tmp_path / "a.glb", data) == "residual-size"
 
 
-def test_a_damaged_film_harms_captured_views_alone(base, data, tmp_path):
+def test_a_damaged_video_harms_captured_views_alone(base, data, tmp_path):
     length = parts(stored(data, tmp_path))["residual"]
     random = np.random.default_rng(3)
     codes = set()
@@ -276,7 +276,7 @@ def test_a_damaged_film_harms_captured_views_alone(base, data, tmp_path):
 
 def test_shots_that_are_drawn_otherwise_have_none(exact):
     index, difference = 0, difference_of(exact, 0)
-    expected = to_codes(corrected(ef.render(exact, camera="view_00.png"), difference).image)
+    expected = to_codes(corrected_picture(ef.render(exact, camera="view_00.png"), difference).image)
     np.testing.assert_array_equal(captured_pixels(RenderJob(exact), index, difference), expected)
     assert captured_pixels(RenderJob(exact, background=None), index, difference).shape[2] == 4
     for other in ({"resolution": (32, 32)}, {"filter": "bilinear"}, {"textures": 1}, {"samples": 2}):
@@ -299,7 +299,7 @@ def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
     found, difference = ef.load(path), difference_of(exact, 0)
     plain, smooth = (ef.render(found, camera="view_00.png", samples=samples) for samples in (1, None))
     assert (plain.image != smooth.image).any()
-    expected = to_codes(corrected(plain, difference).image)
+    expected = to_codes(corrected_picture(plain, difference).image)
     np.testing.assert_array_equal(captured_pixels(RenderJob(found), 0, difference), expected)
     assert [captured_samples(found, index) for index in (0, 3)] == [1, 2]
     assert captured_samples(exact, 3) is None

@@ -1,4 +1,4 @@
-"""Reliefs in as few bytes as their pictures are worth: what an error costs, which vertices go, what is left."""
+"""Reliefs in few bytes: what an error costs, which vertices go, what is left."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.geometry import depth_effect, simplify_proxy_rd, simplify_relief_rd
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_mesh
-from eigenfield.encoding.geometry.collapse_kernels import collapse, fallen
-from eigenfield.encoding.geometry.distortion import opened
-from eigenfield.encoding.geometry.raster_kernels import STEPS, Ground, sheet_cost
-from eigenfield.encoding.geometry.simplify_relief import _fitted, _sheet
+from eigenfield.encoding.geometry import depth_distortion, simplify_proxy_rd, simplify_relief_rd
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_mesh
+from eigenfield.encoding.geometry.collapse_kernels import collapse, collapsed_faces
+from eigenfield.encoding.geometry.distortion import hole_error
+from eigenfield.encoding.geometry.raster_kernels import TEXEL_STEPS, CostMap, mesh_cost
+from eigenfield.encoding.geometry.simplify_relief import _collapse_state, _fitted_depths
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 from support.observations import greys, repeated
@@ -36,14 +36,14 @@ def terrain():
     corner = np.arange(SIDE * (SIDE + 1)).reshape(SIDE, SIDE + 1)[:, :-1].ravel()
     upper = np.stack([corner, corner + 1, corner + SIDE + 1], axis=1)
     lower = np.stack([corner + 1, corner + SIDE + 2, corner + SIDE + 1], axis=1)
-    places = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int64) * STEPS
+    places = np.stack([x.ravel(), y.ravel()], axis=1).astype(np.int64) * TEXEL_STEPS
     return places, valley(x, y).ravel().astype(np.float64), np.concatenate([upper, lower]).astype(np.int32)
 
 
-def ground(curve=1.0):
+def cost_map(curve=1.0):
     row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
     one = np.ones((SIDE, SIDE), np.float32)
-    return Ground(
+    return CostMap(
         valley(column, row).astype(np.float32), one.astype(np.uint8), np.float32(curve) * one, np.float32(MOST) * one,
         np.float32(MOST) * one, np.zeros((SIDE, SIDE), np.int16),
     )  # fmt: skip
@@ -51,47 +51,47 @@ def ground(curve=1.0):
 
 def test_faces_share_the_texels_among_themselves():
     places, depth, faces = terrain()
-    below = ground()
+    below = cost_map()
     for senses in (faces, np.ascontiguousarray(faces[:, ::-1])):
-        sheet_cost(below, places, depth, senses)
+        mesh_cost(below, places, depth, senses)
         assert (below.cover == 1).all()  # also those whose middle is on an edge
     random = np.random.default_rng(2)
-    inside = (places > 0).all(axis=1) & (places < SIDE * STEPS).all(axis=1)
-    places[inside] += random.integers(-STEPS // 5, STEPS // 5, (inside.sum(), 2))
-    sheet_cost(below, places, depth, faces)
+    inside = (places > 0).all(axis=1) & (places < SIDE * TEXEL_STEPS).all(axis=1)
+    places[inside] += random.integers(-TEXEL_STEPS // 5, TEXEL_STEPS // 5, (inside.sum(), 2))
+    mesh_cost(below, places, depth, faces)
     assert (below.cover == 1).all()
 
 
 def test_a_texel_costs_its_squared_error_and_at_most_what_else_is_there():
     places, depth, faces = terrain()
-    exact = sheet_cost(ground(), places, depth, faces)
+    exact = mesh_cost(cost_map(), places, depth, faces)
     one = np.zeros_like(depth)
     one[20 * (SIDE + 1) + 5] = 0.2  # far from the valley: planes on either side
-    off = sheet_cost(ground(), places, depth + one, faces) - exact
+    off = mesh_cost(cost_map(), places, depth + one, faces) - exact
     at = [0.1] * 4 + [0.0] * 2  # middles of the diagonals that end there, and others
     assert off == pytest.approx(sum(e**2 * MOST / (e**2 + MOST) for e in at), abs=0.02)
-    assert sheet_cost(ground(), places, depth + 1e4, faces) == pytest.approx(MOST * SIDE**2, rel=1e-3)
+    assert mesh_cost(cost_map(), places, depth + 1e4, faces) == pytest.approx(MOST * SIDE**2, rel=1e-3)
     faces[:, 0] = -1
-    assert sheet_cost(ground(), places, depth, faces) == pytest.approx(MOST * SIDE**2)
+    assert mesh_cost(cost_map(), places, depth, faces) == pytest.approx(MOST * SIDE**2)
 
 
-@pytest.mark.parametrize("worth", [0.01, 1.0, 20.0])
-def test_collapses_lose_less_than_they_save_and_leave_a_sheet(worth):
+@pytest.mark.parametrize("limit", [0.01, 1.0, 20.0])
+def test_collapses_lose_less_than_they_save_and_leave_a_manifold(limit):
     places, depth, faces = terrain()
-    exact = np.concatenate([places / STEPS, depth[:, None]], axis=1)
-    sheet, below = _sheet(places, exact, faces), ground()
-    before = sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
-    falls, costs = collapse(below, sheet, worth)
-    gone = len(falls)
-    assert (costs < worth).all()
-    again = fallen(faces, falls)
-    np.testing.assert_array_equal(again[again[:, 0] >= 0], sheet.faces[sheet.faces[:, 0] >= 0])
+    exact = np.concatenate([places / TEXEL_STEPS, depth[:, None]], axis=1)
+    state, below = _collapse_state(places, exact, faces), cost_map()
+    before = mesh_cost(below, state.places, state.depth, state.faces)
+    collapses, costs = collapse(below, state, limit)
+    gone = len(collapses)
+    assert (costs < limit).all()
+    again = collapsed_faces(faces, collapses)
+    np.testing.assert_array_equal(again[again[:, 0] >= 0], state.faces[state.faces[:, 0] >= 0])
     covered = below.cover.copy()
-    left = sheet.faces[sheet.faces[:, 0] >= 0]
-    after = sheet_cost(below, sheet.places, sheet.depth, left)
+    left = state.faces[state.faces[:, 0] >= 0]
+    after = mesh_cost(below, state.places, state.depth, left)
     np.testing.assert_array_equal(below.cover, covered)  # kept up to date on the way
     assert len(np.unique(left)) == len(places) - gone
-    assert after - before < gone * worth
+    assert after - before < gone * limit
     corner = places[left]
     one, other = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     assert (one[:, 0] * other[:, 1] - one[:, 1] * other[:, 0] > 0).all()  # none turned over
@@ -102,18 +102,18 @@ def test_collapses_lose_less_than_they_save_and_leave_a_sheet(worth):
     assert gone > 0.9 * len(places)  # two planes and a crease
 
 
-def test_what_is_dear_keeps_more():
+def test_high_costs_keep_more():
     places, _, faces = terrain()
-    x, y = places.T / STEPS
+    x, y = places.T / TEXEL_STEPS
     row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
     counts = []
     for curve in (0.0, 0.01, 1.0):
         exact = np.stack([x, y, hills(x, y)], axis=1)
-        below = ground(curve)._replace(depth=hills(column, row).astype(np.float32))
-        sheet = _sheet(places, exact, faces)
-        sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
-        collapse(below, sheet, 0.05)
-        counts.append(len(np.unique(sheet.faces[sheet.faces[:, 0] >= 0])))
+        below = cost_map(curve)._replace(depth=hills(column, row).astype(np.float32))
+        state = _collapse_state(places, exact, faces)
+        mesh_cost(below, state.places, state.depth, state.faces)
+        collapse(below, state, 0.05)
+        counts.append(len(np.unique(state.faces[state.faces[:, 0] >= 0])))
     assert counts[0] < counts[1] < counts[2] / 2
 
 
@@ -121,29 +121,29 @@ def hills(x, y):
     return 3 * np.sin(x / 4) * np.cos(y / 5)
 
 
-def test_less_worth_is_the_same_up_to_what_costs_as_much():
+def test_a_lower_limit_is_the_same_up_to_what_costs_as_much():
     places, _, faces = terrain()
-    x, y = places.T / STEPS
+    x, y = places.T / TEXEL_STEPS
     row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
 
-    def taken(worth):
-        sheet = _sheet(places, np.stack([x, y, hills(x, y)], axis=1), faces)
-        below = ground()._replace(depth=hills(column, row).astype(np.float32))
-        sheet_cost(below, sheet.places, sheet.depth, sheet.faces)
-        return collapse(below, sheet, worth)
+    def taken(limit):
+        state = _collapse_state(places, np.stack([x, y, hills(x, y)], axis=1), faces)
+        below = cost_map()._replace(depth=hills(column, row).astype(np.float32))
+        mesh_cost(below, state.places, state.depth, state.faces)
+        return collapse(below, state, limit)
 
-    falls, costs = taken(1.0)
-    for worth in (0.3, 0.05, 0.01):
-        dear = costs >= worth
-        assert 0 < dear.sum() < len(costs)
-        np.testing.assert_array_equal(taken(worth)[0], falls[: dear.argmax()])
+    collapses, costs = taken(1.0)
+    for limit in (0.3, 0.05, 0.01):
+        beyond = costs >= limit
+        assert 0 < beyond.sum() < len(costs)
+        np.testing.assert_array_equal(taken(limit)[0], collapses[: beyond.argmax()])
 
 
 def test_vertices_of_two_charts_stay():
     places, depth, faces = terrain()
-    exact = np.concatenate([places / STEPS, depth[:, None]], axis=1)
+    exact = np.concatenate([places / TEXEL_STEPS, depth[:, None]], axis=1)
     exact[100] = exact[300]  # at one point of the lattice
-    where = _sheet(places, exact, faces).where
+    where = _collapse_state(places, exact, faces).where
     assert where[100] == where[300] == 2 and (where[[45, 500]] == 0).all()
 
 
@@ -178,12 +178,12 @@ def plane_lattice(cameras, step=0.02) -> Lattice:
     return camera_lattice(camera.K @ np.hstack([camera.R, camera.t[:, None]]), 1.0, step, (0.0, 0.0))
 
 
-def test_the_effect_is_what_the_photographs_lose():
+def test_the_distortion_is_what_the_photographs_lose():
     """Against the error itself: the photographs drawn from the middle one's texture on a plane that is a little off."""
     mesh, cameras, photographs = photographed_plane()
     lattice = plane_lattice(cameras)
-    effect = depth_effect(mesh, lattice, 1.0, cameras, greys(photographs))
-    assert effect.seen == pytest.approx(9, rel=0.1)
+    distortion = depth_distortion(mesh, lattice, 1.0, cameras, greys(photographs))
+    assert distortion.seen == pytest.approx(9, rel=0.1)
     off = 0.5  # of the lattice's steps
     depth = 1 / (1 / 2.0 + 0.02 * off)
     inner = (slice(12, 36), slice(12, 52))
@@ -195,7 +195,7 @@ def test_the_effect_is_what_the_photographs_lose():
         assert photograph.shape == row.shape
         drawn.append(waves(rays)[inner])
     actual = (np.square(np.stack(drawn) - np.mean(drawn, axis=0)).sum(axis=0)).sum()
-    expected = off**2 * effect.ground.curve[12:36, 12:52].sum()
+    expected = off**2 * distortion.cost_map.curve[12:36, 12:52].sum()
     assert expected == pytest.approx(actual, rel=0.25)
 
 
@@ -203,11 +203,11 @@ def test_photographs_again_at_another_time_lose_as_much_again():
     mesh, cameras, photographs = photographed_plane()
     lattice, once = plane_lattice(cameras), greys(photographs)
     twice = repeated(once.pixels, 2)
-    effect, both = (depth_effect(mesh, lattice, 1.0, cameras, some) for some in (once, twice))
-    assert both.seen == pytest.approx(2 * effect.seen)
-    np.testing.assert_allclose(both.ground.curve, 2 * effect.ground.curve, rtol=1e-4)
+    distortion, both = (depth_distortion(mesh, lattice, 1.0, cameras, some) for some in (once, twice))
+    assert both.seen == pytest.approx(2 * distortion.seen)
+    np.testing.assert_allclose(both.cost_map.curve, 2 * distortion.cost_map.curve, rtol=1e-4)
     part = replace(mesh, faces=mesh.faces[::2])
-    (error, seen), (errors, again) = (opened(mesh, part, cameras, some) for some in (once, twice))
+    (error, seen), (errors, again) = (hole_error(mesh, part, cameras, some) for some in (once, twice))
     assert errors == pytest.approx(2 * error) and error > 0
     np.testing.assert_array_equal(again, seen)
 
@@ -216,23 +216,25 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
     mesh, cameras, photographs = photographed_plane()
     assert mesh.uv is not None
     lattice = plane_lattice(cameras)
-    effect = depth_effect(mesh, lattice, 1.0, cameras, greys(photographs))
+    distortion = depth_distortion(mesh, lattice, 1.0, cameras, greys(photographs))
     true = lattice.coordinates(mesh.vertices)[:, 2]
     rough = true + np.random.default_rng(2).normal(0, 1, len(true))
     kept = np.arange(0, len(true), 40)
-    found = _fitted(effect, effect.places(mesh.uv), rough, mesh.faces, kept)
+    found = _fitted_depths(distortion, distortion.places(mesh.uv), rough, mesh.faces, kept)
     np.testing.assert_array_equal(found[kept], rough[kept])
     free = np.setdiff1d(np.arange(len(true)), kept)
     assert np.sqrt(np.square(found - true)[free].mean()) < 0.8 * np.sqrt(np.square(rough - true)[free].mean())
     everything = np.arange(len(true))
-    np.testing.assert_array_equal(_fitted(effect, effect.places(mesh.uv), rough, mesh.faces, everything), rough)
+    np.testing.assert_array_equal(
+        _fitted_depths(distortion, distortion.places(mesh.uv), rough, mesh.faces, everything), rough
+    )
 
 
 def test_flat_photographs_do_not_mind():
     mesh, cameras, photographs = photographed_plane()
     flat = np.full_like(photographs[0], 0.5)
-    effect = depth_effect(mesh, plane_lattice(cameras), 1.0, cameras, greys([flat] * 9))
-    assert effect.ground.curve.max() == 0 and effect.ground.most.max() < 1e-6
+    distortion = depth_distortion(mesh, plane_lattice(cameras), 1.0, cameras, greys([flat] * 9))
+    assert distortion.cost_map.curve.max() == 0 and distortion.cost_map.most.max() < 1e-6
 
 
 def test_a_mesh_that_no_camera_sees_costs_nothing_but_is_whole():
@@ -249,14 +251,16 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
     mesh = relief(made_in, 0.5, virtual)
     random = np.random.default_rng(1)
     photographs = [random.random((camera.height, camera.width)).astype(np.float32) for camera in cameras]
-    plain = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
+    plain = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
     sizes, holes = [], []
-    for price in (1e-9, 0.05):
-        slim = simplify_proxy_rd(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4, greys(photographs), price, 1.0)
+    for lambda_ in (1e-9, 0.05):
+        slim = simplify_proxy_rd(
+            relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4, greys(photographs), lambda_, 1.0
+        )
         found = slim.value
         sizes.append(slim.payloads.bytes)
-        holes.append(opened(mesh, found, cameras, greys(photographs))[0])
-        for camera in cameras if price < 1e-6 else ():
+        holes.append(hole_error(mesh, found, cameras, greys(photographs))[0])
+        for camera in cameras if lambda_ < 1e-6 else ():
             before, after = rasterise_view(mesh, camera), rasterise_view(found, camera)
             both = (before.face >= 0) & (after.face >= 0)
             assert both.sum() > 0.96 * (before.face >= 0).sum()
@@ -264,7 +268,7 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
             assert np.median(np.abs(off)) < 0.01
     assert sizes[1] < 0.6 * sizes[0]
     # more bytes than without any choice only for what they close
-    closed = holes[0] < opened(mesh, plain.value, cameras, greys(photographs))[0]
+    closed = holes[0] < hole_error(mesh, plain.value, cameras, greys(photographs))[0]
     assert closed or sizes[0] <= 1.05 * plain.payloads.bytes
 
 
@@ -272,9 +276,9 @@ def test_other_meshes_keep_their_triangles():
     mesh, cameras = bumpy_square(20), row_grid(9)
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
-    assert relief_lattice(bent, cameras, DEPTH_ERROR) is None
+    assert relief_lattice(bent, cameras, DEPTH_ERROR_PX) is None
     found = simplify_proxy_rd(
-        relief_proxy(bent, cameras, DEPTH_ERROR), cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0
+        relief_proxy(bent, cameras, DEPTH_ERROR_PX), cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0
     )
     assert len(found.value.faces) == len(bent.faces) and found.payloads.bytes > 0
 
@@ -285,10 +289,10 @@ def test_what_a_camera_sees_through_is_found():
     whole, part = mesh, replace(mesh, faces=mesh.faces[: len(mesh.faces) // 2])
     bright = np.full((cameras[0].height, cameras[0].width), 0.5, np.float32)
     for before, after in ((whole, whole), (part, whole)):  # more is no hole
-        error, seen = opened(before, after, cameras, greys([bright] * 9))
+        error, seen = hole_error(before, after, cameras, greys([bright] * 9))
         assert error == 0 and len(seen) == 0
     lost = [(rasterise_view(m, c).face >= 0).sum() for m in (whole, part) for c in cameras]
-    error, seen = opened(whole, part, cameras, greys([bright] * 9))
+    error, seen = hole_error(whole, part, cameras, greys([bright] * 9))
     assert error == pytest.approx(0.25 * (sum(lost[:9]) - sum(lost[9:])))
     missing = mesh.faces[len(mesh.faces) // 2 :]
     assert set(seen) <= set(missing.reshape(-1)) and len(seen) > 0.8 * len(np.unique(missing))
@@ -298,7 +302,7 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     """Two sheets over one another: of the near one alone the photographs' variance is lost."""
     cameras = row_grid(9, 64, 48)
     near = relief(cameras[4], 0.5, False)
-    lattice = relief_lattice(near, cameras, DEPTH_ERROR)
+    lattice = relief_lattice(near, cameras, DEPTH_ERROR_PX)
     assert lattice is not None
     exact = lattice.coordinates(near.vertices)
     exact[:, 2] = exact[:, 2].mean() + 0.02 * (exact[:, 2] - exact[:, 2].mean())  # inverse depth
@@ -310,11 +314,11 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     uv = np.concatenate([near.uv * [0.5, 1], near.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32)
     both = Mesh(vertices, np.concatenate([patch, near.faces + len(near.vertices)]).astype(np.int32), uv)
     grey = np.tile(0.5 + 0.02 * np.sin(np.arange(64)), (48, 1)).astype(np.float32)
-    effect = depth_effect(both, lattice, 2.0**lattice.fine, cameras, greys([grey] * 9))
-    ground = effect.ground
-    given, middle = ground.given > 0, ground.given.shape[1] // 2
+    distortion = depth_distortion(both, lattice, 2.0**lattice.fine, cameras, greys([grey] * 9))
+    cost_map = distortion.cost_map
+    given, middle = cost_map.given > 0, cost_map.given.shape[1] // 2
     front = given & (np.arange(given.shape[1]) < middle)
-    alone = given & ~front & (ground.bare > 10 * ground.most)
-    assert (ground.bare[front] == ground.most[front]).mean() > 0.9
+    alone = given & ~front & (cost_map.bare > 10 * cost_map.most)
+    assert (cost_map.bare[front] == cost_map.most[front]).mean() > 0.9
     assert 0.3 < alone.sum() / (given & ~front).sum() <= 1.0
-    assert np.median(ground.bare[alone]) > 50 * np.median(ground.most[front])
+    assert np.median(cost_map.bare[alone]) > 50 * np.median(cost_map.most[front])

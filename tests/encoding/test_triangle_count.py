@@ -1,4 +1,4 @@
-"""How many triangles a mesh is worth to the pictures that it draws."""
+"""How many triangles a mesh keeps for the pictures that it draws."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from eigenfield import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.geometry import triangles_worth
+from eigenfield.encoding.geometry import triangle_count_rd
 from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
 from eigenfield.encoding.plan import plan_encoding
 from eigenfield.proxy import simplify_mesh, unwrap_mesh
@@ -35,35 +35,35 @@ def stripes(camera: Camera) -> np.ndarray:
     return (0.5 + 0.2 * np.cos(0.7 * column) + 0.2 * np.cos(0.5 * row)[:, None]).astype(np.float32)
 
 
-def worth(mesh: Mesh, price: float) -> int | None:
-    return triangles_worth(mesh, CAMERAS, greys([stripes(camera) for camera in CAMERAS]), price)
+def count_of(mesh: Mesh, lambda_: float) -> int | None:
+    return triangle_count_rd(mesh, CAMERAS, greys([stripes(camera) for camera in CAMERAS]), lambda_)
 
 
-def test_a_plane_is_worth_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
-    found = [worth(wavy(height), 1e-5) for height in (0.0, 0.02, 0.05)]
+def test_a_plane_keeps_next_to_nothing_and_waves_as_many_as_their_bytes_pay_for():
+    found = [count_of(wavy(height), 1e-5) for height in (0.0, 0.02, 0.05)]
     assert all(found) and found == sorted(set(found))
     assert found[0] < 400
-    assert worth(wavy(0.2), 1e-5) is None  # too few would go for new charts
-    dear = worth(wavy(0.2), 1e-3)
-    assert dear is not None and dear < found[-1]
-    assert worth(wavy(0.2), 1e-9) is None  # bytes cost nothing: all are kept
-    assert worth(wavy(0.0), 0) is None
+    assert count_of(wavy(0.2), 1e-5) is None  # too few would go for new charts
+    few = count_of(wavy(0.2), 1e-3)
+    assert few is not None and few < found[-1]
+    assert count_of(wavy(0.2), 1e-9) is None  # bytes cost nothing: all are kept
+    assert count_of(wavy(0.0), 0) is None
 
 
 def test_few_triangles_and_meshes_that_no_camera_sees_stay():
     small = simplify_mesh(wavy(0.1), 200)
-    assert worth(small, 1.0) is None
-    assert worth(replace(wavy(0.1), vertices=wavy(0.1).vertices - np.float32([0, 0, 50])), 1.0) is None
+    assert count_of(small, 1.0) is None
+    assert count_of(replace(wavy(0.1), vertices=wavy(0.1).vertices - np.float32([0, 0, 50])), 1.0) is None
 
 
-def test_one_camera_tells_no_depth():
-    assert triangles_worth(wavy(0.1), CAMERAS[:1], greys([stripes(CAMERAS[0])]), 1e-5) is None
+def test_one_camera_determines_no_depth():
+    assert triangle_count_rd(wavy(0.1), CAMERAS[:1], greys([stripes(CAMERAS[0])]), 1e-5) is None
 
 
-def test_photographs_again_at_another_time_are_worth_as_many_triangles():
+def test_photographs_again_at_another_time_keep_as_many_triangles():
     twice = repeated(greys([stripes(camera) for camera in CAMERAS]).pixels, 2)
-    assert triangles_worth(wavy(0.05), CAMERAS, twice, 1e-5) == worth(wavy(0.05), 1e-5)
-    assert triangles_worth(wavy(0.1), CAMERAS[:1], repeated([twice.pixels[0]], 2), 1e-5) is None
+    assert triangle_count_rd(wavy(0.05), CAMERAS, twice, 1e-5) == count_of(wavy(0.05), 1e-5)
+    assert triangle_count_rd(wavy(0.1), CAMERAS[:1], repeated([twice.pixels[0]], 2), 1e-5) is None
 
 
 def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():

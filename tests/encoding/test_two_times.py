@@ -7,7 +7,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.encoding.fitted import FitData, Pixels, PlaneSettings, fit_plane, open_fit_data, subsampled
+from eigenfield.encoding.fitted import FitData, Pixels, PlaneSettings, fit_plane, open_fit_data, open_subsampled
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import with_robust_weights
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual
@@ -84,7 +84,7 @@ def test_observations_of_a_camera_share_its_footprint():
             np.testing.assert_array_equal(data.observations.codes_of(index), to_codes(PHOTOGRAPHS[index]))
             mask = data.observations.mask(index)
             np.testing.assert_array_equal(mask, 255 * (MASK if index == 1 else np.ones_like(MASK)))
-        with subsampled(data, 2) as some:
+        with open_subsampled(data, 2) as some:
             assert len(some.footprints) == 3 and len(some) == 6
             for index in range(6):
                 counts, _ = some.footprint(index)

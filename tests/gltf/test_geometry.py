@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import FormatError
 from eigenfield.core.mesh import Mesh
@@ -19,7 +19,7 @@ from eigenfield.core.payloads import Payloads, cameras_key, mesh_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.code_planes import coded_plane
-from eigenfield.encoding.geometry.coded import CAMERA_STEP, DEPTH_ERROR, PIXEL_STEP, coded_cameras, coded_mesh
+from eigenfield.encoding.geometry.coded import CAMERA_STEP_PX, DEPTH_ERROR_PX, MESH_STEP_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import parts, save, validate
 from eigenfield.gltf.coarse import coarse_mesh, shown_mesh
 from eigenfield.gltf.container import parse_glb, read_file
@@ -41,10 +41,10 @@ def coded_scene() -> EncodedScene:
 
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
-    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
+    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
     found = made.value
     assert len(found.faces) == len(mesh.faces) and made.payloads.bytes < mesh.vertices.nbytes / 4
-    most = PIXEL_STEP / 2 * np.sqrt(2) + DEPTH_ERROR * 1.5
+    most = MESH_STEP_PX / 2 * np.sqrt(2) + DEPTH_ERROR_PX * 1.5
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
@@ -56,21 +56,21 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     cameras = row_grid(9)
     made_in = cameras[5] if not virtual else replace(cameras[4], t=cameras[4].t + np.array([0.07, -0.03, 0.01]))
     mesh = relief(made_in, 0.5, virtual)
-    assert relief_lattice(mesh, cameras, DEPTH_ERROR) is not None
-    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR), cameras, 4)
+    assert relief_lattice(mesh, cameras, DEPTH_ERROR_PX) is not None
+    made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
     found = made.value
     assert made.payloads.bytes < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
         apart = np.linalg.norm(before[:, None] - after[None], axis=2).min(axis=1)
-        assert apart.max() < 2 * DEPTH_ERROR + 0.02
+        assert apart.max() < 2 * DEPTH_ERROR_PX + 0.02
 
 
 def test_other_meshes_are_no_relief():
     mesh = bumpy_square(20)
     assert mesh.uv is not None
     bent = replace(mesh, uv=(mesh.uv**2).astype(np.float32))
-    assert relief_lattice(bent, row_grid(9), DEPTH_ERROR) is None
+    assert relief_lattice(bent, row_grid(9), DEPTH_ERROR_PX) is None
 
 
 def beside(mesh: Mesh, other: Mesh, part: float) -> Mesh:
@@ -87,9 +87,9 @@ def test_what_stands_before_a_relief_makes_it_none():
     cameras = row_grid(9)
     wall = relief(cameras[5], 0.5, False)
     thing = unwrap_mesh(Mesh((ball(level=2).vertices * 0.3 + (0, 0, 2)).astype(np.float32), ball(level=2).faces))
-    assert relief_lattice(beside(wall, thing, 0.75), cameras, DEPTH_ERROR) is None
+    assert relief_lattice(beside(wall, thing, 0.75), cameras, DEPTH_ERROR_PX) is None
     layer = replace(wall, vertices=(wall.vertices * 1.1 - 0.1 * cameras[5].centre).astype(np.float32))
-    assert relief_lattice(beside(wall, layer, 0.5), cameras, DEPTH_ERROR) is not None
+    assert relief_lattice(beside(wall, layer, 0.5), cameras, DEPTH_ERROR_PX) is not None
 
 
 @settings(max_examples=40, deadline=None)
@@ -120,7 +120,7 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR), inside, 0).value
+    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
 
@@ -133,7 +133,7 @@ def test_cameras_are_near_what_they_were():
     assert found.payloads.bytes < 12 * 4 * 9
     for before, after in zip(shaken, found.value, strict=True):
         moved = np.abs(before.project(mesh.vertices)[0] - after.project(mesh.vertices)[0])
-        assert moved.max() < 4 * CAMERA_STEP
+        assert moved.max() < 4 * CAMERA_STEP_PX
 
 
 def test_a_coded_scene_through_a_file(tmp_path):
@@ -193,7 +193,7 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
     mean = np.kron(random.random((64, 64, 3)), np.ones((4, 4, 1))).astype(np.float32)
     for contrast, side in ((0.0, 64), (1.0, 128)):
         shown = 0.5 + contrast * (mean - 0.5)
-        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt(8)) for k in range(3)]
+        planes = [coded_plane(shown[..., k : k + 1].copy(), (), 0.002, svt_coder(8)) for k in range(3)]
         values = tuple(plane.value for plane in planes)
         scene = replace(
             tiny_scene(cameras=4),

@@ -11,7 +11,15 @@ from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.coding.pictures import stacking
-from eigenfield.coding.pictures.pictures_10bit import FLAT, TOP, crf_of, decode_10bit, encode_10bit, encoder_step, svt
+from eigenfield.coding.pictures.pictures_10bit import (
+    MAX_CODE,
+    MIDDLE_CODE,
+    crf_of,
+    decode_10bit,
+    encode_10bit,
+    encoder_step,
+    svt_coder,
+)
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Payload, Payloads, weights_key
 from eigenfield.encoding.fitted.code_planes import code_basis, code_mean, coded_plane, with_weights
@@ -23,7 +31,7 @@ from support.scenes import float_basis, smooth_pictures, tiny_scene
 @pytest.fixture(scope="module")
 def picture():
     y, x = np.mgrid[0:96, 0:128]
-    values = FLAT + 300 * np.sin(x / 9) * np.cos(y / 13)
+    values = MIDDLE_CODE + 300 * np.sin(x / 9) * np.cos(y / 13)
     return np.rint(values).astype(np.uint16)
 
 
@@ -34,7 +42,7 @@ def data(picture):
 
 def test_codes_of_ten_bits_come_back(picture, data):
     back = decode_10bit(data, False, "here")
-    assert back.dtype == np.uint16 and back.shape == picture.shape and back.max() <= TOP
+    assert back.dtype == np.uint16 and back.shape == picture.shape and back.max() <= MAX_CODE
     assert np.abs(back.astype(int) - picture).mean() < 3
     assert (back % 4 != 0).any()  # more than 8 bits
     assert encode_10bit(picture, 4, 8) == data
@@ -71,7 +79,7 @@ def test_a_damaged_picture_is_refused(data):
 
 def test_textures_are_stacked_and_share_one_step():
     basis = float_basis(5, 7, 64, 80, 2)
-    coded = code_basis(basis, 1e-3, svt(8))
+    coded = code_basis(basis, 1e-3, svt_coder(8))
     made = coded.basis
     assert sum(picture.count for picture in coded.pictures) == 7 and {p.codec for p in coded.pictures} == {
         "av1-10bit-1"
@@ -84,11 +92,11 @@ def test_textures_are_stacked_and_share_one_step():
 
 
 def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatch):
-    monkeypatch.setattr("eigenfield.encoding.fitted.code_planes.ROWS", 128)  # two textures a file
+    monkeypatch.setattr("eigenfield.encoding.fitted.code_planes.PICTURE_MAX_ROWS", 128)  # two textures a file
     basis = float_basis(5, 4, 64, 80, 1)
     strength = np.array([1, 1, 0.5, 0.5], np.float32)[:, None, None, None]
     basis = replace(basis, textures=basis.textures * strength)
-    coded = code_basis(basis, 1e-3, svt(8)).basis
+    coded = code_basis(basis, 1e-3, svt_coder(8)).basis
     scale = coded.scale[:, 0]
     assert scale[0] == scale[1] > 3 * scale[2] and scale[2] == scale[3]
     eight = np.rint(np.rint(coded.textures * (255 / 1023)) * (1023 / 255))
@@ -100,16 +108,16 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
 @pytest.mark.parametrize("channels", [1, 2])
 def test_means_of_any_range(channels):
     mean = smooth_pictures(1, 64, 64, channels)[0] * (3 if channels == 2 else 0.5) + (0 if channels == 2 else 0.5)
-    back, picture = code_mean(mean, 1e-3, svt(8))
+    back, picture = code_mean(mean, 1e-3, svt_coder(8))
     assert picture.codec == "av1-10bit-1" and np.abs(back - mean).mean() < 0.01
 
 
 def scene_of_planes():
     scene = tiny_scene(3, 0)
-    bases = (code_basis(float_basis(5, 3, 64, 64, 1), 1e-3, svt(8)),)
-    luma = coded_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, svt(8))
-    local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, svt(8))
-    chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, svt(8))
+    bases = (code_basis(float_basis(5, 3, 64, 64, 1), 1e-3, svt_coder(8)),)
+    luma = coded_plane(0.5 + 0.3 * smooth_pictures(1, 96, 64, 1)[0], bases, 1e-3, svt_coder(8))
+    local = code_basis(replace(float_basis(5, 2, 64, 64, 2), grid=(80, 96), corner=(16, 8)), 1e-3, svt_coder(8))
+    chroma = coded_plane(0.1 * smooth_pictures(1, 64, 64, 2)[0], (local,), 1e-3, svt_coder(8))
     matrix = np.array([[1, 0.5, 0.25], [1, -0.5, 0.5], [1, 0.125, -1]], np.float32)
     return encoded(
         replace(scene, appearance=replace(scene.appearance, planes=(luma.value, chroma.value), to_rgb=matrix)),
@@ -139,7 +147,7 @@ def test_stacks_of_eight_bits_are_read():
     random = np.random.default_rng(0)
     for channels in (1, 2, 3):
         codes = random.integers(0, 256, (3, 16, 24, channels)).astype(np.uint8)
-        stack = np.concatenate([stacking.stacked(one) for one in codes])
+        stack = np.concatenate([stacking.stacked_picture(one) for one in codes])
         data = stacking.encode(stack if channels == 3 else stack[..., None], "png", 0)
         back = stacking.decode(memoryview(data), "png", 24, 16, channels, "here", 3)
         np.testing.assert_array_equal(back, codes)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import eigenfield as ef
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.coding.pictures.precision import precision_codes, spread_precision
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import mean_key
@@ -41,8 +41,8 @@ def test_what_is_less_precise_costs_fewer_bytes_and_is_farther_off():
     mean += np.random.default_rng(0).normal(0, 0.02, mean.shape).astype(np.float32)
     precision = np.ones((4, 4), np.float32)
     precision[:, 2:] = 0.25
-    whole, file = code_mean(mean, 4e-3, svt(8))
-    less, smaller = code_mean(mean, 4e-3, svt(8), precision)
+    whole, file = code_mean(mean, 4e-3, svt_coder(8))
+    less, smaller = code_mean(mean, 4e-3, svt_coder(8), precision)
     assert len(smaller.data) + len(smaller.precision.data) < 0.9 * len(file.data)
     error = {name: np.abs(values - mean) for name, values in {"whole": whole, "less": less}.items()}
     assert error["less"][:, 96:].mean() > 1.5 * error["whole"][:, 96:].mean()

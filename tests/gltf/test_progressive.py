@@ -11,7 +11,7 @@ import eigenfield as ef
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf import encode_scene, parts, read_scene, store_scores, validate, without_residual
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.rendering import Renderer, ViewWeights, camera_weights
 from support import glb_surgery
 from support.captures import write_capture
 
@@ -66,8 +66,8 @@ def test_what_is_left_is_closed_for_viewers(data, tmp_path):
     path.write_bytes(left)
     assert validate(path) == [] and len(left) < len(data)
     cut = read_scene(data[: lengths[1] + 1])
-    mix = np.eye(9)[4]
-    np.testing.assert_allclose(Renderer(cut).texture(mix), Renderer(ef.load(path)).texture(mix), atol=1e-6)
+    weights = ViewWeights.one(4)
+    np.testing.assert_allclose(Renderer(cut).texture(weights), Renderer(ef.load(path)).texture(weights), atol=1e-6)
 
 
 def test_a_file_cut_short_is_no_good_file(data, tmp_path):

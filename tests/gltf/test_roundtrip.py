@@ -351,7 +351,7 @@ def test_a_photographs_mean_that_overshoots_is_cut_and_others_are_not(tmp_path):
     scene = tiny_scene(3, 1)
     mean = scene.appearance.planes[0].mean
     mean = (mean - mean.min()) / np.ptp(mean) * np.float32(1.1) - np.float32(0.05)
-    assert quantise.photographic(mean)
+    assert quantise.is_photographic(mean)
     for codec in ("png", "webp"):
         back = reloaded(
             replace(

@@ -238,7 +238,7 @@ def test_limits_are_those_of_the_code():
         "MAX_CAMERA_SIDE": cameras["size"]["items"]["maximum"],
         "MAX_NAME": DEFINITIONS["text"]["maxLength"],
         "MAX_GAIN": properties["toRGB"]["items"]["maximum"],
-        "LARGEST": DEFINITIONS["number"]["maximum"],
+        "MAX_NUMBER": DEFINITIONS["number"]["maximum"],
     }
     assert found == {name: getattr(limits, name) for name in found}
     assert DEFINITIONS["bufferView"]["maximum"] == DEFINITIONS["accessor"]["maximum"] == limits.MAX_VIEWS - 1

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
-from eigenfield.rendering import Renderer, draw_texture
+from eigenfield.rendering import Renderer, ViewWeights, draw_texture
 from eigenfield.rendering.software.resample import make_taps, tiles_read
 from eigenfield.rendering.software.tiles import tile_shape
 from reference import composite, finer
@@ -47,14 +47,14 @@ def test_planes_of_several_densities_are_composed_as_the_reference_does(matrix):
     renderer = Renderer(scene)
     for row in range(3):
         mix = np.eye(5)[row] * 0.7 + 0.06
-        np.testing.assert_allclose(renderer.texture(mix), composite(scene, mix), atol=2e-5)
+        np.testing.assert_allclose(renderer.texture(ViewWeights.from_dense(mix)), composite(scene, mix), atol=2e-5)
 
 
 def test_a_drawn_view_is_the_composed_texture_on_the_mesh():
     scene = split_scene()
     mix = np.full(5, 0.2)
     camera = scene.rig.cameras[0]
-    drawn = Renderer(scene).draw(camera, mix, samples=1)
+    drawn = Renderer(scene).draw(camera, ViewWeights.from_dense(mix), samples=1)
     expected = draw_texture(scene.proxy.mesh, composite(scene, mix).astype(np.float32), camera, samples=1)
     np.testing.assert_allclose(drawn.image, expected.image, atol=2e-5)
     np.testing.assert_array_equal(drawn.coverage, expected.coverage)
@@ -63,37 +63,37 @@ def test_a_drawn_view_is_the_composed_texture_on_the_mesh():
 def test_buffers_used_again_hold_nothing_of_the_last_picture():
     scene = split_scene()
     renderer = Renderer(scene)
-    first = renderer.draw(scene.rig.cameras[0], np.eye(5)[0]).image
-    renderer.draw(scene.rig.cameras[4], np.eye(5)[4])
-    np.testing.assert_array_equal(renderer.draw(scene.rig.cameras[0], np.eye(5)[0]).image, first)
+    first = renderer.draw(scene.rig.cameras[0], ViewWeights.one(0)).image
+    renderer.draw(scene.rig.cameras[4], ViewWeights.one(4))
+    np.testing.assert_array_equal(renderer.draw(scene.rig.cameras[0], ViewWeights.one(0)).image, first)
 
 
 def test_a_count_limits_every_basis():
     scene = split_scene()
     cut = tuple(replace(p, bases=tuple(basis.truncated(1) for basis in p.bases)) for p in scene.appearance.planes)
-    mix = np.eye(5)[2]
+    weights = ViewWeights.one(2)
     np.testing.assert_allclose(
-        Renderer(scene).texture(mix, 1),
-        composite(replace(scene, appearance=replace(scene.appearance, planes=cut)), mix),
+        Renderer(scene).texture(weights, 1),
+        composite(replace(scene, appearance=replace(scene.appearance, planes=cut)), weights.dense(5)),
         atol=2e-5,
     )
     none = replace(
         scene, appearance=replace(scene.appearance, planes=tuple(replace(p, bases=()) for p in scene.appearance.planes))
     )
-    np.testing.assert_allclose(Renderer(scene).texture(mix, 0), Renderer(none).texture(mix), atol=1e-6)
+    np.testing.assert_allclose(Renderer(scene).texture(weights, 0), Renderer(none).texture(weights), atol=1e-6)
 
 
 def test_a_coarse_mean_alone_is_drawn_as_it_is():
     mean = smooth_pictures(1, 24, 30, 3)[0]
     scene = replace(tiny_scene(3, 0), appearance=replace(tiny_scene(3, 0).appearance, planes=(Plane(mean, ()),)))
-    np.testing.assert_allclose(Renderer(scene).texture(np.zeros(5)), mean, atol=1e-6)
+    np.testing.assert_allclose(Renderer(scene).texture(ViewWeights()), mean, atol=1e-6)
 
 
 def test_an_attribute_of_other_channels_needs_no_matrix():
     planes = (Plane(smooth_pictures(1, 32, 32, 4)[0], ()), Plane(smooth_pictures(1, 16, 20, 1)[0], ()))
     scene = replace(tiny_scene(3, 0), appearance=replace(tiny_scene(3, 0).appearance, planes=planes))
     assert scene.appearance.channels == 5
-    np.testing.assert_allclose(Renderer(scene).texture(np.zeros(5)), composite(scene, np.zeros(5)), atol=1e-5)
+    np.testing.assert_allclose(Renderer(scene).texture(ViewWeights()), composite(scene, np.zeros(5)), atol=1e-5)
 
 
 @given(st.integers(1, 90), st.integers(1, 90))
@@ -132,13 +132,13 @@ def test_bases_of_sixteen_bits():
     scale = np.float32(np.abs(values).max() / 30000)
     codes = (np.rint(values / scale) + 32768).astype(np.uint16)
     fine = Basis(codes, np.full_like(basis.scale, scale), np.full_like(basis.zero, 32768), basis.weights)
-    mix = np.eye(5)[1]
+    weights = ViewWeights.one(1)
     expected = composite(
-        replace(scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (fine,)),))), mix
+        replace(scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (fine,)),))), weights.dense(5)
     )
     np.testing.assert_allclose(
         Renderer(replace(scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (fine,)),)))).texture(
-            mix
+            weights
         ),
         expected,
         atol=1e-4,
@@ -150,7 +150,8 @@ def test_texels_that_the_mesh_does_not_use_are_left_out():
     assert mesh.uv is not None
     mesh = replace(mesh, uv=(mesh.uv * np.float32(0.3)))
     scene = replace(split_scene(), proxy=Proxy(mesh))
-    found, expected = Renderer(scene).texture(np.full(5, 0.2)), composite(scene, np.full(5, 0.2))
+    mix = np.full(5, 0.2)
+    found, expected = Renderer(scene).texture(ViewWeights.from_dense(mix)), composite(scene, mix)
     used = found.any(axis=2)
     assert 0.05 < used.mean() < 0.8
     np.testing.assert_allclose(found[used], expected[used], atol=2e-5)

@@ -184,7 +184,7 @@ def test_the_weight_map_holds_the_weights(columns, rows, held_out, mode):
     nodes = 33
     found, steps = weight_map(made, mode, nodes), np.linspace(-1, 1, nodes)
     omega = made.appearance.planes[0].bases[0].weights.astype(float)
-    expected = [[view_weights(made, (x, y), mode) @ omega for x in steps] for y in steps]
+    expected = [[view_weights(made, (x, y), mode).blend(omega) for x in steps] for y in steps]
     assert found.shape == (nodes, nodes, 6)
     np.testing.assert_allclose(found, expected, atol=1e-5)
 

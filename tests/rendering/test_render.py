@@ -17,7 +17,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import Renderer, draw_texture, path_points, view_weights
+from eigenfield.rendering import Renderer, ViewWeights, draw_texture, path_points, view_weights
 from eigenfield.rendering.software.drawing import (
     STANDARD,
     Frame,
@@ -96,7 +96,7 @@ def test_composition_is_equation_8(stored, channels):
     for count in (None, 0, 3):
         part = basis.truncated(basis.count if count is None else count)
         expected = reference.texture(
-            scene.appearance.planes[0].mean.astype(float), part.values(), weights @ part.weights
+            scene.appearance.planes[0].mean.astype(float), part.values(), weights.blend(part.weights)
         )
         made = Renderer(scene).texture(weights, count)
         assert np.abs(made - expected).max() <= 1e-4 * np.abs(expected).max()
@@ -198,12 +198,12 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
     scene = tiny_scene(textures=6)
     (plane,) = scene.appearance.planes
     (basis,) = plane.bases
-    whole = Renderer(scene).draw(scene.rig.cameras[1], np.eye(5)[1]).image
+    whole = Renderer(scene).draw(scene.rig.cameras[1], ViewWeights.one(1)).image
     rest = Basis(basis.textures[2:], basis.scale[2:], basis.zero[2:], basis.weights[:, 2:])
     halves = replace(
         scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
     )
-    np.testing.assert_allclose(Renderer(halves).draw(scene.rig.cameras[1], np.eye(5)[1]).image, whole, atol=1e-6)
+    np.testing.assert_allclose(Renderer(halves).draw(scene.rig.cameras[1], ViewWeights.one(1)).image, whole, atol=1e-6)
 
     def channels(part):
         textures = np.ascontiguousarray(basis.textures[..., part])
@@ -212,15 +212,15 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
         )
 
     apart = replace(scene, appearance=replace(scene.appearance, planes=(channels(slice(0, 1)), channels(slice(1, 3)))))
-    drawn = Renderer(apart).draw(scene.rig.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
-    expected = Renderer(scene).draw(scene.rig.cameras[1], np.eye(5)[1], background=(0.1, 0.2, 0.3))
+    drawn = Renderer(apart).draw(scene.rig.cameras[1], ViewWeights.one(1), background=(0.1, 0.2, 0.3))
+    expected = Renderer(scene).draw(scene.rig.cameras[1], ViewWeights.one(1), background=(0.1, 0.2, 0.3))
     np.testing.assert_allclose(drawn.image, expected.image, atol=1e-6)
 
 
 def test_tiles_out_of_sight_are_not_needed():
     """A close-up composes only what it shows, and shows what the whole picture shows there."""
     scene = tiny_scene(textures=4, size=128)
-    renderer, weights = Renderer(scene), np.eye(5)[2]
+    renderer, weights = Renderer(scene), ViewWeights.one(2)
     camera = scene.rig.cameras[2]
     near = replace(
         camera, K=np.diag([6.0, 6, 1]) @ camera.K - np.array([[0, 0, 5.0 * 24], [0, 0, 5.0 * 20], [0, 0, 0]])

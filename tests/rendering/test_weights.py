@@ -14,7 +14,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.rendering import camera_weights, delaunay_triangles, novel_camera, view_weights
+from eigenfield.rendering import ViewWeights, camera_weights, delaunay_triangles, novel_camera, view_weights
 from support.scenes import tiny_scene
 
 K = np.array([[100.0, 0, 50], [0, 100, 40], [0, 0, 1]])
@@ -38,10 +38,46 @@ def scene_at(centres, held_out=()):
     return replace(scene, rig=replace(scene.rig, reference=int(np.flatnonzero(~held)[0]))), places
 
 
+def dense_weights(scene, at, mode="delaunay"):
+    return view_weights(scene, at, mode).dense(scene.observations)
+
+
 def jittered(rows, columns, seed=0, amount=0.15):
     random = np.random.default_rng(seed)
     grid = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2).astype(float)
     return grid + random.uniform(-amount, amount, grid.shape)
+
+
+def test_weights_blend_the_rows_that_they_name():
+    matrix = np.array([[1, 2], [10, 20], [100, 200], [1000, 2000]], np.float32)
+    weights = ViewWeights(np.array([1, 3]), np.array([0.25, 0.75]))
+    np.testing.assert_array_equal(weights.blend(matrix), [752.5, 1505])
+    np.testing.assert_array_equal(weights.dense(5), [0, 0.25, 0, 0.75, 0])
+    np.testing.assert_array_equal(ViewWeights.one(2).blend(matrix), matrix[2])
+    np.testing.assert_array_equal(ViewWeights().blend(matrix), [0, 0])
+    again = ViewWeights.from_dense(weights.dense(4))
+    assert again.rows.tolist() == [1, 3] and again.values.tolist() == [0.25, 0.75]
+    assert weights.blend(matrix).dtype == again.blend(matrix).dtype == np.float64
+
+
+@pytest.mark.parametrize("rows, values", [([0, 1], [1]), ([[0]], [[1]]), ([2, 2], [0.5, 0.5]), ([-1], [1])])
+def test_weights_of_no_or_of_the_same_observation_are_refused(rows, values):
+    with pytest.raises(ValueError, match="view weights"):
+        ViewWeights(np.array(rows), np.array(values, float))
+
+
+@pytest.mark.parametrize("mode, most", [("delaunay", 3), ("nearest3", 3), ("bilinear", 4)])
+def test_a_place_takes_of_the_cameras_around_it_alone(mode, most):
+    """In the order of the cameras, held-out ones left out, and at another instant of that instant's observations."""
+    scene, places = scene_at(jittered(3, 4), held_out=[11] if mode != "bilinear" else [])
+    scene = replace(scene, times=(0.0, 0.5))
+    each = len(scene.rig.encoded)
+    for at in (*places, (0.1, 0.2), (-0.4, 0.7), (0.9, -0.9)):
+        first, second = (view_weights(scene, at, mode, time) for time in (0, 1))
+        assert 1 <= len(first.rows) <= most and (np.diff(first.rows) > 0).all() and first.values.all()
+        assert first.rows.max() < each
+        np.testing.assert_array_equal(second.rows, first.rows + each)
+        np.testing.assert_array_equal(second.values, first.values)
 
 
 @settings(max_examples=30, deadline=None)
@@ -51,7 +87,7 @@ def test_continuous_modes_reproduce_positions_and_sum_to_one(seed, mode):
     scene, places = scene_at(jittered(5, 6, seed))
     random = np.random.default_rng(seed)
     for at in random.uniform(-0.7, 0.7, (5, 2)):
-        weights = view_weights(scene, at, mode)
+        weights = dense_weights(scene, at, mode)
         assert weights.sum() == pytest.approx(1, abs=1e-12) and weights.min() >= -1e-12
         np.testing.assert_allclose(weights @ places, at, atol=1e-9)
 
@@ -60,9 +96,9 @@ def test_continuous_modes_reproduce_positions_and_sum_to_one(seed, mode):
 def test_exact_at_the_cameras(mode):
     scene, places = scene_at(jittered(4, 4))
     for index, at in enumerate(places):
-        weights = view_weights(scene, at, mode)
+        weights = dense_weights(scene, at, mode)
         assert weights[index] == pytest.approx(1, abs=1e-9)
-        np.testing.assert_array_equal(camera_weights(scene, index, mode), np.eye(16)[index])
+        np.testing.assert_array_equal(camera_weights(scene, index, mode).dense(16), np.eye(16)[index])
 
 
 @settings(max_examples=20, deadline=None)
@@ -72,14 +108,14 @@ def test_nearest3_is_equation_7(seed):
     scene, places = scene_at(random.uniform(-1, 1, (9, 2)))
     rows = random.normal(size=(9, 4))
     at = random.uniform(-0.9, 0.9, 2)
-    np.testing.assert_allclose(view_weights(scene, at, "nearest3") @ rows, reference.nearest3_weights(at, places, rows),
-                               rtol=1e-6, atol=1e-6)  # fmt: skip
+    expected = reference.nearest3_weights(at, places, rows)
+    np.testing.assert_allclose(view_weights(scene, at, "nearest3").blend(rows), expected, rtol=1e-6, atol=1e-6)
 
 
 def largest_jump(scene, mode, steps):
     angle = np.linspace(0, 2 * np.pi, steps)
     path = 0.8 * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    weights = np.array([view_weights(scene, at, mode) for at in path])
+    weights = np.array([dense_weights(scene, at, mode) for at in path])
     return np.abs(np.diff(weights, axis=0)).max()
 
 
@@ -93,7 +129,7 @@ def test_delaunay_and_bilinear_do_not_jump_and_nearest3_does():
 
 def test_outside_the_hull_the_nearest_point_of_it_counts():
     scene, places = scene_at([[0, 0], [2, 0], [1, 2]])
-    weights = view_weights(scene, (-1, 1))  # the bounding box's corner, outside the triangle
+    weights = dense_weights(scene, (-1, 1))  # the bounding box's corner, outside the triangle
     assert weights.min() >= 0 and weights.sum() == pytest.approx(1) and (weights > 0).sum() == 2
     nearest = weights @ places
     for other in np.random.default_rng(0).dirichlet([1, 1, 1], 200) @ places:
@@ -102,14 +138,14 @@ def test_outside_the_hull_the_nearest_point_of_it_counts():
 
 def test_viewpoints_are_clamped_to_the_array():
     scene, _ = scene_at(jittered(3, 3))
-    np.testing.assert_array_equal(view_weights(scene, (9, -9)), view_weights(scene, (1, -1)))
+    np.testing.assert_array_equal(dense_weights(scene, (9, -9)), dense_weights(scene, (1, -1)))
 
 
 @pytest.mark.parametrize("mode", ["delaunay", "bilinear", "nearest3"])
 def test_cameras_on_a_line_are_one_dimensional(mode):
     scene, places = scene_at([[0, 0], [1, 0], [3, 0], [4, 0]])
     for y in (0.0, 0.7):
-        weights = view_weights(scene, (0.1, y), mode)
+        weights = dense_weights(scene, (0.1, y), mode)
         assert weights.sum() == pytest.approx(1)
         if mode == "delaunay":
             np.testing.assert_allclose(weights @ places[:, 0], 0.1, atol=1e-9)
@@ -118,7 +154,7 @@ def test_cameras_on_a_line_are_one_dimensional(mode):
 
 def test_held_out_cameras_take_the_weights_of_where_they_stand():
     scene, places = scene_at(jittered(3, 3, amount=0), held_out=[4])
-    weights = camera_weights(scene, 4)
+    weights = camera_weights(scene, 4).dense(scene.observations)
     assert weights.shape == (8,)
     np.testing.assert_allclose(weights @ places[scene.rig.encoded], places[4], atol=1e-9)
 
@@ -162,5 +198,5 @@ def test_weights_on_an_edge_are_those_of_its_ends(mode):
     assert len(edges) >= 20
     for first, second in edges:
         for part in random.uniform(0.05, 0.95, 40):
-            weights = view_weights(scene, tuple((1 - part) * places[first] + part * places[second]), mode)
+            weights = dense_weights(scene, tuple((1 - part) * places[first] + part * places[second]), mode)
             assert weights[[first, second]] == pytest.approx([1 - part, part], abs=1e-6) and weights.min() >= 0

@@ -8,8 +8,8 @@ import threading
 import numpy as np
 import pytest
 
-from eigenfield.coding.pictures.pictures_10bit import SMALLEST, encode_10bit
-from eigenfield.coding.video.av1 import encode_film
+from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS, encode_10bit
+from eigenfield.coding.video.av1 import encode_video
 from eigenfield.runtime.parallel import TASKS, ordinary_scheduling, parallel_map
 
 pytestmark = pytest.mark.skipif(
@@ -59,8 +59,8 @@ def test_a_process_that_was_started_real_time_stays_so():
 
 
 def test_no_encoder_leaves_a_real_time_thread():
-    codes = np.zeros((SMALLEST, SMALLEST), np.uint16)
-    half = np.zeros((SMALLEST // 2, SMALLEST // 2), np.uint16)
+    codes = np.zeros((MIN_SIDE_TEXELS, MIN_SIDE_TEXELS), np.uint16)
+    half = np.zeros((MIN_SIDE_TEXELS // 2, MIN_SIDE_TEXELS // 2), np.uint16)
     parallel_map(lambda crf: encode_10bit(codes, crf, 8), [20, 30, 40])
-    encode_film([(codes, half, half)], codes.shape, 30, 8)
+    encode_video([(codes, half, half)], codes.shape, 30, 8)
     assert os.SCHED_FIFO not in policies()

@@ -12,13 +12,13 @@ import numpy as np
 
 import eigenfield as ef
 from eigenfield.coding.codecs import encoder
-from eigenfield.coding.pictures.pictures_10bit import svt
+from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, mean_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import save
 from eigenfield.proxy.relief.find_lattice import relief_proxy
 from support.captures import write_capture
@@ -41,9 +41,9 @@ def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> E
     (plane,) = plain.appearance.planes
     (basis,) = plane.bases
     stream, weights = encoder(weights_codec)(basis.weights, 0.01, grid)
-    textures = with_weights(code_basis(basis, STEP, svt(8)), weights, Payload(weights_codec, stream))
-    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR), views.value, plain.rig.reference)
-    made = coded_plane(plane.mean, (textures,), STEP, svt(8))
+    textures = with_weights(code_basis(basis, STEP, svt_coder(8)), weights, Payload(weights_codec, stream))
+    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR_PX), views.value, plain.rig.reference)
+    made = coded_plane(plane.mean, (textures,), STEP, svt_coder(8))
     scene = replace(
         plain,
         proxy=Proxy(mesh.value),
@@ -66,7 +66,7 @@ def precise_scene() -> EncodedScene:
     layered = kept_as_png(layered_scene())  # its textures
     precision = np.random.default_rng(2).uniform(0.4, 1, (3, 5)).astype(np.float32)
     precision[0, 0] = 1
-    means = [coded_plane(plane.mean, (), STEP, svt(8), precision) for plane in layered.appearance.planes]
+    means = [coded_plane(plane.mean, (), STEP, svt_coder(8), precision) for plane in layered.appearance.planes]
     planes = tuple(
         replace(plane, mean=mean.value.mean) for plane, mean in zip(layered.appearance.planes, means, strict=True)
     )

@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from eigenfield.coding.pictures.quantise import mean_codes, mean_values
-from eigenfield.coding.pictures.stacking import encode, stacked
+from eigenfield.coding.pictures.stacking import encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
@@ -19,7 +19,7 @@ from eigenfield.core.payloads import Affine, Payloads, PicturePayload, mean_key,
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf import save
-from eigenfield.rendering import draw_texture, view_weights, viewpoint
+from eigenfield.rendering import ViewWeights, draw_texture, view_weights, viewpoint
 from support.scenes import smooth_pictures
 from support.viewer_scenes import FREE, PLACES, SIDE, free_camera, scene
 
@@ -65,8 +65,10 @@ def coded(
     return Basis(codes, scale, zero, np.ascontiguousarray(weights[:, :count]), grid, corner)
 
 
-def composed(scene: Scene, weights: np.ndarray, count: int | None = None) -> np.ndarray:
-    """(H, W, 3): the texture that is drawn. weights: (Ne,), or (h, w, Ne) for each size in a dict."""
+def composed(
+    scene: Scene, weights: ViewWeights | dict[tuple[int, int], np.ndarray], count: int | None = None
+) -> np.ndarray:
+    """(H, W, 3): the texture that is drawn. weights: of the view, or (h, w, No) for each size."""
     channels = []
     for plane in scene.appearance.planes:
         total = np.zeros((*scene.appearance.atlas, plane.mean.shape[2]))
@@ -76,7 +78,8 @@ def composed(scene: Scene, weights: np.ndarray, count: int | None = None) -> np.
                 part += plane.mean
             for basis in plane.bases:
                 if basis.size == size:
-                    omega = (weights[size] if isinstance(weights, dict) else weights) @ basis.weights
+                    whole = isinstance(weights, ViewWeights)
+                    omega = weights.blend(basis.weights) if whole else weights[size] @ basis.weights
                     (top, left), (rows, columns) = basis.corner, basis.textures.shape[1:3]
                     for j, texture in enumerate(basis.values()[:count]):
                         own = np.broadcast_to(omega[..., j, None], (*size, 1))
@@ -116,7 +119,7 @@ def flat(made: Scene, low: float, high: float) -> Scene:
 
 
 def ray_weights(made: Scene, eye: np.ndarray, size: tuple[int, int], low: float, high: float) -> np.ndarray:
-    """(h, w, Ne): the definition for each texel of a flat scene, continued beyond the square."""
+    """(h, w, No): the definition for each texel of a flat scene, continued beyond the square."""
     plane = made.rig.view_plane
     normal = np.cross(plane.right, plane.up)
     row, column = np.indices(size)
@@ -124,7 +127,7 @@ def ray_weights(made: Scene, eye: np.ndarray, size: tuple[int, int], low: float,
     points = (np.stack([u - low, v - low, 0.0 * u], axis=-1) / (high - low) * 2 - [1, 1, 0]).reshape(-1, 3)
     along = ((plane.origin - points) @ normal) / ((eye - points) @ normal)
     places = plane.coordinates(points + along[:, None] * (eye - points))
-    return np.array([view_weights(made, tuple(place)) for place in places]).reshape(*size, -1)
+    return np.array([view_weights(made, tuple(place)).dense(made.observations) for place in places]).reshape(*size, -1)
 
 
 def write(folder: Path) -> None:
@@ -177,7 +180,7 @@ def encoded(made: Scene, payloads: Payloads) -> EncodedScene:
 
 
 def png_picture(basis: Basis, part: slice) -> PicturePayload:
-    codes = np.concatenate([stacked(texture) for texture in basis.textures[part]])
+    codes = np.concatenate([stacked_picture(texture) for texture in basis.textures[part]])
     affine = Affine(*(numbers[part].ravel().astype(np.float64) for numbers in (basis.scale, basis.zero)))
     data = encode(codes if codes.ndim == 3 else codes[..., None], "png", 0)
     return PicturePayload("png", data, len(basis.textures[part]), affine)

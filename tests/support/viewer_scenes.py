@@ -48,7 +48,7 @@ from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.gltf import save
-from eigenfield.rendering import novel_camera, renderer_of, view_weights, viewpoint
+from eigenfield.rendering import ViewWeights, novel_camera, renderer_of, view_weights, viewpoint
 from support.scenes import bumpy_square, encoded_triangles, float_basis, smooth_pictures
 
 WIDTH, HEIGHT = 320, 240
@@ -213,7 +213,7 @@ def _weights(path: Path) -> list[dict]:
     for x, y in np.random.default_rng(11).uniform(-1.2, 1.2, (40, 2)):
         camera = novel_camera(loaded, (x, y))
         numbers = np.concatenate([camera.K.ravel(), camera.R.ravel(), camera.t])
-        rows = {mode: view_weights(loaded, (x, y), mode).tolist() for mode in modes}
+        rows = {mode: view_weights(loaded, (x, y), mode).dense(loaded.observations).tolist() for mode in modes}
         listed.append({"at": [x, y], "weights": rows, "camera": numbers.tolist()})
     return listed
 
@@ -293,8 +293,7 @@ def _capture(folder: Path, loaded: Scene) -> None:
     folder.mkdir(exist_ok=True)
     frames = []
     for index, (name, camera) in enumerate(zip(loaded.rig.names, loaded.rig.cameras, strict=True)):
-        weights = np.eye(len(loaded.rig.names))[index]
-        picture = renderer_of(loaded).draw_uint8(camera, weights, samples=1).astype(int)
+        picture = renderer_of(loaded).draw_uint8(camera, ViewWeights.one(index), samples=1).astype(int)
         picture[:, : WIDTH // 4] += 10
         Image.fromarray(np.clip(picture, 0, 255).astype(np.uint8)).save(folder / f"{name}.png")
         to_world = np.eye(4)

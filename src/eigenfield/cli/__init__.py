@@ -23,7 +23,7 @@ VERBS = {
     "encode": "Turn photographs into one .glb; cameras and proxy are estimated where they are not given.",
     "render": "Draw a viewpoint, a captured camera, or a fly-through.",
     "view": "Look around in a scene, in a browser.",
-    "export": "Write a scene for other programs: a page, a film, OBJ, texture maps, a quilt, COLMAP.",
+    "export": "Write a scene for other programs: a page, a video, OBJ, texture maps, a quilt, COLMAP.",
     "evaluate": "Measure a scene against its photographs.",
     "info": "Show what a scene file holds: bytes by part, settings, scores.",
     "validate": "Check a scene file and list every finding.",
@@ -71,14 +71,14 @@ def _stop(number: int, frame: object) -> NoReturn:
     raise KeyboardInterrupt
 
 
-def _interrupted() -> NoReturn:
+def _exit_interrupted() -> NoReturn:
     click.echo("eigenfield: interrupted", err=True)
     sys.stdout.flush()
     os._exit(130)  # everything is cleaned up; threads in the middle of a kernel or a codec are not waited for
 
 
 def main() -> None:
-    """Entry point: exit code 0, 2 for an error that a person can mend, 130 when interrupted; a bug keeps its
+    """Entry point: exit code 0, 2 for an error that a person can correct, 130 when interrupted; a bug keeps its
     traceback and exits with 1."""
     logging.basicConfig(format="%(message)s", level=logging.WARNING)
     with contextlib.suppress(ValueError):  # not in the main thread
@@ -101,11 +101,11 @@ def main() -> None:
         click.echo(f"eigenfield: {error}", err=True)
         sys.exit(2)
     except (KeyboardInterrupt, click.Abort):
-        _interrupted()
+        _exit_interrupted()
     except BrokenPipeError:
         sys.stderr.close()
         sys.exit(141)
     except Exception:
         if not _signals:
             raise
-        _interrupted()  # raised within a C module's import, a KeyboardInterrupt comes out as that module's ImportError
+        _exit_interrupted()  # a KeyboardInterrupt within a C module's import comes out as that module's ImportError

@@ -9,12 +9,12 @@ from pathlib import Path
 import click
 
 from eigenfield.cli.calibrate_chart import ChartOptions, calibrate_from_charts, chart_options
-from eigenfield.cli.common import _grid, common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import common_options, echo_json, note, parse_grid, progress_bars
 from eigenfield.core.errors import OptionError
 
-REPORT = "report.json"
-ENDING = "-calibration"
-MATCHING = ("auto", "exhaustive", "similar", "grid", "positions")
+REPORT_FILE = "report.json"
+CALIBRATION_SUFFIX = "-calibration"
+MATCHING_WAYS = ("auto", "exhaustive", "similar", "grid", "positions")
 
 
 @click.command(
@@ -42,7 +42,7 @@ Examples:
 )
 @click.option(
     "--matching",
-    type=click.Choice(MATCHING),
+    type=click.Choice(MATCHING_WAYS),
     default="auto",
     show_default=True,
     help="Which photographs are compared: all, those that look alike, or neighbours by the names' grid or positions.",
@@ -63,7 +63,9 @@ Examples:
     "--masks", type=click.Path(path_type=Path), metavar="FOLDER", help="Masks named as the photographs; white counts."
 )
 @click.option("--format", metavar="NAME", help="What the names of the photographs mean, as `encode` takes it.")
-@click.option("--grid", metavar="RxC", callback=_grid, help="Numbered photographs are R rows of C columns, row by row.")
+@click.option(
+    "--grid", metavar="RxC", callback=parse_grid, help="Numbered photographs are R rows of C columns, row by row."
+)
 @click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s).")
 @chart_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier calibration in DIR; other files there stay.")
@@ -139,7 +141,7 @@ def command(
         )
     report = describe_motion(motion)
     text = json.dumps(report, indent=1, allow_nan=False) + "\n"
-    save_calibration(motion.light_field, place, motion.points, overwrite=overwrite, more={REPORT: text.encode()})
+    save_calibration(motion.light_field, place, motion.points, overwrite=overwrite, more={REPORT_FILE: text.encode()})
     if as_json:
         echo_json(report)
     else:
@@ -150,4 +152,4 @@ def command(
 def _default_output(folder: Path) -> Path:
     """Beside the photographs, never among them."""
     whole = folder.absolute()
-    return whole.with_name(whole.name + ENDING) if whole.name else whole / ENDING.lstrip("-")
+    return whole.with_name(whole.name + CALIBRATION_SUFFIX) if whole.name else whole / CALIBRATION_SUFFIX.lstrip("-")

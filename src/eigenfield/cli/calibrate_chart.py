@@ -1,4 +1,4 @@
-"""The part of `eigenfield calibrate` that takes pictures of a chart: its options, and what it does."""
+"""The part of `eigenfield calibrate` that takes pictures of a chart."""
 
 from __future__ import annotations
 
@@ -21,12 +21,22 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 BOARD_FILE = "charuco.toml"
-REPORT = "report.json"
+REPORT_FILE = "report.json"
 
 
 @dataclass(frozen=True)
 class ChartOptions:
-    """The chart as the command line describes it."""
+    """The chart as the command line describes it; None for what was not given.
+
+    Attributes:
+        chart: "checkerboard" or "charuco".
+        board: Columns and rows, or a charuco.toml.
+        square: Side of a square, with its unit.
+        marker: Side of a marker, with its unit.
+        dictionary: Of the markers.
+        inverted: Whether it is printed white on black.
+        legacy: Whether OpenCV drew it before 4.6.
+    """
 
     chart: str
     board: str | None
@@ -38,7 +48,7 @@ class ChartOptions:
 
 
 def chart_options(function: F) -> F:
-    """Add --chart and what describes the board; the verb gets them as one `chart: ChartOptions | None`."""
+    """Add --chart and the options of the board; the verb gets them as one `chart: ChartOptions | None`."""
     options = [
         click.option("--chart", type=click.Choice(["checkerboard", "charuco"]),
                      help="FOLDER holds pictures or videos of a board of this kind, by camera."),
@@ -82,10 +92,15 @@ def chart_options(function: F) -> F:
 
 
 def board_of(options: ChartOptions, folder: Path) -> Board:
-    """The board that the options describe, or a charuco.toml in `folder` or above it.
+    """The board that the options describe, or a charuco.toml in a folder or above it.
 
-    Raises OptionError (`chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do), CaptureError
-    `board-file`.
+    Args:
+        options: The chart.
+        folder: With the pictures.
+
+    Raises:
+        OptionError: `chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do.
+        CaptureError: `board-file`.
     """
     from dataclasses import replace
 
@@ -100,34 +115,34 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
     )
 
     if options.chart == "checkerboard":
-        _refuse(options, ("marker", "dictionary", "legacy"), "a checkerboard has none")
-        columns, rows = parse_size(_needed(options, "board", "inner corners, columns by rows: --board 9x6"))
-        square, unit = parse_length(_needed(options, "square", "the side of a square: --square 25mm"))
+        _refuse_options(options, ("marker", "dictionary", "legacy"), "a checkerboard has none")
+        columns, rows = parse_size(_required_option(options, "board", "inner corners, columns by rows: --board 9x6"))
+        square, unit = parse_length(_required_option(options, "square", "the side of a square: --square 25mm"))
         return checkerboard(columns, rows, square, unit, inverted=options.inverted)
     file = _board_file(options, folder)
     if file is not None:
-        _refuse(options, ("square", "marker", "dictionary"), f"{file} says it")
+        _refuse_options(options, ("square", "marker", "dictionary"), f"{file} says it")
         board = read_board(file)
         inverted = board.inverted if options.inverted is None else options.inverted
         legacy = board.legacy if options.legacy is None or board.rows % 2 else options.legacy
         return replace(board, inverted=inverted, legacy=legacy)
-    columns, rows = parse_size(_needed(options, "board", "squares, columns by rows: --board 4x5"))
-    square, unit = parse_length(_needed(options, "square", "the side of a square: --square 54mm"))
-    marker, other = parse_length(_needed(options, "marker", "the side of a marker: --marker 40.5mm"))
+    columns, rows = parse_size(_required_option(options, "board", "squares, columns by rows: --board 4x5"))
+    square, unit = parse_length(_required_option(options, "square", "the side of a square: --square 54mm"))
+    marker, other = parse_length(_required_option(options, "marker", "the side of a marker: --marker 40.5mm"))
     return charuco(
         columns, rows, square, convert_length(marker, other, unit), options.dictionary or BOARD_DEFAULT_DICTIONARY,
         unit, inverted=options.inverted, legacy=options.legacy,
     )  # fmt: skip
 
 
-def _needed(options: ChartOptions, name: str, what: str) -> str:
+def _required_option(options: ChartOptions, name: str, what: str) -> str:
     value = getattr(options, name)
     if value is None:
         raise OptionError("chart", f"--chart {options.chart} needs --{name}", remedy=f"say {what}")
     return str(value)
 
 
-def _refuse(options: ChartOptions, names: tuple[str, ...], why: str) -> None:
+def _refuse_options(options: ChartOptions, names: tuple[str, ...], why: str) -> None:
     for name in names:
         if getattr(options, name) is not None:
             raise OptionError("chart", f"--{name} does not go with it: {why}", remedy="leave it out")
@@ -140,8 +155,8 @@ def _board_file(options: ChartOptions, folder: Path) -> Path | None:
 
 
 def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, overwrite: bool, quiet: bool) -> None:
-    """Calibrate the rig whose charts are in `folder`; write transforms.json, sparse/0 and report.json to `output`; say
-    how good it is."""
+    """Calibrate the rig whose charts are in `folder`; write transforms.json, sparse/0 and report.json to `output`;
+    print the table of its cameras."""
     from eigenfield.calibrate.charts.calibrate import calibrate_charts
     from eigenfield.capture.writers.save import save_calibration
 
@@ -152,7 +167,7 @@ def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, 
     for problem in result.problems:
         note(problem, quiet)
     report = json.dumps(result.describe(), indent=1, allow_nan=False) + "\n"
-    save_calibration(result.light_field(output), output, overwrite=overwrite, more={REPORT: report.encode()})
+    save_calibration(result.light_field(output), output, overwrite=overwrite, more={REPORT_FILE: report.encode()})
     for line in table(result):
         click.echo(line)
     click.echo(f"{output}: {summary(result)}, {time.monotonic() - started:.0f} s")
@@ -163,12 +178,12 @@ def table(result: ChartCalibration) -> list[str]:
     rows = [("camera", "boards", "corners", "rms", "median", "focal", "seen", "from first", "estimated")]
     first = next(report.camera for report in result.reports if report.camera is not None)
     for report in result.reports:
-        figures = ("-", "-", "-", _seen(report), "-", report.reason or "")
+        figures = ("-", "-", "-", _pattern_text(report), "-", report.reason or "")
         if report.camera is not None:
             away = float(sum((report.camera.centre - first.centre) ** 2) ** 0.5)
             figures = (
                 f"{report.rms:.2f} px", f"{report.median:.2f} px",
-                f"{report.camera.K[0, 0]:.1f} ± {report.focal_deviation:.1f}", _seen(report),
+                f"{report.camera.K[0, 0]:.1f} ± {report.focal_deviation:.1f}", _pattern_text(report),
                 f"{away:.4g} {result.unit}".rstrip(), report.model,
             )  # fmt: skip
         rows.append((report.name, f"{report.used}/{report.boards}/{report.pictures}", str(report.corners), *figures))
@@ -176,7 +191,7 @@ def table(result: ChartCalibration) -> list[str]:
     return ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows]
 
 
-def _seen(report: CameraReport) -> str:
+def _pattern_text(report: CameraReport) -> str:
     if report.inverted is None:
         return "-"
     return ("inverted" if report.inverted else "as printed") + (", from behind" if report.mirrored else "")

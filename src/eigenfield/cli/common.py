@@ -1,4 +1,4 @@
-"""What the verbs share: bars on a terminal, JSON on standard output, and options that every verb has."""
+"""Shared by the verbs: bars on a terminal, JSON on standard output, and options that every verb has."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def capture_options(function: F) -> F:
                      help="What the capture is, where it may be read in several ways: "
                           "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
                           "positions, hci, stanford, grid, numbered, video or folder."),
-        click.option("--grid", metavar="RxC", callback=_grid,
+        click.option("--grid", metavar="RxC", callback=parse_grid,
                      help="Numbered photographs are R rows of C columns, row by row."),
         click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
     ]  # fmt: skip
@@ -76,8 +76,12 @@ def reconstruction_options(function: F) -> F:
     return function
 
 
-def _grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
-    """ROWSxCOLUMNS as a pair; OptionError `grid-unknown`."""
+def parse_grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+    """A click callback: ROWSxCOLUMNS as a pair.
+
+    Raises:
+        OptionError: `grid-unknown`.
+    """
     if value is None:
         return None
     match = re.fullmatch(r"([1-9][0-9]{0,5})[xX×]([1-9][0-9]{0,5})", value)
@@ -134,19 +138,27 @@ def note(message: str, quiet: bool = False) -> None:
         click.echo(message, err=True)
 
 
-def tell(messages: Iterable[str], quiet: bool) -> None:
+def note_all(messages: Iterable[str], quiet: bool) -> None:
     """Notes, a line each."""
     for message in messages:
         note(message, quiet)
 
 
 def timings(seconds: Mapping[str, float]) -> list[str]:
-    """What each stage took, as lines."""
+    """The seconds of each stage, as lines."""
     return [f"  {stage:8} {f'{took:6.1f} s' if took else 'taken up'}" for stage, took in seconds.items()]
 
 
 def refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
-    """Raise OptionError `proxy-given` for options that only matter where the proxy is made."""
+    """Refuse options that only matter where the proxy is made.
+
+    Args:
+        settings: The options of `reconstruct`.
+        blind: Whether --blind was given.
+
+    Raises:
+        OptionError: `proxy-given`.
+    """
     asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
     if asked:
         raise OptionError(

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from eigenfield.capture import LightField
     from eigenfield.core.scene import Scene
 
-HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
-FRAMES = 96
+DEMO_HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
+DEMO_FRAMES = 96
 
 
 @click.command(
@@ -58,14 +58,14 @@ def command(output: Path, quiet: bool) -> None:
             draw_demo_capture(folder, progress=progress)
         capture = open_capture(folder)
         note(f"encoding them into {path}", quiet)
-        scene = encode(capture, folder / "proxy.ply", hold_out=HOLD_OUT, work=output, progress=progress)
+        scene = encode(capture, folder / "proxy.ply", hold_out=DEMO_HOLD_OUT, work=output, progress=progress)
         save(scene, path, overwrite=True, progress=progress)
-        _look(path, output, progress, quiet)
+        _write_flight(path, output, progress, quiet)
         figures = _measure(path, capture, output, progress, quiet)
     click.echo(_summary(path, scene, figures, time.monotonic() - started))
 
 
-def _look(path: Path, output: Path, progress: Progress | None, quiet: bool) -> None:
+def _write_flight(path: Path, output: Path, progress: Progress | None, quiet: bool) -> None:
     from fractions import Fraction
 
     from eigenfield.core.progress import track
@@ -75,8 +75,8 @@ def _look(path: Path, output: Path, progress: Progress | None, quiet: bool) -> N
 
     note(f"flying through it in {output / 'flight.mp4'}", quiet)
     scene = load(path)
-    pictures = parallel_stream(lambda at: render(scene, at=tuple(at)).to_uint8(), path_points("circle", FRAMES))
-    frames = track(pictures, "fly-through", FRAMES, progress)
+    pictures = parallel_stream(lambda at: render(scene, at=tuple(at)).to_uint8(), path_points("circle", DEMO_FRAMES))
+    frames = track(pictures, "fly-through", DEMO_FRAMES, progress)
     write_video(output / "flight.mp4", frames, Fraction(30), overwrite=True)
 
 

@@ -1,4 +1,4 @@
-"""Options of the verbs that draw: how a picture is drawn, and how a film runs."""
+"""Options of the verbs that draw pictures and videos."""
 
 from __future__ import annotations
 
@@ -17,8 +17,9 @@ DEFAULT_FRAMES, DEFAULT_FPS = 120, "30"
 def picture_options(function: F) -> F:
     """Add --resolution, --background, --weights, --filter, --textures, --renderer: those of `RenderJob`."""
     options = [
-        click.option("--resolution", callback=_size, metavar="WxH", help="Size in pixels.  [default: the camera's]"),
-        click.option("--background", callback=_colour, default="#000000", show_default=True, metavar="COLOUR",
+        click.option("--resolution", callback=_parse_size, metavar="WxH",
+                     help="Size in pixels.  [default: the camera's]"),
+        click.option("--background", callback=_parse_colour, default="#000000", show_default=True, metavar="COLOUR",
                      help="'#rrggbb', or transparent, where the proxy does not reach."),
         click.option("--weights", default="delaunay", show_default=True, metavar="delaunay|nearest3|bilinear",
                      help="How cameras near the viewpoint are mixed."),
@@ -40,7 +41,7 @@ def flight_options(function: F) -> F:
     options = [
         click.option("--path", "path", metavar="circle|spiral|grid", help="A fly-through."),
         click.option("--frames", type=int, metavar="N", help=f"Pictures of a path.  [default: {DEFAULT_FRAMES}]"),
-        click.option("--fps", callback=_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
+        click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
                      help="Pictures a second."),
     ]  # fmt: skip
     for option in reversed(options):
@@ -56,7 +57,7 @@ def residual_option(function: F) -> F:
     return option(function)
 
 
-def _size(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
     if value is None:
         return None
     try:
@@ -66,7 +67,7 @@ def _size(context: click.Context, parameter: click.Parameter, value: str | None)
     return width, height
 
 
-def _colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
+def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
     if value == "transparent":
         return None
     if not re.fullmatch(r"#?[0-9a-fA-F]{6}", value):
@@ -75,7 +76,7 @@ def _colour(context: click.Context, parameter: click.Parameter, value: str) -> t
     return tuple(int(digits[i : i + 2], 16) / 255 for i in (0, 2, 4))
 
 
-def _rate(context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
+def _parse_rate(context: click.Context, parameter: click.Parameter, value: str) -> Fraction:
     try:
         rate = Fraction(value).limit_denominator(1001)
     except (ValueError, ZeroDivisionError):

@@ -13,10 +13,10 @@ import click
 from eigenfield.cli.common import (
     capture_options,
     common_options,
+    note_all,
     progress_bars,
     reconstruction_options,
     refuse_unused,
-    tell,
     timings,
 )
 from eigenfield.cli.field_options import field_options, from_fields
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from eigenfield.reconstruction import Reconstruction
 
 
-def _atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
+def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
     if value is None:
         return None
     try:
@@ -43,7 +43,7 @@ def _atlas(context: click.Context, parameter: click.Parameter, value: str | None
     raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
 
 
-def _size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
+def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
     if value is None:
         return None
     found = re.fullmatch(r"(\d+(?:\.\d+)?) *(k|m|g|)b?", value.strip().lower())
@@ -77,7 +77,7 @@ Examples:
     "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb to write."
 )
 @capture_options
-@field_options(EncodeOptions, atlas=_atlas, target_size=_size)
+@field_options(EncodeOptions, atlas=_parse_atlas, target_size=_parse_size)
 @click.option(
     "--work",
     type=click.Path(path_type=Path),
@@ -127,11 +127,11 @@ def command(
         if proxy is not None:
             refuse_unused(settings, blind)
             scratch = output.absolute().parent if work is None else work
-            light_field = _opened(capture, place, scratch, quiet)
+            light_field = _open_capture(capture, place, scratch, quiet)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
-            made = _reconstructed(capture, place, options, settings, blind, scratch, progress, quiet)
+            made = _reconstruct(capture, place, options, settings, blind, scratch, progress, quiet)
             scene = encode(made.light_field, made.mesh, options, triangles=None, work=scratch, progress=progress)
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
@@ -144,7 +144,7 @@ def command(
     )
 
 
-def _opened(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:
+def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
     from eigenfield.runtime.files import mended
@@ -152,11 +152,11 @@ def _opened(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool)
     light_field = open_capture(capture, **place)
     with mended(scratch):
         scratch.mkdir(parents=True, exist_ok=True)
-    tell(light_field.problems, quiet)
+    note_all(light_field.problems, quiet)
     return light_field
 
 
-def _reconstructed(
+def _reconstruct(
     capture: Path,
     place: Mapping[str, Any],
     options: EncodeOptions,
@@ -173,7 +173,7 @@ def _reconstructed(
     from eigenfield.reconstruction import reconstruct
 
     opened = open_any(capture, work=scratch / "frames", **place)
-    tell(opened.problems, quiet)
+    note_all(opened.problems, quiet)
     check_selection(opened, options)
     made = reconstruct(
         opened,
@@ -183,6 +183,6 @@ def _reconstructed(
         progress=progress,
         **settings,
     )
-    tell(made.light_field.problems[len(opened.problems) :], quiet)
-    tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
+    note_all(made.light_field.problems[len(opened.problems) :], quiet)
+    note_all([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
     return made

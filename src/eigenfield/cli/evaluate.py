@@ -21,7 +21,7 @@ COLUMNS: tuple[Column, ...] = (
     ("coverage", "coverage", "{:.1%}"),
     ("flip", "FLIP", "{:.4f}"),
 )
-LABEL = 22
+LABEL_WIDTH = 22
 
 
 @click.command(
@@ -121,7 +121,7 @@ def command(
         refuse_existing_plots(plots, overwrite)
     loaded = load(scene)
     if store:
-        refuse_existing(scene, overwrite=True)  # says now, not after the work, that the folder cannot be written to
+        refuse_existing(scene, overwrite=True)  # fails now, not after the work, where the folder cannot be written to
     opened = open_any(capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame)
     light_field = with_scene_cameras(loaded, opened)
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.rig.names)
@@ -144,27 +144,33 @@ def command(
 
 
 def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[str]:
-    """The figures as lines for a person. fitted: the scene was, so that it has no texture maps."""
+    """The figures as lines for a person.
+
+    Args:
+        name: Of the scene's file.
+        figures: Of `evaluation.evaluate`.
+        fitted: Whether the scene was fitted, and so has no texture maps.
+    """
     lines = [f"{name}: {figures['textures']} eigen textures, drawn {figures['filter']}, {figures['seconds']:.0f} s", ""]
     parts = [part for part in figures["image"].values() if part is not None]
     columns = [column for column in COLUMNS if any(column[0] in part for part in parts)]
-    lines.append(" " * LABEL + "".join(f"{heading:>11}" for _, heading, _ in columns))
+    lines.append(" " * LABEL_WIDTH + "".join(f"{heading:>11}" for _, heading, _ in columns))
     uv = figures["uv"]
     why = "none: the scene was fitted to the photographs (encode --fit none makes them)" if fitted else "not measured"
-    lines += _rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL}}{why}"]
+    lines += _table_rows("texture maps (UV)", uv, columns) if uv else [f"{'texture maps (UV)':{LABEL_WIDTH}}{why}"]
     for key, label in (("encoded", "encoded"), ("residual", "with residual"), ("held_out", "held out")):
         part = figures["image"][key]
         if part is None and key == "residual":
             continue
         if part is None:
-            lines.append(f"{label:{LABEL}}none")
+            lines.append(f"{label:{LABEL_WIDTH}}none")
             continue
-        lines += _rows(f"{label} ({part['cameras']})", part, columns)
+        lines += _table_rows(f"{label} ({part['cameras']})", part, columns)
         if "outside" in part:
-            lines += _rows("  outside circles", part["outside"], columns)
+            lines += _table_rows("  outside circles", part["outside"], columns)
     if figures["missing"]:
-        lines += ["", f"{len(figures['missing'])} cameras have no photograph here: {_some(figures['missing'])}"]
-    lines += _bytes(figures)
+        lines += ["", f"{len(figures['missing'])} cameras have no photograph here: {_first_names(figures['missing'])}"]
+    lines += _size_lines(figures)
     if figures.get("curve"):
         lines += ["", f"{'eigen textures':>14}{'UV SSIM':>11}{'UV PSNR':>11}"]
         for point in figures["curve"]:
@@ -173,20 +179,23 @@ def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[s
     return lines
 
 
-def _rows(label: str, part: Mapping[str, Any], columns: Sequence[Column]) -> list[str]:
+def _table_rows(label: str, part: Mapping[str, Any], columns: Sequence[Column]) -> list[str]:
     """A line of means and a line of the worst cameras' values, named by the worst PSNR."""
     lows = {key: None if worst is None else worst["value"] for key, worst in part["worst"].items()}
     named = part["worst"].get("psnr")
     mean = "".join(f"{_cell(part.get(key), form):>11}" for key, _, form in columns)
     low = "".join(f"{_cell(lows.get(key), form):>11}" for key, _, form in columns)
-    return [f"{label:{LABEL}}{mean}", f"{'  worst':{LABEL}}{low}   {'' if named is None else named['camera']}".rstrip()]
+    return [
+        f"{label:{LABEL_WIDTH}}{mean}",
+        f"{'  worst':{LABEL_WIDTH}}{low}   {'' if named is None else named['camera']}".rstrip(),
+    ]
 
 
 def _cell(value: float | None, form: str) -> str:
     return "" if value is None else form.format(value)
 
 
-def _bytes(figures: Mapping[str, Any]) -> list[str]:
+def _size_lines(figures: Mapping[str, Any]) -> list[str]:
     sizes, ratio = figures["bytes"], figures["ratio"]
     if sizes is None or ratio is None:
         return []
@@ -203,6 +212,6 @@ def _bytes(figures: Mapping[str, Any]) -> list[str]:
     return lines + [f"{ratio[key]:10.1f} times smaller than {label}" for key, label in known.items() if ratio.get(key)]
 
 
-def _some(names: list[str], most: int = 5) -> str:
+def _first_names(names: list[str], most: int = 5) -> str:
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more

@@ -21,23 +21,23 @@ if TYPE_CHECKING:
     from eigenfield.core.scene import Scene
     from eigenfield.rendering import RenderJob
 
-PICTURE = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
-OPTIONS = {  # what each kind takes, beside the options of all
+PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
+OPTIONS = {  # of each kind, beside the options of all
     "html": {"title", "metres_per_unit"},
-    "mp4": PICTURE | {"path", "frames", "fps"},
-    "png": PICTURE | {"path", "frames"},
+    "mp4": PICTURE_OPTIONS | {"path", "frames", "fps"},
+    "png": PICTURE_OPTIONS | {"path", "frames"},
     "obj": {"textures"},
     "maps": {"textures"},
-    "quilt": PICTURE | {"quilt", "spread"},
-    "colmap": PICTURE | {"path", "frames", "residual"},
+    "quilt": PICTURE_OPTIONS | {"quilt", "spread"},
+    "colmap": PICTURE_OPTIONS | {"path", "frames", "residual"},
 }
 ENDINGS = {"html": (".html", ".htm"), "mp4": (".mp4",), "png": (".png",), "quilt": (".png",)}
-NO_FOLDER = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
-QUILT = re.compile(r"_qs\d+x\d+a[\d.]+$")
-PATH = "circle"  # where none is asked for
+FILE_ENDINGS = (".html", ".htm", ".mp4", ".png", ".jpg", ".jpeg", ".glb", ".gltf", ".ply", ".zip")
+QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
+DEFAULT_PATH = "circle"  # where none is asked for
 
 
-def _grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+def _parse_views(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
     if value is None:
         return None
     match = re.fullmatch(r"(\d{1,4})[xX×](\d{1,4})", value)
@@ -72,7 +72,9 @@ Examples:
 @click.option(
     "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture, for headsets (html)."
 )
-@click.option("--quilt", callback=_grid, metavar="CxR", help="Columns and rows of views (quilt).  [default: 8x6]")
+@click.option(
+    "--quilt", callback=_parse_views, metavar="CxR", help="Columns and rows of views (quilt).  [default: 8x6]"
+)
 @click.option(
     "--spread",
     type=float,
@@ -102,7 +104,7 @@ def command(
     """
     from eigenfield.runtime.files import is_numbered
 
-    chosen = _kind(output, kind, is_numbered(output))
+    chosen = _chosen_kind(output, kind, is_numbered(output))
     source = click.get_current_context().get_parameter_source
     given = {name for name in options if source(name) is ParameterSource.COMMANDLINE}
     _check(chosen, output, given, options)
@@ -112,7 +114,7 @@ def command(
     points = None
     if chosen in ("mp4", "png") or "path" in given:
         frames = DEFAULT_FRAMES if options["frames"] is None else options["frames"]
-        points = path_points(options["path"] or PATH, frames)
+        points = path_points(options["path"] or DEFAULT_PATH, frames)
     _refuse(chosen, output, points, overwrite)
     job = RenderJob(load(scene), *(options[name] for name in
                   ("resolution", "background", "weights", "filter", "textures", "samples", "renderer")))  # fmt: skip
@@ -122,7 +124,7 @@ def command(
 
 
 def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
-    """What may not be written, before any work; a quilt's name is known only with its scene."""
+    """Refuse existing outputs, before any work; a quilt's name is known only with its scene."""
     from eigenfield.rendering.flight import refuse_flight
     from eigenfield.runtime.files import refuse_existing
     from eigenfield.viewer import exports
@@ -142,7 +144,7 @@ def _write(
     kind: str, job: RenderJob, points: NDArray[np.float64] | None, output: Path, options: dict[str, Any],
     overwrite: bool, progress: Progress | None,
 ) -> str:  # fmt: skip
-    """Make it; what was written, in words."""
+    """Write the export; a line about what was written."""
     from eigenfield.rendering.flight import write_flight
     from eigenfield.viewer import exports
 
@@ -176,11 +178,11 @@ def _is_obj(output: Path) -> bool:
     return output.suffix.lower() == ".obj"
 
 
-def _kind(output: Path, kind: str | None, numbered: bool) -> str:
-    """What is to be made: as asked for, else as the output's name says."""
+def _chosen_kind(output: Path, kind: str | None, numbered: bool) -> str:
+    """The kind that is asked for, else that of the output's name."""
     ending = output.suffix.lower()
     if kind is None:
-        if ending == ".png" and not numbered and not QUILT.search(output.stem):
+        if ending == ".png" and not numbered and not QUILT_NAME.search(output.stem):
             raise OptionError(
                 "output-kind",
                 f"{output}: one .png may be many things",
@@ -202,7 +204,7 @@ def _kind(output: Path, kind: str | None, numbered: bool) -> str:
         raise OptionError("output-kind", f"{output}: a path makes many pictures", remedy="put %04d into its name")
     if kind == "quilt" and numbered:
         raise OptionError("output-kind", f"{output}: a quilt is one picture", remedy="leave the number out of its name")
-    if kind not in ENDINGS and (ending in NO_FOLDER or (ending == ".obj" and kind != "obj")):
+    if kind not in ENDINGS and (ending in FILE_ENDINGS or (ending == ".obj" and kind != "obj")):
         raise OptionError("output-kind", f"{output}: {kind} is a folder", remedy="name one")
     return kind
 

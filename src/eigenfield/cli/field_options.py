@@ -18,7 +18,9 @@ T = TypeVar("T")
 def field_options(cls: type, **parsers: Callable[..., Any]) -> Callable[[F], F]:
     """Add an option for each field of a dataclass that carries one (`encoding.fields`), named as the field.
 
-    parsers: click callbacks by name, for values that are more than a word or a number.
+    Args:
+        cls: The dataclass.
+        parsers: Click callbacks by name, for values that are more than a word or a number.
     """
     made = list(_field_options(cls, "", parsers))
 
@@ -31,7 +33,13 @@ def field_options(cls: type, **parsers: Callable[..., Any]) -> Callable[[F], F]:
 
 
 def from_fields(cls: type[T], values: dict[str, Any], prefix: str = "") -> T:
-    """The dataclass with what was given for `field_options`, which is taken out of `values`."""
+    """The dataclass with the values of `field_options`.
+
+    Args:
+        cls: The dataclass.
+        values: By name; those of its fields are removed.
+        prefix: Of the names.
+    """
     given: dict[str, Any] = {}
     for name, one in options_of(cls):
         if one.parts is None:
@@ -59,7 +67,7 @@ def _field_options(cls: type, prefix: str, parsers: Mapping[str, Callable[..., A
 
 
 def _click_type(option: Option, kinds: tuple[Any, ...]) -> Any:
-    """How click reads an option whose field has one of these types."""
+    """The click type of an option whose field has one of these types."""
     if option.choices:
         return click.Choice(option.choices)
     if option.limits is not None:

@@ -1,4 +1,4 @@
-"""`eigenfield info`: what a scene file holds."""
+"""`eigenfield info`: the content of a scene file."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from eigenfield.gltf.layout import FileLayout
     from eigenfield.gltf.layout_planes import PlaneLayout
 
-AXES = (
+AXES_TEXT = (
     "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "
     "the proxy's node turns its axes to glTF's (Y up, the array looking along -Z)"
 )
@@ -43,7 +43,7 @@ def command(file: Path, as_json: bool, quiet: bool) -> None:
         echo_json({"file": str(file), **facts})
         return
     click.echo(f"{file}: {parts['total']:,} bytes, format {layout.version}, by {json.dumps(layout.generator)}")
-    for line in _lines(facts):
+    for line in _text_lines(facts):
         click.echo(line)
 
 
@@ -73,7 +73,7 @@ def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
             "right": plane.right.tolist(),
             "up": plane.up.tolist(),
         },
-        "axes": AXES,
+        "axes": AXES_TEXT,
         "settings": layout.settings,
         "scores": layout.scores,
     }
@@ -106,7 +106,7 @@ def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
     }
 
 
-def _lines(facts: dict[str, Any]) -> list[str]:
+def _text_lines(facts: dict[str, Any]) -> list[str]:
     total = facts["bytes"]["total"]
     lines = ["bytes"]
     for name, count in facts["bytes"].items():
@@ -123,7 +123,7 @@ def _lines(facts: dict[str, Any]) -> list[str]:
     sizes = ", ".join(f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"])
     lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")
     if cameras["held_out"]:
-        lines.append(f"held out      {_some(cameras['held_out'])}")
+        lines.append(f"held out      {_first_names(cameras['held_out'])}")
     if cameras["harmonised"]:
         lines.extend(
             f"{title:14}"
@@ -153,7 +153,7 @@ def _vector(numbers: list[float]) -> str:
     return "(" + ", ".join(f"{number:.4g}" for number in numbers) + ")"
 
 
-def _some(names: list[str], most: int = 8) -> str:
+def _first_names(names: list[str], most: int = 8) -> str:
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return ", ".join(names[:most]) + more
 

@@ -1,4 +1,4 @@
-"""`eigenfield inspect`: what a capture holds, and what is wrong with it."""
+"""`eigenfield inspect`: the content of a capture, and its problems."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def command(
     report = describe_photographs(opened, damaged) if opened.light_field is None else describe(opened, damaged)
     options = {"calibration": calibration, "masks": masks, "format": format, "frame": frame}
     options["grid"] = None if grid is None else f"{grid[0]}x{grid[1]}"
-    report["next"] = _next(report, capture, options)
+    report["next"] = _next_commands(report, capture, options)
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         if overlay is not None:
@@ -100,7 +100,7 @@ def command(
     if as_json:
         echo_json(report)
     else:
-        click.echo("\n".join(in_words(report)))
+        click.echo("\n".join(report_lines(report)))
 
 
 def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, Any]:
@@ -165,7 +165,7 @@ def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> di
         "cameras": [],
         "proxy": None,
         "layout": None if photo_set.layout is None else _layout(photo_set.layout),
-        "photographs": [_shot(photo_set, i) for i in range(len(photo_set))],
+        "photographs": [_photograph(photo_set, i) for i in range(len(photo_set))],
         "next": [],
     }
 
@@ -184,7 +184,7 @@ def _layout(layout: GridLayout) -> dict[str, Any]:
     }
 
 
-def _shot(photo_set: PhotoSet, index: int) -> dict[str, Any]:
+def _photograph(photo_set: PhotoSet, index: int) -> dict[str, Any]:
     shot, layout = photo_set.shots[index], photo_set.layout
     return {
         "name": shot.name,
@@ -198,7 +198,7 @@ def _shot(photo_set: PhotoSet, index: int) -> dict[str, Any]:
     }
 
 
-def _next(report: dict[str, Any], capture: Path, options: dict[str, Any]) -> list[str]:
+def _next_commands(report: dict[str, Any], capture: Path, options: dict[str, Any]) -> list[str]:
     """Commands that make sense now, with the options that this one had, most useful first."""
     if max(report["views"], len(report["photographs"])) < 3:
         return []
@@ -268,7 +268,7 @@ def _proxy(
     }
 
 
-def in_words(report: dict[str, Any]) -> list[str]:
+def report_lines(report: dict[str, Any]) -> list[str]:
     """The report as lines for people."""
     sizes = ", ".join(f"{s['width']}x{s['height']} ({s['views']})" for s in report["sizes"])
     files = ", ".join(
@@ -284,19 +284,19 @@ def in_words(report: dict[str, Any]) -> list[str]:
         f"  masks      {report['masks']} files",
     ]
     if report["photographs"]:
-        lines[3] = f"  focal      {_focal_in_words(report['photographs'])}"
+        lines[3] = f"  focal      {_focal_text(report['photographs'])}"
     if report["layout"] is not None:
-        lines += _layout_in_words(report["layout"], bool(report["photographs"]))
+        lines += _layout_lines(report["layout"], bool(report["photographs"]))
     if report["array"] is not None:
-        lines += _array_in_words(report["array"])
+        lines += _array_lines(report["array"])
     if report["proxy"] is not None:
-        lines += _proxy_in_words(report["proxy"])
+        lines += _proxy_lines(report["proxy"])
     lines.append(f"  problems   {len(report['problems']) or 'none'}")
     lines += [f"    - {problem}" for problem in report["problems"]]
     return lines + [f"  next       {command}" for command in report["next"]]
 
 
-def _focal_in_words(photographs: list[dict[str, Any]]) -> str:
+def _focal_text(photographs: list[dict[str, Any]]) -> str:
     known = [shot["focal"] for shot in photographs if shot["focal"] is not None]
     if not known:
         return "not known: no EXIF says it, nor do the names"
@@ -305,7 +305,7 @@ def _focal_in_words(photographs: list[dict[str, Any]]) -> str:
     return f"{pixels} pixels, known of {len(known)} of {len(photographs)} photographs"
 
 
-def _layout_in_words(layout: dict[str, Any], bare: bool) -> list[str]:
+def _layout_lines(layout: dict[str, Any], bare: bool) -> list[str]:
     positions = "positions measured" if layout["measured"] else "positions not measured"
     if layout["exact"]:
         positions = "positions exact"
@@ -317,7 +317,7 @@ def _layout_in_words(layout: dict[str, Any], bare: bool) -> list[str]:
     return lines
 
 
-def _array_in_words(array: dict[str, Any]) -> list[str]:
+def _array_lines(array: dict[str, Any]) -> list[str]:
     grid = array["grid"]
     shape = "cameras on a line" if array["line"] else "no regular grid"
     if grid is not None:
@@ -334,7 +334,7 @@ def _array_in_words(array: dict[str, Any]) -> list[str]:
     return [*lines, f"  cone       {array['cone']:.1f} degrees about ({place}), {array['distance']:.4g} away"]
 
 
-def _proxy_in_words(proxy: dict[str, Any]) -> list[str]:
+def _proxy_lines(proxy: dict[str, Any]) -> list[str]:
     low, high = (", ".join(f"{v:.4g}" for v in proxy[key]) for key in ("low", "high"))
     uv = "with UVs" if proxy["uv"] else "no UVs"
     lines = [

@@ -12,9 +12,9 @@ from eigenfield.cli.common import (
     capture_options,
     common_options,
     note,
+    note_all,
     progress_bars,
     reconstruction_options,
-    tell,
     timings,
 )
 
@@ -75,16 +75,16 @@ def command(
     opened = open_any(
         capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame, work=work / "frames"
     )
-    tell(opened.problems, quiet)
+    note_all(opened.problems, quiet)
     with progress_bars(quiet) as progress:
         made = reconstruct(opened, work=work, progress=progress, **settings)
-    tell(made.light_field.problems[len(opened.problems) :], quiet)
+    note_all(made.light_field.problems[len(opened.problems) :], quiet)
     if made.calibration is not None:
         place = output.with_suffix(".cameras")
         save_calibration(made.light_field, place, overwrite=True)
         note(f"cameras: {place}", quiet)
     write_mesh(made.mesh, output, overwrite=overwrite)
-    tell([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
+    note_all([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
     click.echo(
         f"{output}: {len(made.mesh.vertices)} vertices, {len(made.mesh.faces)} triangles for {len(made.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"

@@ -12,7 +12,7 @@ from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_optio
 from eigenfield.core.errors import OptionError
 
 
-def _place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
+def _parse_place(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[float, float] | None:
     if value is None:
         return None
     try:
@@ -41,7 +41,9 @@ Examples:
     metavar="FILE",
     help="A .png, an .mp4 for a path, or a .png with %04d in its name for a path's single pictures.",
 )
-@click.option("--at", callback=_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges.")
+@click.option(
+    "--at", callback=_parse_place, metavar="X,Y", help="Viewpoint in the array: 0,0 its middle, ±1 its edges."
+)
 @click.option("--camera", metavar="NAME", help="A captured camera.  [default: the reference camera]")
 @flight_options
 @picture_options
@@ -60,7 +62,7 @@ def command(
     """
     from eigenfield.runtime.files import is_numbered, refuse_existing, write_bytes
 
-    _check(output, is_numbered(output), at, camera, path, frames, background)
+    _check_options(output, is_numbered(output), at, camera, path, frames, background)
     if residual and (at is not None or path is not None):
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.encoding.residual import captured_pixels, difference_of
@@ -93,7 +95,7 @@ def command(
     note(f"wrote {output}: {count} pictures", quiet)
 
 
-def _check(
+def _check_options(
     output: Path,
     numbered: bool,
     at: tuple[float, float] | None,

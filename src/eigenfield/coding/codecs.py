@@ -29,7 +29,7 @@ from typing import Any
 from eigenfield.coding.arrays.names import code_names, decode_names
 from eigenfield.coding.pictures import pictures_8bit as eight
 from eigenfield.coding.pictures import pictures_10bit as ten
-from eigenfield.coding.video.av1 import decode_film, encode_film
+from eigenfield.coding.video.av1 import decode_video, encode_video
 
 AVIF = "image/avif"
 
@@ -119,7 +119,7 @@ CODECS: dict[str, Codec] = {
     "jpeg": _picture_8bit("image/jpeg", None, False),
     "av1-10bit-1": PictureCodec(
         "picture", ten.encode_10bit, ten.decode_10bit, "bits", "1.2", PICTURE_LIMITS,
-        partial(eight.header_size, mime=AVIF), AVIF, ten.BITS,
+        partial(eight.header_size, mime=AVIF), AVIF, ten.PICTURE_BITS,
     ),
-    "video-1": Codec("residual", encode_film, decode_film, None, "1.3", ("MAX_TEXELS", "MAX_FILM")),
+    "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

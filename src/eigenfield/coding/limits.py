@@ -34,7 +34,7 @@ MAX_WEIGHTS = 2**28
 MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal
 MAX_OFFSET = 1_000
 
-MAX_FILM = 2**35  # pixels of all frames of a residual: they are decoded one by one
+MAX_VIDEO = 2**35  # pixels of all frames of a residual: they are decoded one by one
 
-LARGEST = 1e30  # of lengths, calibrations, scales, weights: squares and products stay finite
-ORTHONORMAL = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes
+MAX_NUMBER = 1e30  # magnitude of lengths, calibrations, scales, weights: squares and products stay finite
+ORTHONORMAL_TOLERANCE = 2e-4  # largest entry of |A Aᵀ - I| for a rotation, and for the view plane's axes

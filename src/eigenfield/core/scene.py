@@ -28,16 +28,16 @@ class Residual:
     """Photographs of the encoded cameras minus what the scene draws of them, coded: for captured views alone.
 
     Attributes:
-        film: The coded film, a frame for each encoded camera.
+        video: The coded video, a frame for each encoded camera.
         size: (rows, columns) of the pictures in it, whose top left part a photograph is.
         order: (Ne,) the cameras of the frames, counted among the encoded ones.
         scale: What a code of luma, and of chroma, stands for.
         full: Chroma is as fine as luma, below it in the frames, not half as fine.
         smooth: What the scene draws has smooth edges, not one sample a pixel, or k x k (files before 1.5).
-        codec: Of the film, a name in `coding.codecs.CODECS`.
+        codec: Of the video, a name in `coding.codecs.CODECS`.
     """
 
-    film: bytes
+    video: bytes
     size: tuple[int, int]
     order: NDArray[np.int64]
     scale: tuple[float, float]
@@ -47,7 +47,7 @@ class Residual:
 
     @property
     def frame(self) -> tuple[int, int]:
-        """(rows, columns) of the film's frames."""
+        """(rows, columns) of the video's frames."""
         rows, columns = self.size
         return (3 * rows if self.full else rows), columns
 

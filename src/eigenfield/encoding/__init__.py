@@ -63,7 +63,7 @@ def encode(
     projected = meant.fit == "none"
     if projected and asked.fit is None:
         words = "%s is about texture maps, which a fit does not make: encoding the paper's way (--fit none)"
-        log.warning(words, asked.about_maps[0])
+        log.warning(words, asked.map_options[0])
     if meant.residual is not None:
         check_residual(capture.cameras, meant.residual)
 

@@ -1,4 +1,4 @@
-"""Dataclass fields that are options: what the command line needs to offer one stands beside the field, once."""
+"""Dataclass fields that are options: the command line's help, letters and choices stand beside each field, once."""
 
 from __future__ import annotations
 
@@ -34,7 +34,12 @@ class Option:
 
 
 def option(help: str, **how: Any) -> Any:
-    """A dataclass field of default None that carries an `Option`. help, how: its attributes."""
+    """A dataclass field of default None that carries an `Option`.
+
+    Args:
+        help: As in `Option`.
+        how: Its other attributes.
+    """
     return field(default=None, metadata={"option": Option(help, **how)})
 
 
@@ -45,7 +50,7 @@ def options_of(cls: type) -> Iterator[tuple[str, Option]]:
             yield one.name, one.metadata["option"]
 
 
-def documented(cls: type[T]) -> type[T]:
+def document_options(cls: type[T]) -> type[T]:
     """Decorator: put the help of a dataclass's options into its docstring, as `Attributes:`."""
     lines = [f"    {name}: {' '.join(one.help.split())}" for name, one in options_of(cls)]
     cls.__doc__ = "\n".join([inspect.cleandoc(cls.__doc__ or ""), "", "Attributes:", *lines])

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from typing import TypedDict, TypeVar
 
 from eigenfield.core.errors import OptionError
-from eigenfield.encoding.fields import documented, option, options_of
+from eigenfield.encoding.fields import document_options, option, options_of
 from eigenfield.encoding.target import Target
 
 T = TypeVar("T")
@@ -20,12 +20,12 @@ DEFAULT_DENSITY = 1.5  # without a fit
 DEFAULT_RESAMPLING = "bicubic"
 DEFAULT_PRESET = "balanced"
 DEFAULT_PLANES = "luma-chroma"
-SIDE_LIMIT = 16384  # texels along a side of an atlas
+ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
-DENSEST = 1.5  # likewise, with a fit
-ABOUT_MAPS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
-ABOUT_FITS = ("target", "preset", "planes")  # options that the paper's way has no use for
-UNKNOWN = {
+FIT_MAX_DENSITY = 1.5  # likewise, with a fit
+MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
+FIT_OPTIONS = ("target", "preset", "planes")  # options that the paper's way has no use for
+UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
     "preset": "no preset is called",
     "planes": "no planes are called",
@@ -37,11 +37,11 @@ UNKNOWN = {
 
 @dataclass(frozen=True)
 class Preset:
-    """What a fit aims at.
+    """Quality and effort of a fit.
 
     Attributes:
         quality: 0 to 100.
-        rounds: How often textures and weights are fitted in turns, at most; captures of few cameras get more.
+        rounds: Rounds of fitting textures and weights in turns, at most; captures of few cameras get more.
         patient: Whether textures are coded by libaom where the machine has it.
     """
 
@@ -53,13 +53,13 @@ class Preset:
 PRESETS = {"small": Preset(79, 2), "balanced": Preset(89, 2), "best": Preset(95, 4, patient=True)}
 
 
-def density_of(quality: int) -> float:
-    """Atlas texels per photograph pixel along one axis that a fit's quality pays for.
+def density_for_quality(quality: int) -> float:
+    """The density of a fit at a quality of 0 to 100, in atlas texels per photograph pixel along one axis.
 
-    The coarser the codes are, the less is left of what a denser atlas could hold. On Tarot 0.9 takes the fewest bytes
-    for the same luma at quality 62, 1.05 at 68 and 1.35 at 86; on Shop 1.25 does at 80, on Antinous 1.0 at 75.
+    Coarse codes lose the detail of a dense atlas. On Tarot 0.9 takes the fewest bytes for the same luma at quality 62,
+    1.05 at 68 and 1.35 at 86; on Shop 1.25 does at 80, on Antinous 1.0 at 75.
     """
-    return min(max(0.9 + 0.6 * (quality - 60) / 31, 0.9), DENSEST)
+    return min(max(0.9 + 0.6 * (quality - 60) / 31, 0.9), FIT_MAX_DENSITY)
 
 
 class Coding(TypedDict):
@@ -74,10 +74,10 @@ class Coding(TypedDict):
     quality: int | None
 
 
-@documented
+@document_options
 @dataclass(frozen=True, kw_only=True)
 class EncodeOptions:
-    """What `encode` is asked for. Every option may be left out; `resolved` says what that means.
+    """The options of `encode`. Every option may be left out; `resolved` fills in what that means.
 
     An option that cannot be, or two that exclude each other, raise OptionError when the value is made. The command
     line has the same options: `--uv-ssim` is `uv_ssim`. Without a fit `codec` and `quality` are about the file: give
@@ -85,8 +85,9 @@ class EncodeOptions:
     """
 
     textures: int | None = option(
-        "Eigen textures, at most one less than there are cameras. A fit keeps those that are worth their bytes, and "
-        "regions of much error may get as many again.  [default: half as many as cameras, 20 to 96; without a fit 15]",
+        "Eigen textures, at most one less than there are cameras. A fit leaves out those that gain less than their "
+        "bytes do elsewhere, and regions of much error may get as many again.  [default: half as many as cameras, 20 "
+        "to 96; without a fit 15]",
         letter="-n",
         metavar="N",
     )
@@ -100,8 +101,8 @@ class EncodeOptions:
     )
     atlas: int | tuple[int, int] | None = option("Side of the atlas outright, or WIDTHxHEIGHT.", metavar="N")
     triangles: int | None = option(
-        "Triangles of the proxy, at most.  [default: a fit keeps what the pictures are worth; with --fit none 30000, "
-        "a mesh that has an atlas as it is]",
+        "Triangles of the proxy, at most.  [default: a fit removes triangles until that costs more image error than it "
+        "saves bytes; with --fit none 30000, a mesh that has an atlas as it is]",
         metavar="N",
     )
     align: str | None = option(
@@ -157,9 +158,9 @@ class EncodeOptions:
     )
     target: Target | None = option("What the file is to reach, by the fit's quality (`Target`).", parts=Target)
     residual: int | None = option(
-        "For archives: also keep what captured views lack, as a film of quality Q, 0 (coarse) to 100 (near-lossless); "
+        "For archives: also keep what captured views lack, as a video of quality Q, 0 (coarse) to 100 (near-lossless); "
         "40 unless said. Other views gain nothing by it. With few bytes a small base is best: --fit photographs "
-        "--textures 24 --quality 86, and as many bytes for the film as are left.",
+        "--textures 24 --quality 86, and as many bytes for the video as are left.",
         limits=(0, 100),
         metavar="[Q]",
         bare="40",
@@ -191,7 +192,7 @@ class EncodeOptions:
         if quality is None and self.target is None:
             quality = PRESETS[preset].quality
         if density is None and quality is not None:
-            density = density_of(quality)
+            density = density_for_quality(quality)
         planes = self.planes or DEFAULT_PLANES
         return replace(self, fit="photographs", preset=preset, quality=quality, density=density, planes=planes)
 
@@ -204,21 +205,21 @@ class EncodeOptions:
 
     @property
     def for_save(self) -> Coding:
-        """`coding` for who saves the scene that `encode` returns, whose pictures are coded where it has a residual."""
+        """`coding` for the scene that `encode` returns, whose pictures are coded already if it has a residual."""
         return {"codec": None, "quality": None} if self.residual is not None else self.coding
 
     @property
-    def about_maps(self) -> list[str]:
+    def map_options(self) -> list[str]:
         """The given options that are about texture maps, as the command line writes them."""
-        return [f"--{name.replace('_', '-')}" for name in ABOUT_MAPS if getattr(self, name) is not None]
+        return [f"--{name.replace('_', '-')}" for name in MAP_OPTIONS if getattr(self, name) is not None]
 
     @property
-    def _about_fits(self) -> list[str]:
-        return [name for name in ABOUT_FITS if getattr(self, name) is not None]
+    def _fit_options(self) -> list[str]:
+        return [name for name in FIT_OPTIONS if getattr(self, name) is not None]
 
     @property
     def _chosen_fit(self) -> str:
-        return self.fit or ("none" if self.about_maps and not self._about_fits else "photographs")
+        return self.fit or ("none" if self.map_options and not self._fit_options else "photographs")
 
     def _check_file(self) -> None:
         from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, check_codec
@@ -232,16 +233,18 @@ class EncodeOptions:
             )
 
     def _check_way(self) -> None:
-        """Raise OptionError for what is not among the choices, and for options that do not go together."""
+        """Raise OptionError for values that are not among the choices, and for options that exclude each other."""
         for name, one in options_of(type(self)):
             value = getattr(self, name)
-            if name in UNKNOWN and value is not None and value not in one.choices:
-                raise OptionError(name, f"{UNKNOWN[name]} {value}", remedy=f"use one of {', '.join(one.choices)}")
+            if name in UNKNOWN_CHOICE_TEXTS and value is not None and value not in one.choices:
+                raise OptionError(
+                    name, f"{UNKNOWN_CHOICE_TEXTS[name]} {value}", remedy=f"use one of {', '.join(one.choices)}"
+                )
         if self.target is not None:
             self.target.check()
             if self.quality is not None:
                 raise OptionError("target", "a target is reached by the quality", remedy="leave one of them out")
-        maps, fits = self.about_maps, self._about_fits
+        maps, fits = self.map_options, self._fit_options
         if self._chosen_fit == "none" and fits:
             raise OptionError(fits[0], f"--fit none has no {fits[0]}", remedy="leave one of them out")
         if self._chosen_fit != "none" and maps:
@@ -262,13 +265,15 @@ class EncodeOptions:
                 "density", f"a density of {self.density:g} was asked for", remedy="ask for one between 0.1 and 4"
             )
         sides = (self.atlas,) if self.atlas is None or isinstance(self.atlas, int) else self.atlas
-        if not all(side is None or 1 <= side <= SIDE_LIMIT for side in sides):
+        if not all(side is None or 1 <= side <= ATLAS_MAX_SIDE_TEXELS for side in sides):
             raise OptionError(
-                "atlas", f"an atlas of {self.atlas} was asked for", remedy=f"ask for sides from 1 to {SIDE_LIMIT}"
+                "atlas",
+                f"an atlas of {self.atlas} was asked for",
+                remedy=f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}",
             )
 
 
-def known(value: T | None) -> T:
-    """An option of which `EncodeOptions.resolved` has said what it is."""
+def resolved_value(value: T | None) -> T:
+    """An option that `EncodeOptions.resolved` has filled in."""
     assert value is not None
     return value

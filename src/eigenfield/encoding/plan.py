@@ -23,10 +23,10 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
-from eigenfield.encoding.fitted import byte_price, fit_surface
-from eigenfield.encoding.geometry import simplify_proxy_rd, triangles_worth
-from eigenfield.encoding.geometry.coded import DEPTH_ERROR, coded_cameras, coded_mesh
-from eigenfield.encoding.options import EncodeOptions, known
+from eigenfield.encoding.fitted import byte_lambda, fit_surface
+from eigenfield.encoding.geometry import simplify_proxy_rd, triangle_count_rd
+from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
+from eigenfield.encoding.options import EncodeOptions, resolved_value
 from eigenfield.encoding.projected import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views
 from eigenfield.proxy import prepare_proxy
@@ -34,8 +34,8 @@ from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 
 log = logging.getLogger("eigenfield.encode")
 
-ROUNDING_LIMIT = 0.02  # pixels that float32 cameras may move the mesh before a warning
-CAPPED = 0.98  # of the density asked for: what a capped atlas may have before a warning
+CAMERA_ROUNDING_LIMIT_PX = 0.02  # by which float32 cameras may move the mesh without a warning
+CAPPED_DENSITY_RATIO = 0.98  # of the density asked for that a capped atlas may have without a warning
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class PreparedProxy:
     """A proxy with an atlas, before it is made ready for a quality.
 
     Attributes:
-        given: The file or mesh that it was made from.
+        given: The file or the mesh as it came.
         proxy: With UVs and, if it is a relief, its lattice; for a fit its vertices are where the photographs agree.
         views: The cameras that it was prepared for.
         by_quality: Whether another quality needs it prepared anew, with other triangles and charts.
@@ -61,11 +61,11 @@ class EncodePlan:
 
     Attributes:
         asked: The options as they were given.
-        options: What they mean (`EncodeOptions.resolved`), for one quality: a target is left out.
-        prepared: What the same plan at another quality is made from.
+        options: The resolved options for one quality, without a target.
+        prepared: The proxy that the same plan at another quality starts from.
         views: The cameras as the file keeps them, and which of them are encoded.
         mesh: The proxy as the file keeps it.
-        payloads: What mesh and cameras were coded to; without a fit they are not.
+        payloads: The coded mesh and cameras; empty without a fit.
         atlas: Width and height of its atlas.
     """
 
@@ -108,8 +108,8 @@ class EncodePlan:
 
         Args:
             planes: As in `Scene`, with a row of weights for each encoded camera.
-            own: What its settings say of how the planes were made.
-            payloads: What the planes were coded to.
+            own: Settings that record how the planes were made.
+            payloads: The coded planes.
             colours: As in `Scene`.
             to_rgb: As in `Scene`.
         """
@@ -166,7 +166,7 @@ def plan_encoding(
 
 
 def _for_one_quality(asked: EncodeOptions) -> EncodeOptions:
-    """What the options mean; with a target, for the preset's quality, from which the search may lead elsewhere."""
+    """The resolved options; with a target for the preset's quality, from which the search may lead elsewhere."""
     return replace(asked, target=None).resolved()
 
 
@@ -189,25 +189,25 @@ def _prepare(
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if options.fit == "none":
         return PreparedProxy(proxy, Proxy(mesh), views, by_quality=False)
-    lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR), atlas_side(mesh, cameras[views.rig.reference], 1.0)
+    lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)
     mesh = fit_surface(mesh, lattice, views.rig.encoded_cameras, views.observations, side, work, progress)
     measured = views.rig.encoded_cameras if _simplifies(options) else cameras
-    fitted = relief_proxy(mesh, measured, DEPTH_ERROR)
+    fitted = relief_proxy(mesh, measured, DEPTH_ERROR_PX)
     by_quality = _simplifies(options) and lattice is None  # a relief keeps its atlas
     return PreparedProxy(proxy, fitted, views, by_quality)
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
-    """A function of a mesh as it was read: how many triangles its pictures are worth at the options' quality.
+    """A function from a mesh as it was read to its number of triangles by rate and distortion at the options' quality.
 
     It returns None for a relief, which is simplified when it is coded.
     """
 
     def triangles(mesh: Mesh) -> int | None:
-        if mesh.uv is not None and relief_lattice(mesh, views.rig.cameras, DEPTH_ERROR) is not None:
+        if mesh.uv is not None and relief_lattice(mesh, views.rig.cameras, DEPTH_ERROR_PX) is not None:
             return None
-        price = byte_price(known(options.quality)) / known(options.density) ** 2
-        return triangles_worth(mesh, views.rig.encoded_cameras, views.observations, price)
+        lambda_ = byte_lambda(resolved_value(options.quality)) / resolved_value(options.density) ** 2
+        return triangle_count_rd(mesh, views.rig.encoded_cameras, views.observations, lambda_)
 
     return triangles
 
@@ -228,10 +228,10 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]
     """(width, height): as asked for, or a square of the options' density in the reference camera."""
     if options.atlas is not None:
         return (options.atlas, options.atlas) if isinstance(options.atlas, int) else options.atlas
-    camera, density = rig.cameras[rig.reference], known(options.density)
+    camera, density = rig.cameras[rig.reference], resolved_value(options.density)
     side = atlas_side(mesh, camera, density, sum(one.width * one.height for one in rig.encoded_cameras))
     reached = side * texels_per_pixel(mesh, camera)
-    if reached < CAPPED * density:
+    if reached < CAPPED_DENSITY_RATIO * density:
         log.warning("the atlas is capped at %d: density %.2f instead of %.2f", side, reached, density)
     return side, side
 
@@ -239,18 +239,18 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]
 def _coded_mesh(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
     """The mesh as a fitted file keeps it.
 
-    A relief is simplified to what its pictures are worth, unless a number of triangles was asked for.
+    A relief is simplified by rate and distortion, unless a number of triangles was asked for.
     """
     if not _simplifies(options):
         return coded_mesh(proxy, views.rig.cameras, views.rig.reference)
     rig = views.rig
     texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
-    price = byte_price(known(options.quality))
-    return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, price, texels)
+    lambda_ = byte_lambda(resolved_value(options.quality))
+    return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, lambda_, texels)
 
 
 def _scale(capture: CalibratedObservations, asked: float | None) -> dict[str, float]:
-    """What the settings say of the real size: as asked, or as the capture says."""
+    """The settings about the real size: as asked, or as in the capture."""
     scale = capture.metres_per_unit if asked is None else asked
     return {} if scale is None else {"metresPerUnit": scale}
 
@@ -270,5 +270,5 @@ def _warn_of_rounding(exact: Sequence[Camera], kept: Sequence[Camera], mesh: Mes
         seen = (depth > 0) & (first > 0).all(axis=1) & (first < (before.width, before.height)).all(axis=1)
         moved = np.abs(first - second)[seen]
         worst = max(worst, float(moved.max(initial=0.0)))
-    if worst > ROUNDING_LIMIT:
+    if worst > CAMERA_ROUNDING_LIMIT_PX:
         log.warning("float32 cameras move the mesh by %.2f px: shift the world's origin to the array", worst)

@@ -95,7 +95,7 @@ def check_selection(capture: Capture, options: EncodeOptions) -> None:
     elif capture.layout is not None:
         places = np.stack([capture.layout.columns, capture.layout.rows], axis=1).astype(np.float64)
     elif options.hold_out == "odd":
-        return  # cameras will tell
+        return  # the cameras decide, which are not estimated yet
     else:
         places = np.zeros((len(capture), 2))
     held = held_out_cameras(options.hold_out, capture.names, places)

@@ -13,8 +13,16 @@ from numpy.typing import NDArray
 from eigenfield.capture import Capture, Lens, LightField, Photograph
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.projected import FILTERS, METHODS, Atlas, align_map, harmonised, make_atlas, texture_map
-from eigenfield.encoding.residual import captured_samples, corrected
+from eigenfield.encoding.projected import (
+    ALIGN_METHODS,
+    RESAMPLING_FILTERS,
+    Atlas,
+    align_map,
+    harmonised_map,
+    make_atlas,
+    texture_map,
+)
+from eigenfield.encoding.residual import captured_samples, corrected_picture
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import ImageScores, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapScores, measure_map
@@ -122,11 +130,11 @@ class Session:
             index: Of the camera.
             samples: Samples a pixel. Default: the renderer's.
         """
-        row = camera_weights(self.scene, index, self.weights)
+        weights = camera_weights(self.scene, index, self.weights)
         colour = camera_colour(self.scene, index)
         return self.renderer.draw(
             self.scene.rig.cameras[index],
-            row,
+            weights,
             filter=self.filter,
             textures=self.counts[-1],
             samples=samples,
@@ -146,7 +154,7 @@ class Session:
         )
         colour = camera_colour(self.scene, index)
         if colour is not None:
-            values = harmonised(values, seen, colour)
+            values = harmonised_map(values, seen, colour)
         if self.align is None or self.reference is None or index == self.scene.rig.reference:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference, self.align)
@@ -174,7 +182,7 @@ class Session:
         if difference is not None:
             samples = captured_samples(self.scene, index)
             belongs = drawn if samples is None else self.picture(index, samples)
-            residual = self._scores_of(index, corrected(belongs, difference), photograph)
+            residual = self._scores_of(index, corrected_picture(belongs, difference), photograph)
         texture = None
         if self.atlas is not None and not self.scene.rig.held_out[index]:
             values, seen = self.texture(index, photograph)
@@ -361,7 +369,10 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
 def _recorded_settings(scene: Scene) -> tuple[str, str | None]:
     """The resampling filter and the alignment of the texture maps, from the scene's settings."""
     resampling, align = scene.settings.get("resampling", "bicubic"), scene.settings.get("align")
-    if resampling not in list(FILTERS) or align not in [None, *METHODS]:  # a file may hold anything here
+    if resampling not in list(RESAMPLING_FILTERS) or align not in [
+        None,
+        *ALIGN_METHODS,
+    ]:  # a file may hold anything here
         raise OptionError(
             "settings-unknown",
             f"the scene was made with resampling {resampling!r} and alignment {align!r}, which this version has not",

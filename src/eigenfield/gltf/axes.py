@@ -11,7 +11,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.viewplane import ViewPlane
 
-NEAR = 0.1  # the near plane's distance, of the nearest vertex's depth
+NEAR_PLANE_RATIO = 0.1  # of the near plane's distance to the nearest vertex's depth
 
 
 def capture_to_gltf(plane: ViewPlane) -> NDArray[np.float64]:
@@ -46,10 +46,14 @@ def quaternion(rotation: NDArray[np.float64]) -> list[float]:
 def opening_view(camera: Camera, mesh: Mesh) -> tuple[dict[str, Any], NDArray[np.float64]]:
     """A glTF perspective camera that shows what `camera` sees, and its rotation: (3, 3), columns its axes in the world.
 
-    glTF's frustum is symmetric. A principal point off the middle is therefore said by turning the camera, about its
-    centre and without roll, towards what its photograph's middle shows: the same object stands in the middle, the
-    edges differ by the keystone of that turn. yfov and aspectRatio are the angles that the photograph's middle column
-    and row span, seen from there.
+    glTF's frustum is symmetric. For a principal point off the middle the camera is therefore turned, about its centre
+    and without roll, towards the middle of its photograph: the same object stands in the middle, the edges differ by
+    the keystone of that turn. yfov and aspectRatio are the angles that the photograph's middle column and row span,
+    seen from there.
+
+    Args:
+        camera: The reference camera.
+        mesh: By whose nearest vertex the near plane is placed.
     """
     inverse = np.linalg.inv(camera.K)
     w, h = camera.width, camera.height
@@ -66,7 +70,7 @@ def opening_view(camera: Camera, mesh: Mesh) -> tuple[dict[str, Any], NDArray[np
     perspective = {
         "yfov": vertical,
         "aspectRatio": float(np.tan(horizontal / 2) / np.tan(vertical / 2)),
-        "znear": float(nearest * NEAR) if np.isfinite(nearest) and nearest > 0 else 0.01,
+        "znear": float(nearest * NEAR_PLANE_RATIO) if np.isfinite(nearest) and nearest > 0 else 0.01,
     }
     axes = (turned @ camera.R).T * (1, -1, -1)  # glTF: y up, looking along -z
     return perspective, axes

@@ -14,8 +14,16 @@ from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
 
 @dataclass
 class Buffer:
-    """The binary chunk while it grows, the JSON entries that point into it, and the places and codecs of its
-    streams (`streams.PLACES`)."""
+    """The binary chunk while it grows, and the JSON entries that point into it.
+
+    Attributes:
+        parts: The bytes so far.
+        length: Of these.
+        views: The JSON's buffer views.
+        accessors: The JSON's accessors.
+        once: Buffer views of bytes that `shared` has written.
+        codecs: Places (`streams.PLACES`) and codecs of its streams.
+    """
 
     parts: list[bytes] = field(default_factory=list)
     length: int = 0
@@ -46,7 +54,18 @@ class Buffer:
         return self.once[payload.data]
 
     def accessor(self, array: NDArray[Any], component: int, kind: str, target: int | None = None, **more: Any) -> int:
-        """Append an array as an accessor of its own buffer view; its index."""
+        """Append an array as an accessor of its own buffer view.
+
+        Args:
+            array: (n,) or (n, k).
+            component: glTF's component type.
+            kind: glTF's type, as "VEC3".
+            target: glTF's target of the buffer view.
+            more: Other members of the accessor.
+
+        Returns:
+            Its index.
+        """
         dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2", UINT8: "u1"}[component]
         view = self.view(np.ascontiguousarray(array, dtype).tobytes(), target)
         self.accessors.append(

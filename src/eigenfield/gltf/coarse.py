@@ -1,4 +1,4 @@
-"""A proxy and its picture for viewers that know nothing of coded ones: in a small file they are small."""
+"""A coarse proxy and its picture for viewers without a decoder of ours: in a small file they are small."""
 
 from __future__ import annotations
 
@@ -11,34 +11,39 @@ from eigenfield.core.mesh import Mesh
 
 T = TypeVar("T")
 
-COARSE = (128, 64, 32)  # triangles: with fewer than the first the rim of Tarot's ball comes apart
-SHARE = 0.1  # of the bytes of what is coded, that the mesh may take, and the picture
-ENOUGH = 1.5  # times as many are taken from the first way
+COARSE_TRIANGLES = (128, 64, 32)  # with fewer than the first the rim of Tarot's ball comes apart
+PREVIEW_MAX_BYTES_RATIO = 0.1  # of the mesh to what is coded, and of the picture
+COARSE_MAX_EXCESS_RATIO = 1.5  # of the triangles of a simplified mesh to those asked for; beyond, it is clustered
 
 
-def affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) -> T:
-    """The first of some ways, in falling order, whose bytes are SHARE of what is coded; else the last."""
+def first_affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) -> T:
+    """The first of some candidates, in falling order, within PREVIEW_MAX_BYTES_RATIO x `coded` bytes; else the last.
+
+    Args:
+        ways: The candidates.
+        size: Bytes of one.
+        coded: Bytes of the coded parts.
+    """
     ways = iter(ways)
     found = next(ways)
-    while size(found) > SHARE * coded and (smaller := next(ways, None)) is not None:
+    while size(found) > PREVIEW_MAX_BYTES_RATIO * coded and (smaller := next(ways, None)) is not None:
         found = smaller
     return found
 
 
 def shown_mesh(mesh: Mesh, coded: int) -> Mesh:
-    """The mesh in as many triangles as `coded`, the bytes of what is coded, allow."""
-    return affordable((coarse_mesh(mesh, triangles) for triangles in COARSE), _plain_bytes, coded)
+    """The mesh in as many triangles as `coded`, the bytes of the coded parts, allow."""
+    return first_affordable((coarse_mesh(mesh, triangles) for triangles in COARSE_TRIANGLES), _plain_bytes, coded)
 
 
 def _plain_bytes(mesh: Mesh) -> int:
-    """What a small mesh takes as plain floats with a byte a corner."""
+    """Bytes of a small mesh as plain floats with a byte a corner."""
     assert mesh.uv is not None
     return mesh.vertices.nbytes + mesh.uv.nbytes + mesh.faces.size
 
 
-def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
-    """The mesh simplified; of the vertices that fell together the one nearest to
-    where they came to lie gives the texture coordinates."""
+def coarse_mesh(mesh: Mesh, triangles: int = COARSE_TRIANGLES[0]) -> Mesh:
+    """The mesh simplified; of collapsed vertices the nearest to their common place gives the texture coordinates."""
     import fast_simplification
 
     assert mesh.uv is not None
@@ -50,8 +55,8 @@ def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
     points, faces, fell = fast_simplification.replay_simplification(mesh.vertices, mesh.faces, collapses)
     if not len(faces):
         return mesh
-    if len(faces) > ENOUGH * triangles:  # many pieces, none of which it lets vanish: a relief's layers
-        clustered = _clustered(mesh, triangles)
+    if len(faces) > COARSE_MAX_EXCESS_RATIO * triangles:  # many pieces, none of which it lets vanish: a relief's layers
+        clustered = _cluster_charts(mesh, triangles)
         if clustered is not None:
             return clustered
     apart = np.linalg.norm(mesh.vertices - points[fell], axis=1)
@@ -65,9 +70,9 @@ def coarse_mesh(mesh: Mesh, triangles: int = COARSE[0]) -> Mesh:
     )  # fmt: skip
 
 
-def _clustered(mesh: Mesh, triangles: int) -> Mesh | None:
+def _cluster_charts(mesh: Mesh, triangles: int) -> Mesh | None:
     """One vertex for each chart in each cell of a square grid over the atlas, that nearest to the middle of those in
-    it; as fine a grid as gives at most so many triangles. None where none does."""
+    it; the finest grid with at most `triangles`. None where none has."""
     from eigenfield.imaging.graph import vertex_components
 
     assert mesh.uv is not None

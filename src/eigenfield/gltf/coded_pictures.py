@@ -12,17 +12,17 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.pictures import quantise
 from eigenfield.coding.pictures.pictures_8bit import encode_preview
-from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked
+from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
-from eigenfield.gltf.coarse import affordable
-from eigenfield.gltf.kept import Kept
+from eigenfield.gltf.cached import CachedPayloads
+from eigenfield.gltf.coarse import first_affordable
 from eigenfield.runtime.parallel import parallel_stream
 
-SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels and quality beside a fit's pictures, the first that is in SHARE
-MEAN_SHARE = 0.3  # of the textures' distance to quality 100 is the mean's: there a byte gains as much (Tarot)
+SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels a side and quality, beside a fit's pictures
+MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class ScenePictures:
     """All pictures of a file.
 
     Attributes:
-        preview: For `images[0]`, or None where the first plane's mean itself serves.
+        preview: For `images[0]`; None where the first plane's mean itself is shown.
         planes: Those of each plane.
     """
 
@@ -57,7 +57,7 @@ class ScenePictures:
 
     @property
     def sizes(self) -> dict[str, int]:
-        """Bytes by part, named as in `Kept`."""
+        """Bytes by part, named as in `CachedPayloads`."""
         means = {f"planes[{p}].mean": len(plane.mean.data) for p, plane in enumerate(self.planes)}
         return means | {
             f"planes[{p}].bases[{b}].textures": size_of(pictures)
@@ -67,20 +67,29 @@ class ScenePictures:
 
 
 def code_pictures(
-    scene: Scene, kept: Kept, codec: str | None, quality: int, progress: Progress | None
+    scene: Scene, cached: CachedPayloads, codec: str | None, quality: int, progress: Progress | None
 ) -> ScenePictures:
-    """Every picture of the scene, those that are kept as they are unless a codec was asked for; coding is shared among
-    the threads."""
-    fine = round(100 - MEAN_SHARE * (100 - quality))
+    """Every picture of the scene; coding is shared among the threads.
+
+    Args:
+        scene: To be written.
+        cached: Its payloads, which are taken unless a codec is asked for.
+        codec: For all pictures; None: the default for those without a payload.
+        quality: Of the textures.
+        progress: Reports each picture.
+    """
+    fine = round(100 - MEAN_QUALITY_RATIO * (100 - quality))
     planned = []
     for p, plane in enumerate(scene.appearance.planes):
-        one_unit = _harmonised(scene, plane) or quantise.photographic(plane.mean) or scene.appearance.to_rgb is not None
+        one_unit = (
+            _is_harmonised(scene, plane) or quantise.is_photographic(plane.mean) or scene.appearance.to_rgb is not None
+        )
         parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
         ways = [partial(_mean, scene, plane, codec or DEFAULT_CODEC, fine)]
         ways += [partial(_textures, basis, codec or DEFAULT_CODEC, quality, one_unit) for basis in plane.bases]
-        there = [kept.pictures(part) if codec is None else () for part in parts]
+        there = [cached.pictures(part) if codec is None else () for part in parts]
         planned.append(
-            [[partial(_itself, one) for one in some] or way() for some, way in zip(there, ways, strict=True)]
+            [[partial(_same_picture, one) for one in some] or way() for some, way in zip(there, ways, strict=True)]
         )
     jobs = [job for plan in planned for some in plan for job in some]
     done = iter(list(track(parallel_stream(lambda job: job(), jobs), "code textures", len(jobs), progress)))
@@ -92,12 +101,12 @@ def code_pictures(
     plain = scene.appearance.to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
     if plain and first.codec == "png" and first.affine is None:
         return made  # the mean itself serves
-    preview = kept.one("preview") if codec is None else None
+    preview = cached.one("preview") if codec is None else None
     return replace(made, preview=preview or Payload("jpeg", _preview(scene, made.bytes)))
 
 
 def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:
-    codes, affine = quantise.mean_codes(plane.mean, _harmonised(scene, plane))
+    codes, affine = quantise.mean_codes(plane.mean, _is_harmonised(scene, plane))
     return [partial(_code, codes, codec, quality, affine)]
 
 
@@ -106,11 +115,11 @@ def _textures(basis: Basis, codec: str, quality: int, one_unit: bool) -> list[Ca
     return [partial(_code_texture, basis, k, scale, zero, codec, quality) for k in range(basis.count)]
 
 
-def _itself(picture: PicturePayload) -> PicturePayload:
+def _same_picture(picture: PicturePayload) -> PicturePayload:
     return picture
 
 
-def _harmonised(scene: Scene, plane: Plane) -> bool:
+def _is_harmonised(scene: Scene, plane: Plane) -> bool:
     """Whether a plane holds colours brought together by gains, which may lie beyond 0..1 and yet are photographs'."""
     return scene.appearance.colours is not None and plane is scene.appearance.planes[0]
 
@@ -122,29 +131,33 @@ def _code(codes: NDArray[np.uint8], codec: str, quality: int, affine: Affine | N
 def _code_texture(
     basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32], codec: str, quality: int
 ) -> PicturePayload:
-    affine = Affine(np.array(shortest(scale[index])), np.array(shortest(zero[index])))
+    affine = Affine(np.array(shortest_decimals(scale[index])), np.array(shortest_decimals(zero[index])))
     return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
 
 def _preview(scene: Scene, coded: int) -> bytes:
-    """Something to see for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
-    coded: bytes of the planes."""
+    """A picture for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
+
+    coded: bytes of the planes.
+    """
     mean = (
-        scene.appearance.planes[0].mean if scene.appearance.to_rgb is None else _joined(scene, scene.appearance.to_rgb)
+        scene.appearance.planes[0].mean
+        if scene.appearance.to_rgb is None
+        else _rgb_mean(scene, scene.appearance.to_rgb)
     )
     if scene.appearance.colours is not None:
         mean = mean.clip(0, 1)
     shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
-    if not quantise.photographic(mean) and not quantise.unit_range(shown):
+    if not quantise.is_photographic(mean) and not quantise.is_unit_range(shown):
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
     if scene.appearance.to_rgb is None:
-        return encode_preview(stacked(codes))
-    return affordable((encode_preview(stacked(codes), *small) for small in SMALL_PREVIEWS), len, coded)
+        return encode_preview(stacked_picture(codes))
+    return first_affordable((encode_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded)
 
 
-def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
+def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     """(H, W, 3): the means of all planes as R, G, B, at the size of the first; near enough for a preview."""
     import cv2
 
@@ -156,6 +169,6 @@ def _joined(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.asarray(stacked @ to_rgb.T, np.float32).clip(0, 1)
 
 
-def shortest(numbers: NDArray[Any]) -> list[float]:
-    """The shortest decimals that give the same numbers."""
+def shortest_decimals(numbers: NDArray[Any]) -> list[float]:
+    """The shortest decimals of the same numbers."""
     return [float(str(number)) for number in numbers.ravel()]

@@ -19,18 +19,19 @@ JSON_CHUNK = b"JSON"
 BINARY_CHUNK = b"BIN\0"
 HEADER = struct.Struct("<4sII")  # magic, version, length of the file
 CHUNK = struct.Struct("<I4s")  # length of the data, type
-EXACT = 2.0**53  # below which a float is a whole number exactly
+MAX_EXACT_INTEGER = 2.0**53  # below which a float is a whole number exactly
 
 
 @dataclass(frozen=True, eq=False)
 class Glb:
-    """A container whose chunks lie where they say.
+    """A container with checked chunks.
 
-    json: the parsed JSON chunk.
-    binary: the first buffer's bytes, empty if there is no binary chunk.
-    size: bytes of the file.
-    rest: offset of the first byte behind the JSON chunk.
-    missing: bytes of the binary chunk that lie behind the end of the file.
+    Attributes:
+        json: The parsed JSON chunk.
+        binary: The first buffer's bytes, empty if there is no binary chunk.
+        size: Bytes of the file.
+        rest: Offset of the first byte behind the JSON chunk.
+        missing: Bytes of the binary chunk that lie behind the end of the file.
     """
 
     json: Any
@@ -40,12 +41,16 @@ class Glb:
     missing: int = 0
 
     def cut_off(self) -> FormatError:
-        """What is to be raised where the missing bytes are needed."""
+        """The error to raise where the missing bytes are needed."""
         return _truncated(self.size, self.size + self.missing)
 
 
 def read_file(path: Path) -> bytes:
-    """The whole file. FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`."""
+    """The whole file.
+
+    Raises:
+        FormatError: `file-missing`, `file-unreadable`, `not-a-file`, `file-size`.
+    """
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):  # a pipe would wait, a device may never end
@@ -61,9 +66,10 @@ def read_file(path: Path) -> bytes:
 
 
 def parse_glb(data: bytes) -> Glb:
-    """Take a container apart. One that ends within its binary chunk is not refused here: see `Glb.missing`.
+    """Parse a container. One that ends within its binary chunk is not refused here: see `Glb.missing`.
 
-    FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
+    Raises:
+        FormatError: `not-glb`, `truncated`, `glb-version`, `glb-length`, `glb-chunk`, `json-*`.
     """
     if data[:4] != MAGIC:
         raise FormatError("not-glb", "does not begin with 'glTF'", where="byte 0", remedy="name a .glb")
@@ -73,7 +79,7 @@ def parse_glb(data: bytes) -> Glb:
     if version != 2:
         raise FormatError("glb-version", f"glTF {version}, not 2", where="byte 4")
     if length > len(data):
-        return _cut(data, length)
+        return _parse_truncated(data, length)
     if length < len(data):
         raise FormatError("glb-length", f"{len(data) - length} bytes follow the end", where="byte 8")
     chunks = _chunks(data)
@@ -83,7 +89,7 @@ def parse_glb(data: bytes) -> Glb:
     return Glb(value, memoryview(data)[first:last], len(data), end)
 
 
-def _cut(data: bytes, length: int) -> Glb:
+def _parse_truncated(data: bytes, length: int) -> Glb:
     """A container of `length` bytes that ends within its binary chunk; FormatError `truncated` where it ends before."""
     start = HEADER.size + CHUNK.size
     if len(data) >= start:
@@ -134,23 +140,32 @@ def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:
 
 
 def json_bytes(value: Any) -> bytes:
-    """Compact JSON, whole numbers without a fraction, padded with spaces to a multiple of 4. Raises ValueError for NaN:
-    our own bug."""
-    text = json.dumps(_short(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode("utf-8")
+    """Compact JSON, whole numbers without a fraction, padded with spaces to a multiple of 4.
+
+    Raises:
+        ValueError: NaN, which is our own bug.
+    """
+    text = json.dumps(_without_fractions(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode(
+        "utf-8"
+    )
     return text + b" " * (-len(text) % 4)
 
 
-def _short(value: Any) -> Any:
+def _without_fractions(value: Any) -> Any:
     """The same numbers in fewer characters: 1 for 1.0."""
     if isinstance(value, dict):
-        return {key: _short(item) for key, item in value.items()}
+        return {key: _without_fractions(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_short(item) for item in value]
-    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < EXACT else value
+        return [_without_fractions(item) for item in value]
+    return int(value) if isinstance(value, float) and value.is_integer() and abs(value) < MAX_EXACT_INTEGER else value
 
 
-def front(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
-    """Header and JSON chunk of a file in which `rest` bytes follow. OutputError `file-too-large` over 4 GiB."""
+def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> bytes:
+    """Header and JSON chunk of a file in which `rest` bytes follow.
+
+    Raises:
+        OutputError: `file-too-large`, over 4 GiB.
+    """
     size = HEADER.size + CHUNK.size + len(text) + rest
     if size > limits.MAX_FILE:
         raise OutputError(

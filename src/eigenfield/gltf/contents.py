@@ -10,21 +10,25 @@ from typing import Any
 
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, front, json_bytes, parse_glb, read_file
+from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes, parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.layout import FileLayout, find_extension
-from eigenfield.gltf.read import naming, open_layout, read_scene
+from eigenfield.gltf.read import name_file_in_errors, open_layout, read_scene
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
 from eigenfield.runtime.files import atomic_writer
 
-PARTS = ("mean", "textures", "weights", "mesh", "residual")  # what `parts` counts apart
+PARTS = ("mean", "textures", "weights", "mesh", "residual")  # that `parts` lists, beside `total` and `other`
 
 
 def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
-    """The checked layout of a file and its bytes by part (see `parts`). Raises FormatError."""
-    with naming(path):
+    """The checked layout of a file and its bytes by part (see `parts`).
+
+    Raises:
+        FormatError: As `load`.
+    """
+    with name_file_in_errors(path):
         document, layout = open_layout(Path(path))
         return layout, _parts(document)
 
@@ -32,10 +36,13 @@ def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
 def parts(path: str | os.PathLike[str]) -> dict[str, int]:
     """Bytes by part: total, mean, textures, weights, mesh, residual, other; the last six sum to the first.
 
-    mean: the means, and the picture for other viewers (`images[0]`). mesh: positions, texture coordinates, indices; a
-    coded one, and the coarse one for other viewers.
-    residual: what only captured views have; 0 where there is none.
-    other: JSON, calibration, triangles, headers and padding. Raises FormatError.
+    mean: the means, and the picture for other viewers (`images[0]`).
+    mesh: positions, texture coordinates, indices; a coded one, and the coarse one for other viewers.
+    residual: of captured views; 0 where there is none.
+    other: JSON, calibration, triangles, headers and padding.
+
+    Raises:
+        FormatError: As `load`.
     """
     return describe(path)[1]
 
@@ -69,8 +76,11 @@ def _view_of(document: Document, accessor: Value) -> Value:
 
 
 def without_residual(data: bytes) -> bytes:
-    """A file for viewers: without its residual, of which they show nothing (the same bytes where it has none, or where
-    it is not the last thing in the binary chunk), and closed behind what is left of it where it is cut off."""
+    """A file for viewers, without its residual, of which they show nothing.
+
+    The bytes are the same where it has none, or where it is not the last thing in the binary chunk. A file that is cut
+    off becomes a whole one of what is left.
+    """
     glb = parse_glb(data)
     if glb.missing:
         return encode_scene(replace(read_scene(data), residual=None))
@@ -90,16 +100,20 @@ def without_residual(data: bytes) -> bytes:
     made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}
     binary = bytes(glb.binary[:end]) + bytes(-end % 4)
-    return front(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
+    return file_head(json_bytes(made), CHUNK.size + len(binary), None) + CHUNK.pack(len(binary), BINARY_CHUNK) + binary
 
 
 def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> None:
     """Replace a file's `scores` by a JSON object; everything else, unknown keys too, stays as it is.
 
-    Only the JSON chunk is written anew: textures keep their bytes. Atomic. Raises FormatError, OutputError.
+    Only the JSON chunk is written anew: textures keep their bytes. Atomic.
+
+    Raises:
+        FormatError: As `load`.
+        OutputError: The file cannot be written.
     """
     target = Path(os.path.realpath(path))  # a link stays a link
-    with naming(path):
+    with name_file_in_errors(path):
         data = read_file(target)
         glb = parse_glb(data)
         if glb.missing:
@@ -109,7 +123,7 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
     text = json_bytes(glb.json)
     if len(text) > limits.MAX_JSON:
         raise FormatError("json-size", f"the scores make {len(text)} bytes of JSON", where="/extensions", path=path)
-    head = front(text, len(data) - glb.rest, path)
+    head = file_head(text, len(data) - glb.rest, path)
     with atomic_writer(target, overwrite=True) as file:
         file.write(head)
         file.write(memoryview(data)[glb.rest :])

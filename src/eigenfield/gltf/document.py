@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import Glb
-from eigenfield.gltf.strict_json import Value, quoted
+from eigenfield.gltf.strict_json import Value, quote
 
 FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
 DTYPES: dict[int, np.dtype[Any]] = {
@@ -26,7 +26,14 @@ WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 @dataclass(frozen=True, eq=False)
 class BufferView:
-    """A buffer view: where it lies in the binary chunk, and its stride (0: packed)."""
+    """A buffer view.
+
+    Attributes:
+        index: In the JSON.
+        offset: Its first byte in the binary chunk.
+        length: In bytes.
+        stride: In bytes; 0: packed.
+    """
 
     index: int
     offset: int
@@ -36,7 +43,11 @@ class BufferView:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """A container and its JSON, to be read through checks only."""
+    """A container and its JSON, to be read through checks only.
+
+    Attributes:
+        glb: The container.
+    """
 
     glb: Glb
 
@@ -120,10 +131,16 @@ class Document:
         return self.glb.binary[view.offset : view.offset + view.length]
 
     def array(self, reference: Value, kind: str, components: tuple[int, ...], most: int) -> NDArray[Any]:
-        """The accessor whose index `reference` holds: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3; a copy.
+        """A copy of an accessor: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3.
 
-        components: the component types allowed. most: entries allowed.
-        FormatError: `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`.
+        Args:
+            reference: Holds its index.
+            kind: Its type.
+            components: The component types allowed.
+            most: Entries allowed.
+
+        Raises:
+            FormatError: `accessor-missing`, `accessor-type`, `accessor-range`, `accessor-alignment`.
         """
         count = len(list(self.root["accessors"].items(limits.MAX_VIEWS)))
         index = reference.integer(0, 2**31)
@@ -133,7 +150,7 @@ class Document:
         found = entry["type"].text()
         component = entry["componentType"].integer(0, 2**31)
         if found != kind or component not in components:
-            entry.fail("accessor-type", f"{quoted(found)} of {component}, {kind} of {components} expected")
+            entry.fail("accessor-type", f"{quote(found)} of {component}, {kind} of {components} expected")
         if entry.has("sparse") or (entry.has("normalized") and entry["normalized"].value is not False):
             entry.fail("accessor-type", "sparse and normalised accessors are not read here")
         length = entry["count"].integer(1, most)
@@ -151,5 +168,5 @@ class Document:
 
 
 def all_finite(array: NDArray[Any]) -> bool:
-    """Whether every number is finite and at most `limits.LARGEST`."""
-    return bool((np.abs(array) <= limits.LARGEST).all())  # False for NaN
+    """Whether the magnitude of every number is at most `limits.MAX_NUMBER`."""
+    return bool((np.abs(array) <= limits.MAX_NUMBER).all())  # False for NaN

@@ -1,4 +1,4 @@
-"""What is wrong with a file: the first thing (an exception) for `load`, everything (a list) for `validate`."""
+"""Findings in a file: the first error (an exception) for `load`, all of them (a list) for `validate`."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ Severity = Literal["error", "warning", "information"]
 class Finding:
     """One finding of `validate`.
 
-    severity: "error" (the file is refused), "warning" (it can be drawn, but is not as specified), "information".
-    code: stable, kebab-case; the table is in docs/format.md.
-    where: a byte offset ("byte 20") or a JSON pointer.
-    message: what is wrong, without a full stop.
+    Attributes:
+        severity: "error" (the file is refused), "warning" (it can be drawn, but is not as specified), "information".
+        code: Stable, kebab-case; the table is in docs/format.md.
+        where: A byte offset ("byte 20") or a JSON pointer.
+        message: Without a full stop.
     """
 
     severity: Severity
@@ -32,8 +33,10 @@ class Finding:
 class Findings:
     """Collects findings; the checks themselves raise FormatError and know nothing of it.
 
-    strict: the first error leaves `part` as the exception it is (`load`); otherwise it is noted, the rest of that
-    part is skipped and the work goes on behind it (`validate`).
+    Attributes:
+        strict: Whether the first error leaves `part` as an exception (`load`). Otherwise it is noted, the rest of that
+            part is skipped and the next part is checked (`validate`).
+        found: The findings so far.
     """
 
     strict: bool

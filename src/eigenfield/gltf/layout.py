@@ -1,4 +1,4 @@
-"""What a scene file says, every number checked, its pictures not yet decoded.
+"""The layout of a scene file, every number checked, its pictures not yet decoded.
 
 Each check raises FormatError. `load` stops at the first; `validate` notes it and goes on with the next part: the same
 code, through `Findings.part`.
@@ -34,7 +34,7 @@ from eigenfield.gltf.layout_geometry import (
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
 from eigenfield.gltf.streams import FEATURES, LATEST, minor
-from eigenfield.gltf.strict_json import Value, quoted
+from eigenfield.gltf.strict_json import Value, quote
 
 _KEYS = {
     "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "times", "reference", "residual",
@@ -44,8 +44,24 @@ _KEYS = {
 
 @dataclass(frozen=True, eq=False)
 class FileLayout:
-    """A whole file; a part that could not be read is None (only while validating). mesh_payload: its stream, None where
-    it is plain."""
+    """A whole file; a part that could not be read is None (only while validating).
+
+    Attributes:
+        version: Of the format.
+        mesh: The proxy.
+        mesh_payload: Its stream; None where it is plain.
+        planes: Means and bases.
+        cameras: All of them.
+        view_plane: Through the cameras.
+        triangles: (T, 3) of encoded cameras on it.
+        reference: Index of the reference camera.
+        to_rgb: (3, K) from the channels of all planes; None: they are R, G, B.
+        residual: Of captured views.
+        settings: A JSON object.
+        scores: A JSON object.
+        generator: The program that wrote it.
+        times: In seconds.
+    """
 
     version: str
     mesh: Mesh | None
@@ -83,7 +99,7 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
             "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
         )
     for key in sorted(extension.mapping().keys() - _KEYS):
-        findings.note("information", "unknown-key", extension.where, f"{quoted(key)} is ignored")
+        findings.note("information", "unknown-key", extension.where, f"{quote(key)} is ignored")
     if limits.EXTENSION not in _names(document, "extensionsUsed"):
         findings.note("warning", "extension-not-used", "/extensionsUsed", f"does not name {limits.EXTENSION}")
     if limits.EXTENSION in _names(document, "extensionsRequired"):
@@ -138,7 +154,11 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
 
 
 def read_times(extension: Value) -> tuple[float, ...]:
-    """The instants of the observations, in seconds; one where nothing is said. FormatError: `times`, `json-*`."""
+    """The instants of the observations, in seconds; by default one.
+
+    Raises:
+        FormatError: `times`, `json-*`.
+    """
     if not extension.has("times"):
         return (0.0,)
     entry = extension["times"]
@@ -151,12 +171,13 @@ def read_times(extension: Value) -> tuple[float, ...]:
 def find_extension(document: Document) -> Value:
     """Our root extension, of a version and with needs that this reader knows.
 
-    FormatError: `gltf-version`, `not-a-scene`, `version`, `needs`.
+    Raises:
+        FormatError: `gltf-version`, `not-a-scene`, `version`, `needs`.
     """
     root = document.root
     asset = root["asset"]["version"]
     if not re.fullmatch(r"2\.\d+", asset.text()):
-        asset.fail("gltf-version", f"glTF {quoted(asset.value)}, 2.x expected")
+        asset.fail("gltf-version", f"glTF {quote(asset.value)}, 2.x expected")
     if not root.has("extensions") or not root["extensions"].has(limits.EXTENSION):
         raise FormatError(
             "not-a-scene",
@@ -169,7 +190,7 @@ def find_extension(document: Document) -> Value:
     if not re.fullmatch(r"1\.\d{1,9}", version.text()):
         raise FormatError(
             "version",
-            f"version {quoted(version.value)} of {limits.EXTENSION}, 1.x is read here",
+            f"version {quote(version.value)} of {limits.EXTENSION}, 1.x is read here",
             where=version.where,
             remedy="use a later eigenfield",
         )
@@ -178,7 +199,7 @@ def find_extension(document: Document) -> Value:
             if need.text() not in FEATURES:
                 raise FormatError(
                     "needs",
-                    f"needs the unknown feature {quoted(need.value)}",
+                    f"needs the unknown feature {quote(need.value)}",
                     where=need.where,
                     remedy="use a later eigenfield",
                 )

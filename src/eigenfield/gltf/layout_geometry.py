@@ -1,4 +1,4 @@
-"""The parts of a scene file that say where things are: proxy, cameras, view plane."""
+"""The geometry of a scene file: proxy, cameras, view plane."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document, all_finite
 from eigenfield.gltf.name_pattern import read_pattern
 from eigenfield.gltf.streams import read_stream
-from eigenfield.gltf.strict_json import Value, printable, quoted
+from eigenfield.gltf.strict_json import Value, is_printable, quote
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,11 +25,11 @@ class CameraList:
     """Every camera of a file.
 
     Attributes:
-        names: Nc.
-        cameras: Nc.
+        names: Of the Nc cameras.
+        cameras: Nc of them.
         held_out: (Nc,) bool.
-        colours: (Nc, 2, 3) float32 gains and offsets, None where the file has none.
-        payload: Their intrinsics and poses, None where they are plain.
+        colours: (Nc, 2, 3) float32 gains and offsets; None where the file has none.
+        payload: The stream of intrinsics and poses; None where they are plain.
     """
 
     names: tuple[str, ...]
@@ -44,7 +44,11 @@ class CameraList:
 
 
 def read_mesh(document: Document) -> Mesh:
-    """The proxy: meshes[0].primitives[0]. FormatError: `mesh-*`, `accessor-*`."""
+    """The proxy: meshes[0].primitives[0].
+
+    Raises:
+        FormatError: `mesh-*`, `accessor-*`.
+    """
     primitive = document.root["meshes"].at(0)["primitives"].at(0)
     if primitive.has("mode") and primitive["mode"].integer(0, 6) != 4:
         primitive.fail("mesh-mode", "the primitive does not consist of triangles")
@@ -66,8 +70,11 @@ def read_mesh(document: Document) -> Mesh:
 
 
 def read_coded_mesh(document: Document, entry: Value) -> tuple[Mesh, Payload]:
-    """The proxy itself, where meshes[0] is a coarse one for other viewers, and its stream. FormatError: `coded-*`,
-    `codec-unknown`, `view-*`."""
+    """The proxy itself, where meshes[0] is a coarse one for other viewers, and its stream.
+
+    Raises:
+        FormatError: `coded-*`, `codec-unknown`, `view-*`.
+    """
     stream = read_stream(document, entry, "mesh")
     mesh: Mesh = CODECS[stream.codec].decode(stream.data, entry.where)
     if not len(mesh.faces):
@@ -76,7 +83,11 @@ def read_coded_mesh(document: Document, entry: Value) -> tuple[Mesh, Payload]:
 
 
 def read_cameras(document: Document, entry: Value) -> CameraList:
-    """FormatError: `camera-*`, `accessor-*`, `coded-*`, `codec-unknown`."""
+    """All cameras.
+
+    Raises:
+        FormatError: `camera-*`, `accessor-*`, `coded-*`, `codec-unknown`.
+    """
     names = _read_names(document, entry)
     count = len(names)
     held_out = np.zeros(count, bool)
@@ -113,7 +124,7 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
 
 
 def _read_names(document: Document, entry: Value) -> list[str]:
-    """One by one, by what they have in common, or coded."""
+    """Names one by one, by a pattern, or coded."""
     given = entry[next((key for key in ("codedNames", "pattern") if entry.has(key)), "names")]
     listed = isinstance(given.value, list)
     if entry.has("codedNames"):
@@ -127,7 +138,7 @@ def _read_names(document: Document, entry: Value) -> list[str]:
     else:
         names = [name.text() for name in given.items(limits.MAX_CAMERAS, 1)]
     for index, name in enumerate(names):
-        if not printable(name):
+        if not is_printable(name):
             where = given.at(index) if listed else given
             where.fail("camera-name", "a name with control characters")
     if len(set(names)) < len(names):
@@ -157,7 +168,7 @@ def _table(document: Document, reference: Value, component: int, rows: int, colu
 
 def _refuse(entry: Value, names: list[str], key: str, bad: NDArray[np.bool_], what: str) -> None:
     if bad.any():
-        entry[key].fail(f"camera-{key}", f"camera {quoted(names[int(np.flatnonzero(bad)[0])])} {what}")
+        entry[key].fail(f"camera-{key}", f"camera {quote(names[int(np.flatnonzero(bad)[0])])} {what}")
 
 
 def _check_calibration(
@@ -166,30 +177,36 @@ def _check_calibration(
     def refuse(key: str, bad: NDArray[np.bool_], what: str) -> None:
         _refuse(entry, names, key, bad, what)
 
-    inside = np.abs(intrinsics) <= limits.LARGEST
+    inside = np.abs(intrinsics) <= limits.MAX_NUMBER
     refuse(
         "intrinsics",
         ~inside.all(axis=1) | (intrinsics[:, :2] <= 1e-6).any(axis=1),
         "has no valid focal length or centre",
     )
-    refuse("poses", ~(np.abs(poses) <= limits.LARGEST).all(axis=(1, 2)), "has a pose that is not finite")
+    refuse("poses", ~(np.abs(poses) <= limits.MAX_NUMBER).all(axis=(1, 2)), "has a pose that is not finite")
     rotations = poses[:, :, :3].astype(np.float64)
     refuse("poses", np.abs(rotations).max(axis=(1, 2)) > 2, "has a pose that is no rotation")
     off = np.abs(rotations @ rotations.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))
-    refuse("poses", (off > limits.ORTHONORMAL) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation")
+    refuse(
+        "poses", (off > limits.ORTHONORMAL_TOLERANCE) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation"
+    )
     area = sizes[:, 0] * sizes[:, 1]
     bad = (sizes < 1).any(axis=1) | (sizes > limits.MAX_CAMERA_SIDE).any(axis=1) | (area > limits.MAX_CAMERA_PIXELS)
     refuse("sizes", bad, "has an impossible size")
 
 
 def read_view_plane(entry: Value) -> ViewPlane:
-    """FormatError: `view-plane`."""
+    """The plane through the cameras.
+
+    Raises:
+        FormatError: `view-plane`.
+    """
     origin, right, up = (
-        np.array([n.number(limits.LARGEST) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
+        np.array([n.number(limits.MAX_NUMBER) for n in entry[key].items(3, 3)]) for key in ("origin", "right", "up")
     )
-    extent = np.array([n.number(limits.LARGEST) for n in entry["extent"].items(2, 2)])
+    extent = np.array([n.number(limits.MAX_NUMBER) for n in entry["extent"].items(2, 2)])
     gram = np.array([right @ right, up @ up, right @ up])
-    if not np.abs(gram - (1, 1, 0)).max() <= limits.ORTHONORMAL:
+    if not np.abs(gram - (1, 1, 0)).max() <= limits.ORTHONORMAL_TOLERANCE:
         entry.fail("view-plane", "right and up are not of length 1 and at right angles")
     if extent.min() < 0:
         entry["extent"].fail("view-plane", "a negative extent")
@@ -197,7 +214,11 @@ def read_view_plane(entry: Value) -> ViewPlane:
 
 
 def read_triangles(document: Document, entry: Value, cameras: CameraList | None) -> NDArray[np.int32]:
-    """(T, 3) indices of encoded cameras. FormatError: `view-plane-triangles`, `accessor-*`."""
+    """(T, 3) indices of encoded cameras.
+
+    Raises:
+        FormatError: `view-plane-triangles`, `accessor-*`.
+    """
     most = limits.MAX_CAMERAS if cameras is None else cameras.encoded
     found: NDArray[Any]
     if entry.has("codedTriangles"):

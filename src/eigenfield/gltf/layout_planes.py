@@ -1,4 +1,4 @@
-"""The parts of a scene file that are drawn: planes, their means and bases, and the matrix that joins them."""
+"""The appearance in a scene file: planes, their means and bases, and the matrix from their channels to R, G, B."""
 
 from __future__ import annotations
 
@@ -18,23 +18,25 @@ from eigenfield.gltf.document import FLOAT, Document, all_finite
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_geometry import CameraList
 from eigenfield.gltf.streams import codec_named, read_stream
-from eigenfield.gltf.strict_json import Value, quoted
+from eigenfield.gltf.strict_json import Value, quote
 
-MOST_BITS = max(codec.bits for codec in PICTURES.values())
+PICTURE_MAX_BITS = max(codec.bits for codec in PICTURES.values())
 
 
 @dataclass(frozen=True, eq=False)
 class PictureLayout:
-    """Codes in the file.
+    """A picture in the file.
 
     Attributes:
         data: The picture file.
         codec: Its name in `CODECS`.
-        width, height, channels: Of the array that it decodes to.
-        affine: The way back to numbers, per channel (of every texture in it); None: code / 255.
+        width: Of the array that it decodes to.
+        height: Likewise.
+        channels: Likewise.
+        affine: From codes to numbers, per channel (of every texture in it); None: code / 255.
         where: Its place in the JSON.
         count: Textures in it, one below the other.
-        precision: Of a mean, the picture of how finely each place of it is coded; None: all of it alike.
+        precision: Of a mean, the picture of its precision place by place; None: all alike.
     """
 
     data: memoryview
@@ -58,7 +60,7 @@ class PictureLayout:
 
     @property
     def payload(self) -> PicturePayload:
-        """What a scene keeps of it."""
+        """The payload of a scene."""
         precision = None
         if self.precision is not None:
             precision = Payload(self.precision.codec, bytes(self.precision.data))
@@ -72,9 +74,17 @@ class PictureLayout:
 
 @dataclass(frozen=True, eq=False)
 class BasisLayout:
-    """size: (width, height) of the textures. weights: (Ne, N) float32. grid: (rows, columns) of which they are a
-    part, None: all of it. corner: row and column in it. payload: the coded weights, None where they are plain.
-    lost: textures behind the end of a file that is cut off."""
+    """A basis in the file.
+
+    Attributes:
+        size: (width, height) of the textures.
+        textures: Their pictures, by rank.
+        weights: (Ne, N) float32.
+        grid: (rows, columns) of which they are a part; None: all of it.
+        corner: Row and column in it.
+        payload: The coded weights; None where they are plain.
+        lost: Textures behind the end of a file that is cut off.
+    """
 
     size: tuple[int, int]
     textures: tuple[PictureLayout, ...]
@@ -91,7 +101,13 @@ class BasisLayout:
 
 @dataclass(frozen=True, eq=False)
 class PlaneLayout:
-    """lost: textures of all bases, also of those of which nothing is left, behind the end of the file."""
+    """A plane in the file.
+
+    Attributes:
+        mean: Its picture.
+        bases: Those of which something is left.
+        lost: Textures of all bases behind the end of the file.
+    """
 
     mean: PictureLayout
     bases: tuple[BasisLayout, ...]
@@ -101,9 +117,17 @@ class PlaneLayout:
 def read_planes(
     document: Document, entry: Value, cameras: CameraList | None, times: int, findings: Findings
 ) -> tuple[PlaneLayout, ...]:
-    """times: how many instants there are observations of.
+    """All planes.
 
-    FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`.
+    Args:
+        document: The file.
+        entry: The JSON array.
+        cameras: None only while validating a file whose cameras are damaged.
+        times: Number of instants.
+        findings: Notes what is lost.
+
+    Raises:
+        FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`.
     """
     rows = 0 if cameras is None else cameras.encoded * times
     planes = tuple(
@@ -144,7 +168,7 @@ def _read_plane(document: Document, entry: Value, index: int, rows: int, finding
 
 
 def read_image(document: Document, channels: int) -> PictureLayout:
-    """`images[0]` as a picture of `channels`; its size is what its header says."""
+    """`images[0]` as a picture of `channels`, of the size in its header."""
     image = document.root["images"].at(0)
     if not image.has("bufferView"):
         image.fail("plane-mean", "the picture lies in another file")
@@ -226,7 +250,10 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
 def _picture(
     document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int
 ) -> PictureLayout:
-    data, bits = document.data(entry["bufferView"]), entry["bits"].integer(8, MOST_BITS) if entry.has("bits") else 8
+    data, bits = (
+        document.data(entry["bufferView"]),
+        entry["bits"].integer(8, PICTURE_MAX_BITS) if entry.has("bits") else 8,
+    )
     usual = _codec_of(entry, bits)
     codec = codec_named(entry, place) or usual
     if (PICTURES[codec].mime, PICTURES[codec].bits) != (PICTURES[usual].mime, bits):
@@ -257,21 +284,25 @@ def _precision(document: Document, entry: Value, mean: PictureLayout) -> Picture
     width, height = (item.integer(1, limits.MAX_PRECISION_SIDE) for item in entry["size"].items(2, 2))
     data, codec = document.data(entry["bufferView"]), "png"
     if codec_named(entry, "precision") != codec:
-        entry["codec"].fail("codec-unknown", f"a precision is a {codec}, not {quoted(entry['codec'].value)}")
+        entry["codec"].fail("codec-unknown", f"a precision is a {codec}, not {quote(entry['codec'].value)}")
     stacking.check_picture(data, codec, width, height, 1, entry.where)
     return PictureLayout(data, codec, width, height, 1, None, entry.where)
 
 
 def _affine(entry: Value, channels: int, count: int) -> NDArray[np.float64]:
     """(channels * count,): C numbers for each texture, or C that stand for all."""
-    given = [item.number(limits.LARGEST) for item in entry.items(channels * count, channels)]
+    given = [item.number(limits.MAX_NUMBER) for item in entry.items(channels * count, channels)]
     if len(given) not in (channels, channels * count):
         entry.fail("json-value", f"{len(given)} numbers, {channels} or {channels * count} expected")
     return np.tile(np.array(given), 1 if len(given) == channels * count else count)
 
 
 def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray[np.float32] | None:
-    """(3, K) float32: R, G, B from the channels of all planes. FormatError: `plane-matrix`."""
+    """(3, K) float32: R, G, B from the channels of all planes.
+
+    Raises:
+        FormatError: `plane-matrix`.
+    """
     if not entry.has("toRGB"):
         return None
     channels = 0 if planes is None else sum(plane.mean.channels for plane in planes)
@@ -288,7 +319,11 @@ def check_colours(
     planes: tuple[PlaneLayout, ...] | None,
     to_rgb: NDArray[np.float32] | None,
 ) -> None:
-    """Colours are those of R, G and B. FormatError: `camera-colour`."""
+    """Check that colours of cameras are those of R, G and B.
+
+    Raises:
+        FormatError: `camera-colour`.
+    """
     if cameras is None or cameras.colours is None or not planes or to_rgb is not None:
         return
     if planes[0].mean.channels != 3:

@@ -44,7 +44,7 @@ log = logging.getLogger("eigenfield.format")
 
 
 @contextlib.contextmanager
-def naming(path: str | os.PathLike[str]) -> Iterator[None]:
+def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
     """Put the file's name into every FormatError, and turn a lack of memory into one."""
     try:
         yield
@@ -58,7 +58,11 @@ def naming(path: str | os.PathLike[str]) -> Iterator[None]:
 
 
 def open_layout(path: Path) -> tuple[Document, FileLayout]:
-    """Container and checked layout, pictures not decoded. Raises FormatError."""
+    """Container and checked layout, pictures not decoded.
+
+    Raises:
+        FormatError: As `load`.
+    """
     return _layout_of(read_file(path))
 
 
@@ -70,24 +74,34 @@ def _layout_of(data: bytes) -> tuple[Document, FileLayout]:
 
 
 def load(path: str | os.PathLike[str]) -> EncodedScene:
-    """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and what they were coded to.
+    """Read a scene: float32 means, uint8 or uint16 textures with their scale and zero, and their payloads.
 
-    Raises FormatError (a stable `code`, and `where`) for anything that is not as docs/format.md says; limits are
-    checked before memory is taken. Never another exception for what is in the file.
+    Limits are checked before memory is taken.
+
+    Raises:
+        FormatError: With a stable `code`, and `where`, for anything that is not as docs/format.md specifies; the
+            content of a file never raises another exception.
     """
-    with naming(path):
+    with name_file_in_errors(path):
         return read_scene(read_file(Path(path)))
 
 
 def read_scene(data: bytes) -> EncodedScene:
-    """The scene that a file of these bytes holds. Raises FormatError."""
+    """The scene in a file of these bytes.
+
+    Raises:
+        FormatError: As `load`.
+    """
     return _scene_of(data, pictures=True)
 
 
 def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
-    """A scene without its planes, and the bytes of its file: checked as `load` does, but no picture is decoded. Raises
-    FormatError."""
-    with naming(path):
+    """A scene without its planes, and the bytes of its file: checked as `load` does, but no picture is decoded.
+
+    Raises:
+        FormatError: As `load`.
+    """
+    with name_file_in_errors(path):
         data = read_file(Path(path))
         return _scene_of(data, pictures=False), data
 
@@ -185,11 +199,11 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
 def validate(path: str | os.PathLike[str]) -> list[Finding]:
     """Every finding in a file, in the order of the file's parts; an empty list for a file as specified.
 
-    Reads and decodes everything that `load` would, one picture at a time, and looks at what `load` does not need: the
-    picture and the nodes for other viewers, buffer views without use. Never raises for what is in the file.
+    It reads and decodes everything that `load` would, one picture at a time, and checks what `load` does not need: the
+    picture and the nodes for other viewers, buffer views without use. The content of a file never raises.
     """
     findings = Findings(strict=False)
-    with findings.part(), naming(path):
+    with findings.part(), name_file_in_errors(path):
         document = Document(parse_glb(read_file(Path(path))))
         layout = read_layout(document, findings)
         if layout is not None:
@@ -218,7 +232,7 @@ def _check_residual(layout: FileLayout, findings: Findings) -> None:
 
 
 def _check_preview(document: Document, findings: Findings) -> None:
-    """What a viewer without our extension shows: images[0] through the proxy's unlit material."""
+    """Check the preview, which viewers without our extension show: images[0] in the proxy's unlit material."""
     with findings.part():
         image = read_image(document, 3)
         if image.mime not in ("image/png", "image/jpeg"):

@@ -1,4 +1,4 @@
-"""Where coded streams stand in the JSON, and which codec each of them has unless it names one."""
+"""The places of coded streams in the JSON, and the default codec of each."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from eigenfield.coding.pictures.stacking import PICTURES, codec_of
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Payload
 from eigenfield.gltf.document import Document
-from eigenfield.gltf.strict_json import Value, quoted
+from eigenfield.gltf.strict_json import Value, quote
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,8 @@ class Place:
     Attributes:
         path: From the extension, `*` for every entry of an array.
         kind: Of its codecs.
-        codec: Unless the object has a `codec`; None: what the `mimeType` and the `bits` of a picture say.
-        part: Of the file, that its bytes count to (`contents.parts`).
+        codec: Unless the object has a `codec`; None: by the `mimeType` and the `bits` of a picture.
+        part: The part of the file that its bytes count to (`contents.parts`).
         bare: Whether the index of the buffer view may stand there alone.
     """
 
@@ -61,7 +61,7 @@ LATEST = max(map(minor, [limits.VERSION, *(codec.since for codec in CODECS.value
 
 
 def codec_entry(codec: str, place: str) -> dict[str, str]:
-    """What the JSON says of a codec: nothing where readers take it unless another is named."""
+    """The JSON's member for a codec; none for the default of its place."""
     picture = PICTURES.get(codec)
     usual = PLACES[place].codec or (picture and codec_of(picture.mime, picture.bits))
     return {} if codec == usual else {"codec": codec}
@@ -73,15 +73,18 @@ def _reference(entry: Value, place: Place) -> Value:
 
 
 def codec_named(entry: Value, place: str) -> str | None:
-    """The codec that a stream names, else its place's. FormatError `codec-unknown` for one that is not known, or not
-    for such streams."""
+    """The codec that a stream names, else its place's.
+
+    Raises:
+        FormatError: `codec-unknown`, it is not known, or not for such streams.
+    """
     if not isinstance(entry.value, dict) or not entry.has("codec"):
         return PLACES[place].codec
     name, kind = entry["codec"].text(), PLACES[place].kind
     if name not in CODECS or CODECS[name].kind != kind:
         raise FormatError(
             "codec-unknown",
-            f"no codec of a {kind} stream is called {quoted(name)} here",
+            f"no codec of a {kind} stream is called {quote(name)} here",
             where=entry["codec"].where,
             remedy="use a later eigenfield",
         )
@@ -89,7 +92,11 @@ def codec_named(entry: Value, place: str) -> str | None:
 
 
 def read_stream(document: Document, entry: Value, place: str) -> Payload:
-    """The stream that `entry` is or names, not decoded. FormatError `codec-unknown`, `view-*`, `truncated`."""
+    """The stream of an entry, not decoded.
+
+    Raises:
+        FormatError: `codec-unknown`, `view-*`, `truncated`.
+    """
     codec = codec_named(entry, place)
     assert codec is not None
     return Payload(codec, bytes(document.data(_reference(entry, PLACES[place]))))

@@ -12,12 +12,16 @@ from typing import Any, NoReturn
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 
-_SHOWN = 60  # characters of a value quoted in a message
+_QUOTE_MAX_CHARACTERS = 60  # of a value in a message
 _CONTROL = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff]")
 
 
 def parse(data: bytes, where: str) -> Any:
-    """The JSON value in `data`. Raises FormatError: `json-size`, `json-invalid`, `json-depth`."""
+    """The JSON value in `data`.
+
+    Raises:
+        FormatError: `json-size`, `json-invalid`, `json-depth`.
+    """
     if len(data) > limits.MAX_JSON:
         raise FormatError("json-size", f"{len(data)} bytes of JSON, {limits.MAX_JSON} are allowed", where=where)
 
@@ -26,7 +30,7 @@ def parse(data: bytes, where: str) -> Any:
 
     def real(text: str) -> float:
         value = float(text)
-        return value if math.isfinite(value) else refuse(text[:_SHOWN])
+        return value if math.isfinite(value) else refuse(text[:_QUOTE_MAX_CHARACTERS])
 
     def whole(text: str) -> int:
         return int(text) if len(text) <= 20 else refuse(f"a whole number of {len(text)} digits")
@@ -36,7 +40,7 @@ def parse(data: bytes, where: str) -> Any:
         if len(made) < len(pairs):
             keys = [key for key, _ in pairs]
             doubled = next(key for i, key in enumerate(keys) if key in keys[:i]) if len(keys) < 1000 else "a key"
-            raise FormatError("json-invalid", f"{quoted(doubled)} occurs twice in one object", where=where)
+            raise FormatError("json-invalid", f"{quote(doubled)} occurs twice in one object", where=where)
         return made
 
     try:
@@ -69,20 +73,25 @@ def _check_depth_and_text(value: Any, where: str) -> None:
         level, depth = below, depth + 1
 
 
-def quoted(value: object) -> str:
+def quote(value: object) -> str:
     """A value of the file as it may appear in a message: short, on one line."""
     text = json.dumps(value) if isinstance(value, (str, int, float, bool, type(None))) else type(value).__name__
-    return text if len(text) <= _SHOWN else text[:_SHOWN] + "…"
+    return text if len(text) <= _QUOTE_MAX_CHARACTERS else text[:_QUOTE_MAX_CHARACTERS] + "…"
 
 
-def printable(text: str) -> bool:
+def is_printable(text: str) -> bool:
     """Whether a name can be shown on one line of a terminal without effects."""
     return _CONTROL.search(text) is None
 
 
 @dataclass(frozen=True)
 class Value:
-    """A value of the JSON and its pointer. Every getter raises FormatError `json-type` or `json-value`."""
+    """A value of the JSON. Every getter raises FormatError `json-type` or `json-value`.
+
+    Attributes:
+        value: As parsed.
+        where: Its JSON pointer.
+    """
 
     value: Any
     where: str = ""
@@ -92,7 +101,7 @@ class Value:
 
     def _expect(self, kind: type | tuple[type, ...], words: str) -> Any:
         if not isinstance(self.value, kind) or (isinstance(self.value, bool) and kind is not bool):
-            self.fail("json-type", f"{words} expected, {quoted(self.value)} found")
+            self.fail("json-type", f"{words} expected, {quote(self.value)} found")
         return self.value
 
     def mapping(self) -> dict[str, Any]:
@@ -107,7 +116,7 @@ class Value:
         found = self.mapping()
         pointer = f"{self.where}/{key.replace('~', '~0').replace('/', '~1')}"
         if key not in found:
-            raise FormatError("json-missing", f"{quoted(key)} is missing", where=pointer)
+            raise FormatError("json-missing", f"{quote(key)} is missing", where=pointer)
         return Value(found[key], pointer)
 
     def items(self, most: int, least: int = 0) -> Iterator[Value]:
@@ -135,7 +144,7 @@ class Value:
         return found
 
     def number(self, largest: float = 3.4e38) -> float:
-        """A number of magnitude up to `largest` (float32's range unless said)."""
+        """A number of magnitude up to `largest`, by default float32's range."""
         found = float(self._expect((int, float), "a number"))
         if not abs(found) <= largest:
             self.fail("json-value", f"{found} is larger than {largest:g}")

@@ -1,4 +1,4 @@
-"""What no reader would take back is not written: the limits of the format, asked of a scene."""
+"""The limits of the format, checked before a scene is written."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ from eigenfield.coding import limits
 from eigenfield.coding.pictures.stacking import picture_size
 from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
-from eigenfield.gltf.strict_json import printable
+from eigenfield.gltf.strict_json import is_printable
 
 
 def check_writable(scene: Scene, path: Path | None) -> None:
-    """Raises OutputError `scene-limit` or `camera-name` for what no reader would take back."""
+    """Check a scene against the limits of every reader.
+
+    Raises:
+        OutputError: `scene-limit`, `camera-name`.
+    """
 
     def refuse(what: str) -> None:
         raise OutputError("scene-limit", f"a file cannot hold {what}", path=path, remedy="make the scene smaller")
@@ -46,7 +50,7 @@ def check_writable(scene: Scene, path: Path | None) -> None:
         if count > most:
             refuse(f"{count} {name}")
     for name in scene.rig.names:
-        if len(name) > limits.MAX_NAME or not printable(name):
+        if len(name) > limits.MAX_NAME or not is_printable(name):
             raise OutputError(
                 "camera-name", f"the name {name!r} cannot be kept", path=path, remedy="rename the photograph"
             )

@@ -24,12 +24,12 @@ from eigenfield.core.version import __version__
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
 from eigenfield.gltf.buffer import Buffer
+from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coarse import shown_mesh
-from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest
-from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, front, json_bytes
+from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals
+from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
 from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document
 from eigenfield.gltf.findings import Findings
-from eigenfield.gltf.kept import Kept, kept_payloads
 from eigenfield.gltf.layout import read_layout
 from eigenfield.gltf.name_pattern import name_pattern
 from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry, minor
@@ -38,9 +38,9 @@ from eigenfield.runtime.files import atomic_writer, refuse_existing
 
 log = logging.getLogger("eigenfield.format")
 
-QUALITY = 70  # of the eigen textures, for avif
+DEFAULT_AVIF_QUALITY = 70  # of the eigen textures
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
-CODED_NAMES = 256  # bytes that coded names must save, and their two entries in the JSON
+CODED_NAMES_MIN_SAVING_BYTES = 256  # with their two entries in the JSON
 
 
 def save(
@@ -55,13 +55,22 @@ def save(
     """Write `scene` as a .glb, atomically.
 
     Parts of an `EncodedScene` whose content has not changed since they were coded keep their bytes. One line of the log
-    says which parts are coded anew, and what that costs; as a warning where the file grows by it.
+    lists the parts that are coded anew, and the bytes that this costs; as a warning where the file grows by it.
 
-    codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy), for all pictures. Without codec and quality
-    those that are coded already (by a fit, or read from a file) are kept as they are, and the rest becomes AVIF.
-    quality: 0..100 for avif, QUALITY unless said; the mean is coded finer (MEAN_SHARE).
-    Raises OutputError (`output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...) and OptionError (`codec`,
-    `codec-missing`, `quality`), and FormatError for a scene that is inconsistent in itself, before anything is written.
+    Args:
+        scene: To be written.
+        path: Of the .glb.
+        codec: "png", "webp" (both keep every code of 8 bits) or "avif" (lossy), for all pictures. Without codec and
+            quality, pictures that are coded already (by a fit, or read from a file) stay as they are, and the rest
+            becomes AVIF.
+        quality: 0..100 for avif, by default DEFAULT_AVIF_QUALITY; the mean is coded finer (MEAN_QUALITY_RATIO).
+        overwrite: Whether an existing file is replaced.
+        progress: Reports each picture.
+
+    Raises:
+        OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...
+        OptionError: `codec`, `codec-missing`, `quality`.
+        FormatError: The scene is inconsistent in itself. Nothing is written.
     """
     path = Path(path)
     refuse_existing(path, overwrite)
@@ -90,10 +99,10 @@ def _blocks(
         codec = DEFAULT_CODEC
     check_codec(codec or DEFAULT_CODEC, quality)
     check_writable(scene, path)
-    kept = kept_payloads(scene)
-    coded = code_pictures(scene, kept, codec, QUALITY if quality is None else quality, progress)
+    cached = cached_payloads(scene)
+    coded = code_pictures(scene, cached, codec, DEFAULT_AVIF_QUALITY if quality is None else quality, progress)
     buffer = Buffer()
-    gltf = _gltf(scene, buffer, coded, kept)
+    gltf = _gltf(scene, buffer, coded, cached)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
         raise OutputError(
@@ -102,16 +111,20 @@ def _blocks(
             path=path,
             remedy="store less in it",
         )
-    head = front(text, CHUNK.size + buffer.length, path)
+    head = file_head(text, CHUNK.size + buffer.length, path)
     binary = b"".join(buffer.parts)
     check_readable(text, binary)
     sizes = _plain_sizes(scene) | (coded.sizes if codec is None else {})
-    anew = {part: (sizes[part], before) for part, before in kept.lost.items() if part in sizes}
+    anew = {part: (sizes[part], before) for part, before in cached.lost.items() if part in sizes}
     return [head, CHUNK.pack(buffer.length, BINARY_CHUNK), binary], anew
 
 
 def check_readable(text: bytes, binary: bytes) -> None:
-    """Never write what `load` would refuse: raises its FormatError (a scene put together by hand may be anything)."""
+    """Check that `load` takes what is written: a scene put together by hand may be anything.
+
+    Raises:
+        FormatError: That of `load`.
+    """
     written = Glb(strict_json.parse(text, "byte 20"), memoryview(binary), len(text) + len(binary), len(text))
     read_layout(Document(written), Findings(strict=True))
 
@@ -132,9 +145,9 @@ def _plain_sizes(scene: Scene) -> dict[str, int]:
     }
 
 
-def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dict[str, Any]:
+def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayloads) -> dict[str, Any]:
     """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
-    mesh, poses = kept.one("mesh"), kept.one("cameras")
+    mesh, poses = cached.one("mesh"), cached.one("cameras")
     shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy.mesh, coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
     proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
@@ -144,10 +157,10 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
         image = {"bufferView": buffer.view(coded.preview.data), "mimeType": PICTURES[coded.preview.codec].mime}
     planes = []
     for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
-        weights = [kept.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
+        weights = [cached.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
         planes.append(_plane(plane, made, weights, buffer, inline=index > 0 or coded.preview is not None))
     cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
-    entries = _by_worth(scene, coded, planes)
+    entries = _by_gain_per_byte(scene, coded, planes)
     codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
     needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes)
     extension: dict[str, Any] = {
@@ -155,7 +168,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
         "needs": needs,
         **proxy,
         "planes": planes,
-        **({} if scene.appearance.to_rgb is None else {"toRGB": shortest(scene.appearance.to_rgb.ravel())}),
+        **({} if scene.appearance.to_rgb is None else {"toRGB": shortest_decimals(scene.appearance.to_rgb.ravel())}),
         "cameras": cameras,
         "viewPlane": view_plane,
         **({} if scene.times == (0.0,) else {"times": list(scene.times)}),
@@ -198,11 +211,11 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, kept: Kept) -> dic
     }
 
 
-def _by_worth(
+def _by_gain_per_byte(
     scene: Scene, coded: ScenePictures, planes: list[dict[str, Any]]
 ) -> list[tuple[dict[str, Any], PicturePayload]]:
-    """The entries of all pictures of eigen textures and their files, so that what takes most squared error off R, G and
-    B for its bytes comes first; those of one basis in their order."""
+    """The entries of all pictures of eigen textures and their files, sorted by the squared error of R, G and B that
+    they take off for a byte; those of one basis in their order."""
     queues = []
     first = 0
     for plane, made, shown in zip(scene.appearance.planes, coded.planes, planes, strict=True):
@@ -212,13 +225,13 @@ def _by_worth(
         share = np.square(matrix, dtype=np.float64).sum(axis=0)
         for basis, files, entry in zip(plane.bases, made.bases, shown["bases"], strict=True):
             energy = np.square(basis.weights, dtype=np.float64).mean(axis=0) / float(np.prod(basis.size))
-            worth, at = [], 0
+            gains, at = [], 0
             for file in files:
                 part = basis.values(at, at + file.count)
                 each = np.einsum("nhwc,nhwc,c->n", part, part, share.astype(np.float32))
-                worth.append(float(each @ energy[at : at + file.count]) / len(file.data))
+                gains.append(float(each @ energy[at : at + file.count]) / len(file.data))
                 at += file.count
-            queues.append(list(zip(worth, entry["textures"], files, strict=True)))
+            queues.append(list(zip(gains, entry["textures"], files, strict=True)))
     found = []
     while any(queues):
         _, entry, file = max((queue for queue in queues if queue), key=lambda queue: queue[0][0]).pop(0)
@@ -227,7 +240,7 @@ def _by_worth(
 
 
 def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
-    """The first version that has all that the file uses. named: whether a stream names its codec."""
+    """The first version of the format with all that the file uses. named: whether a stream names its codec."""
     found = {FEATURES[need] for need in needs} | {"1.7" if named else "1.0"}
     if scene.appearance.colours is not None:
         found.add("1.1")
@@ -239,7 +252,7 @@ def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
 def _primitive(mesh: Mesh, buffer: Buffer, small: bool) -> dict[str, Any]:
     """small: whether indices may have 8 bits, which other viewers read but need not be quick at."""
     assert mesh.uv is not None
-    bounds = {"min": shortest(mesh.vertices.min(axis=0)), "max": shortest(mesh.vertices.max(axis=0))}
+    bounds = {"min": shortest_decimals(mesh.vertices.min(axis=0)), "max": shortest_decimals(mesh.vertices.max(axis=0))}
     return {
         "attributes": {
             "POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", _VERTICES, **bounds),
@@ -256,7 +269,7 @@ def _index_type(mesh: Mesh, small: bool) -> int:
 
 
 def _stream(payload: Payload, place: str, buffer: Buffer) -> Any:
-    """The entry of a stream: where it is, and its codec if that is to be said."""
+    """The entry of a stream: its buffer view, and its codec unless it is the default."""
     index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
     return index if PLACES[place].bare and not named else {"bufferView": index, **named}
 
@@ -297,7 +310,7 @@ def _precision(picture: Payload, buffer: Buffer) -> dict[str, Any]:
 
 
 def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
-    """Entries of pictures of more than one texture, what most of them say said once; the buffer views come later."""
+    """Entries of pictures, common members once if a picture has several textures; the buffer views come later."""
     common: dict[str, Any] = {}
     if len(entries) > 1 and any("count" in entry for entry in entries):
         common = {"count": 1} | entries[0]
@@ -309,7 +322,7 @@ def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _picture(picture: PicturePayload, place: str) -> dict[str, Any]:
-    """What a picture's entry says beside where it lies."""
+    """A picture's entry without its buffer view."""
     codec = PICTURES[picture.codec]
     made: dict[str, Any] = {"mimeType": codec.mime}
     if codec.bits != 8:
@@ -318,14 +331,14 @@ def _picture(picture: PicturePayload, place: str) -> dict[str, Any]:
         made["count"] = picture.count
     if picture.affine is not None:
         scale, zero = picture.affine.scale, picture.affine.zero
-        made |= {"scale": _repeated(scale, picture.count), "zero": _repeated(zero, picture.count)}
+        made |= {"scale": _affine_numbers(scale, picture.count), "zero": _affine_numbers(zero, picture.count)}
     return made | codec_entry(picture.codec, place)
 
 
-def _repeated(numbers: NDArray[np.float64], count: int) -> list[float]:
+def _affine_numbers(numbers: NDArray[np.float64], count: int) -> list[float]:
     """The numbers of `count` textures; of one, where all have the same."""
     each = numbers.reshape(count, -1)
-    return shortest(each[:1] if (each == each[0]).all() else each)
+    return shortest_decimals(each[:1] if (each == each[0]).all() else each)
 
 
 def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
@@ -337,13 +350,13 @@ def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
         made["smooth"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
-    return made | _stream(Payload(residual.codec, residual.film), "residual", buffer)
+    return made | _stream(Payload(residual.codec, residual.video), "residual", buffer)
 
 
 def _needs(
     scene: Scene, coded: ScenePictures, codecs: Iterable[str], cameras: Mapping[str, Any], planes: list[dict[str, Any]]
 ) -> list[str]:
-    """The features that a reader must know to draw this scene rightly."""
+    """The features that a reader must know to draw this scene."""
     pictures = [file for plane in coded.planes for some in plane.bases for file in some]
     found = {
         "namePattern": "pattern" in cameras,
@@ -384,15 +397,15 @@ def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:
     plain: dict[str, Any] = {"names": list(names)}
     if buffer is None:
         return plain
-    pattern, stream = name_pattern(names), _encoded("names", names)
+    pattern, stream = name_pattern(names), _encode_at("names", names)
     shorter = plain if pattern is None else {"pattern": pattern}
-    if stream is None or len(stream.data) + CODED_NAMES >= len(json_bytes(shorter)):
+    if stream is None or len(stream.data) + CODED_NAMES_MIN_SAVING_BYTES >= len(json_bytes(shorter)):
         return shorter
     return {"codedNames": _stream(stream, "names", buffer) | {"count": len(names)}}
 
 
-def _encoded(place: str, value: Any) -> Payload | None:
-    """What the usual codec of a place makes of a value; None where it cannot code it."""
+def _encode_at(place: str, value: Any) -> Payload | None:
+    """A value coded by the default codec of a place; None where it cannot code it."""
     codec = PLACES[place].codec
     assert codec is not None
     data: bytes | None = encoder(codec)(value)
@@ -412,7 +425,7 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
         )
     }
     if len(scene.rig.triangles):
-        stream = _encoded("triangles", scene.rig.triangles) if short else None
+        stream = _encode_at("triangles", scene.rig.triangles) if short else None
         if stream is not None:
             made["codedTriangles"] = _stream(stream, "triangles", buffer)
         else:
@@ -429,13 +442,16 @@ def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     camera = scene.rig.cameras[scene.rig.reference]
     turn = capture_to_gltf(scene.rig.view_plane)
     perspective, axes = opening_view(camera, scene.proxy.mesh)
-    proxy = {"name": "proxy", "mesh": 0, **_turned(turn)}
+    proxy = {"name": "proxy", "mesh": 0, **_node_rotation(turn)}
     place = _decimals(turn @ camera.centre)
     perspective = dict(zip(perspective, _decimals(perspective.values()), strict=True))
-    return perspective, [proxy, {"name": "reference camera", "camera": 0, "translation": place, **_turned(turn @ axes)}]
+    return perspective, [
+        proxy,
+        {"name": "reference camera", "camera": 0, "translation": place, **_node_rotation(turn @ axes)},
+    ]
 
 
-def _turned(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
+def _node_rotation(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
     """A node's rotation, (3, 3); left out where it is none."""
     found = _decimals(quaternion(rotation))
     return {} if found == [0, 0, 0, 1] else {"rotation": found}

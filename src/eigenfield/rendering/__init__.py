@@ -21,7 +21,7 @@ from eigenfield.rendering.software.renderer import (
 )
 from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weight_map import weight_map
-from eigenfield.rendering.weights import MODES, camera_weights, delaunay_triangles, view_weights
+from eigenfield.rendering.weights import MODES, ViewWeights, camera_weights, delaunay_triangles, view_weights
 
 __all__ = [
     "FILTERS",
@@ -31,6 +31,7 @@ __all__ = [
     "Picture",
     "RenderJob",
     "Renderer",
+    "ViewWeights",
     "at_resolution",
     "camera_colour",
     "camera_index",

@@ -17,15 +17,14 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     rectified array the principal point moves with the camera, and so does this one's, which keeps the plane of zero
     parallax where it is. R is the weighted mean, made a rotation again.
     """
-    weights = place_weights(scene, at)
+    cameras, weights = place_weights(scene, at)
     x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
     reference = scene.rig.cameras[scene.rig.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
-    encoded = scene.rig.encoded
-    for row in np.flatnonzero(weights):
-        camera = scene.rig.cameras[encoded[row]].resized(reference.width, reference.height)
-        K += weights[row] * camera.K
-        R += weights[row] * camera.R
+    for index, weight in zip(cameras, weights, strict=True):
+        camera = scene.rig.cameras[index].resized(reference.width, reference.height)
+        K += weight * camera.K
+        R += weight * camera.R
     rotation = nearest_rotation(R)
     centre = scene.rig.view_plane.point(float(x), float(y))
     return Camera(K, rotation, -rotation @ centre, reference.width, reference.height)

@@ -19,6 +19,7 @@ from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.renderer import at_resolution, renderer_of, viewpoint
+from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 
 RENDERERS = ("software", "opengl")
@@ -53,34 +54,34 @@ class RenderJob:
         if self.renderer == "opengl" and self.samples is not None:
             raise OptionError("samples", "OpenGL chooses its samples itself", remedy="leave them out")
 
-    def picture(self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None) -> Picture:
-        """One picture; black behind what is to be transparent. mix: view weights. colour: of `Renderer.draw`.
+    def picture(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> Picture:
+        """One picture; black behind what is to be transparent. colour: of `Renderer.draw`.
 
         Raises OptionError `not-a-picture` for scenes of other than 1 or 3 channels, and those of `Renderer.draw`.
         """
         view = camera if self.resolution is None else at_resolution(camera, self.resolution)
         behind = self.background or (0.0,)
         if self.renderer == "opengl":
-            return self._opengl.draw(view, mix, background=behind, textures=self.textures, colour=colour)
+            return self._opengl.draw(view, weights, background=behind, textures=self.textures, colour=colour)
         renderer = renderer_of(self.scene)
         refuse_attributes(renderer.channels)
         if renderer.channels != len(behind):
             behind = (sum(behind) / len(behind),)  # a grey
         return renderer.draw(
-            view, mix, filter=self.filter, background=behind, textures=self.textures, samples=self.samples,
+            view, weights, filter=self.filter, background=behind, textures=self.textures, samples=self.samples,
             colour=colour,
         )  # fmt: skip
 
-    def rgb(self, camera: Camera, mix: NDArray[np.float64]) -> NDArray[np.uint8]:
+    def rgb(self, camera: Camera, weights: ViewWeights) -> NDArray[np.uint8]:
         """(H, W, 3) uint8, greys repeated."""
-        image = self.picture(camera, mix).to_uint8()
+        image = self.picture(camera, weights).to_uint8()
         return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
 
     def pixels(
-        self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None
+        self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None
     ) -> NDArray[np.uint8]:
         """(H, W, 1 to 4) uint8 as `png` takes it, with (straight) alpha where it is to be transparent."""
-        return self.pixels_of(self.picture(camera, mix, colour))
+        return self.pixels_of(self.picture(camera, weights, colour))
 
     def pixels_of(self, picture: Picture) -> NDArray[np.uint8]:
         """`pixels` of a picture that `picture` drew."""
@@ -91,9 +92,9 @@ class RenderJob:
         values: NDArray[Any] = np.concatenate([straight, part], axis=2)
         return np.clip(np.rint(values * np.float32(255)), 0, 255).astype(np.uint8)
 
-    def png(self, camera: Camera, mix: NDArray[np.float64], colour: NDArray[np.float32] | None = None) -> bytes:
+    def png(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> bytes:
         """The picture as a .png."""
-        return png(self.pixels(camera, mix, colour))
+        return png(self.pixels(camera, weights, colour))
 
     def pngs_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[bytes]:
         """A .png for each of (n, 2) viewpoints."""
@@ -109,7 +110,7 @@ class RenderJob:
         """draw(item) for each of `items`, in order: in several threads where the renderer allows it."""
         return map(draw, items) if self.renderer == "opengl" else parallel_stream(draw, items)
 
-    def _views(self, points: NDArray[np.float64]) -> Iterator[tuple[Camera, NDArray[np.float64]]]:
+    def _views(self, points: NDArray[np.float64]) -> Iterator[tuple[Camera, ViewWeights]]:
         for x, y in points:
             yield viewpoint(self.scene, at=(float(x), float(y)), weights=self.weights)
 

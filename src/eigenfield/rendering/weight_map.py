@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, place_weights
+from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, view_weights
 
 NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
 
@@ -15,17 +15,17 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDAr
     """(nodes, nodes, N) float32: ω(j) of equation 7 at X, Y of -1..1 and the first instant, first index Y, nodes on the
     edges.
 
-    N counts the components of all bases of all planes. Raises OptionError as `place_weights`.
+    N counts the components of all bases of all planes. Raises OptionError as `view_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
-    rows = component_rows(scene)[scene.rows()]
+    rows = component_rows(scene)
     found = np.full((nodes, nodes, rows.shape[1]), np.nan)
     if mode == "delaunay" and len(scene.rig.triangles):
-        _fill_triangles(scene, steps, rows, found)
+        _fill_triangles(scene, steps, rows[scene.rows()], found)
     if scene.rig.view_plane.is_line:  # Y counts for nothing
-        found[:] = np.array([place_weights(scene, (x, 0.0), mode) @ rows for x in steps])
+        found[:] = np.array([view_weights(scene, (x, 0.0), mode).blend(rows) for x in steps])
     for row, column in np.argwhere(np.isnan(found).any(axis=2)) if rows.shape[1] else ():
-        found[row, column] = place_weights(scene, (steps[column], steps[row]), mode) @ rows
+        found[row, column] = view_weights(scene, (steps[column], steps[row]), mode).blend(rows)
     return found.astype(np.float32)
 
 
@@ -39,7 +39,7 @@ def _fill_triangles(
     scene: Scene, steps: NDArray[np.float64], rows: NDArray[np.float64], found: NDArray[np.float64]
 ) -> None:
     """Put the weights of every node into `found`: within a Delaunay triangle its corners', outside the hull those of
-    the nearest point on it."""
+    the nearest point on it. rows: (Ne, N) of the encoded cameras."""
     places = scene.rig.view_plane.coordinates([scene.rig.cameras[i].centre for i in scene.rig.encoded])
     for triangle in scene.rig.triangles:
         a, b, c = places[triangle]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -12,23 +14,116 @@ from eigenfield.core.viewplane import find_grid
 MODES = ("delaunay", "nearest3", "bilinear")
 FLAT = 1e-6  # triangles whose area is below this part of their longest side squared count as a line
 SLACK = 1e-9  # by which rounding may put a point on an edge outside of both its triangles, or cells
+Sparse = tuple[NDArray[np.integer], NDArray[np.float64]]  # (k,) encoded cameras, counted among themselves, and weights
 
 
-def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", time: int = 0) -> NDArray[np.float64]:
-    """(No,) weights over the observations of a scene: those of `place_weights` at instant `time`, 0 at the others."""
-    weights = np.zeros(scene.observations)
-    weights[scene.rows(time=time)] = place_weights(scene, at, mode)
-    return weights
+@dataclass(frozen=True, eq=False)
+class ViewWeights:
+    """How much a picture takes of some observations; it takes nothing of the others.
+
+    `ViewWeights()` takes nothing of any: it draws the mean.
+
+    Attributes:
+        rows: (k,) the observations, as rows of the weights (`Scene.rows`), none twice.
+        values: (k,) float64 their weights.
+
+    Raises:
+        ValueError: The rows are not as many different ones as there are values, or one is below 0.
+    """
+
+    rows: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64))
+    values: NDArray[np.float64] = field(default_factory=lambda: np.zeros(0))
+
+    def __post_init__(self) -> None:
+        if self.rows.ndim != 1 or self.rows.shape != self.values.shape:
+            raise ValueError(f"{self.values.shape} view weights of rows {self.rows.shape}")
+        if len(np.unique(self.rows)) != len(self.rows) or (self.rows < 0).any():
+            raise ValueError(f"view weights of the rows {self.rows.tolist()}: one is below 0 or stands twice")
+
+    @classmethod
+    def one(cls, row: int) -> ViewWeights:
+        """An observation as it is: weight 1.
+
+        Args:
+            row: Its row.
+        """
+        return cls(np.array([row]), np.ones(1))
+
+    @classmethod
+    def from_dense(cls, weights: ArrayLike) -> ViewWeights:
+        """Those of an array that are not 0.
+
+        Args:
+            weights: (No,) a weight for each observation.
+        """
+        dense = np.asarray(weights, np.float64)
+        rows = np.flatnonzero(dense)
+        return cls(rows, dense[rows])
+
+    def dense(self, observations: int) -> NDArray[np.float64]:
+        """(No,) a weight for each observation.
+
+        Args:
+            observations: How many there are.
+        """
+        weights = np.zeros(observations)
+        weights[self.rows] = self.values
+        return weights
+
+    def blend(self, matrix: NDArray[np.floating]) -> NDArray[np.float64]:
+        """(n,) float64, equation 7: the weighted sum of rows, added in their order on every machine.
+
+        Args:
+            matrix: (No, n) a row for each observation.
+        """
+        total: NDArray[np.float64] = (self.values[:, None] * matrix[self.rows]).sum(axis=0)
+        return total
 
 
-def place_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay") -> NDArray[np.float64]:
-    """(Ne,) weights over the encoded cameras at view-plane coordinates `at`, clamped to the array's [-1, 1]; sum 1.
+def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", time: int = 0) -> ViewWeights:
+    """The weights of a place at one instant: those of `place_weights`, for the observations of its cameras.
+
+    Args:
+        scene: The scene.
+        at: View-plane coordinates.
+        mode: One of `MODES`.
+        time: Index of the instant.
+
+    Raises:
+        OptionError: As `place_weights`.
+    """
+    cameras, values = place_weights(scene, at, mode)
+    return ViewWeights(scene.rows(cameras, time), values)
+
+
+def place_weights(
+    scene: Scene, at: tuple[float, float], mode: str = "delaunay"
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """What a place on the view plane takes of the encoded cameras around it.
 
     `nearest3` is equation 7 as printed: barycentric coordinates in the triangle of the three nearest cameras, which
     jump where the third nearest changes and are negative outside the triangle. `delaunay` takes the triangle of the
     scene's triangulation that holds `at`, outside the hull its nearest point. `bilinear` needs a grid.
-    Raises OptionError (`weights-mode`, `no-grid`, `viewpoint`).
+
+    Args:
+        scene: The scene.
+        at: View-plane coordinates, clamped to the array's [-1, 1].
+        mode: One of `MODES`.
+
+    Returns:
+        (k,) ascending indices into `scene.rig.cameras`, and (k,) their weights, none 0, whose sum is 1.
+
+    Raises:
+        OptionError: `weights-mode`, `no-grid`, `viewpoint`.
     """
+    among, weights = _sparse_weights(scene, at, mode)
+    order = np.argsort(among)
+    order = order[weights[order] != 0]
+    return scene.rig.encoded[among[order]], weights[order]
+
+
+def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> Sparse:
+    """As `place_weights`, in any order."""
     x, y = float(at[0]), float(at[1])
     if not (np.isfinite(x) and np.isfinite(y)):
         raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
@@ -45,11 +140,21 @@ def place_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay")
     raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(MODES)}")
 
 
-def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> NDArray[np.float64]:
-    """(No,) weights of a capture camera: its own row for an encoded one, else those of where it stands."""
+def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> ViewWeights:
+    """The weights of a capture camera: its own observation for an encoded one, else those of where it stands.
+
+    Args:
+        scene: The scene.
+        index: Of the camera.
+        mode: One of `MODES`.
+        time: Index of the instant.
+
+    Raises:
+        OptionError: As `place_weights`.
+    """
     row = int(scene.rows(index, time))
     if row >= 0:
-        return (np.arange(scene.observations) == row).astype(np.float64)
+        return ViewWeights.one(row)
     x, y = scene.rig.view_plane.coordinates(scene.rig.cameras[index].centre)[0]
     return view_weights(scene, (float(x), float(y)), mode, time)
 
@@ -105,18 +210,14 @@ def _barycentric(point: NDArray[np.float64], corners: NDArray[np.float64]) -> ND
     return np.stack([1 - second - third, second, third], axis=1)
 
 
-def _delaunay(
-    point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _delaunay(point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]) -> Sparse:
     if len(triangles) == 0:
         return _along_line(point, places)
-    weights = np.zeros(len(places))
     inside = _barycentric(point, places[triangles])
     best = int(np.argmax(inside.min(axis=1)))
     if inside[best].min() >= -SLACK:
         part = np.maximum(inside[best], 0)
-        weights[triangles[best]] = part / part.sum()
-        return weights
+        return triangles[best], part / part.sum()
     return _on_segments(point, places, hull(triangles))
 
 
@@ -141,44 +242,30 @@ def nearest_on_segments(
     return nearest, part[np.arange(len(points)), nearest]
 
 
-def _on_segments(
-    point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]
-) -> NDArray[np.float64]:
+def _on_segments(point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]) -> Sparse:
     """Linear weights on the nearest point of (E, 2) segments."""
     nearest, part = nearest_on_segments(point[None], places, segments)
-    weights = np.zeros(len(places))
-    weights[segments[nearest[0], 0]] = 1.0 - part[0]
-    weights[segments[nearest[0], 1]] += part[0]
-    return weights
+    return segments[nearest[0]], np.array([1.0 - part[0], part[0]])
 
 
-def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
     """Cameras on a line, in the order of their positions along it: linear between neighbours, clamped at the ends."""
     if len(places) == 1:
-        return np.ones(1)
+        return np.zeros(1, np.int32), np.ones(1)
     axis = np.linalg.svd(places - places.mean(axis=0))[2][0]
     order = np.argsort(places @ axis, kind="stable").astype(np.int32)
     return _on_segments(point, places, np.stack([order[:-1], order[1:]], axis=1))
 
 
-def _nearest3(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+def _nearest3(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
     near = np.argsort(((places - point) ** 2).sum(axis=1), kind="stable")[:3].astype(np.int32)
     if len(near) < 3 or _area(places[near][None])[0] <= FLAT:
-        return _along_some(point, places, near)
-    weights = np.zeros(len(places))
-    weights[near] = _barycentric(point, places[near][None])[0]
-    return weights
+        among, weights = _along_line(point, places[near])
+        return near[among], weights
+    return near, _barycentric(point, places[near][None])[0]
 
 
-def _along_some(
-    point: NDArray[np.float64], places: NDArray[np.float64], chosen: NDArray[np.int32]
-) -> NDArray[np.float64]:
-    weights = np.zeros(len(places))
-    weights[chosen] = _along_line(point, places[chosen])
-    return weights
-
-
-def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
     """Between the four cameras of the grid cell; on a jittering grid the cell's quadrilateral is inverted exactly."""
     grid = find_grid(places)
     if grid is None:
@@ -197,9 +284,7 @@ def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> NDArra
         rim = np.concatenate([index[0], index[1:, -1], index[-1, -2::-1], index[-2::-1, 0]])
         return _on_segments(point, places, np.stack([rim[:-1], rim[1:]], axis=1))
     s, t = _in_cell(point, corners[best])
-    weights = np.zeros(len(places))
-    weights[cells[best]] = (1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t
-    return weights
+    return cells[best], np.array([(1 - s) * (1 - t), s * (1 - t), s * t, (1 - s) * t])
 
 
 def _in_cell(point: NDArray[np.float64], corners: NDArray[np.float64]) -> tuple[float, float]:

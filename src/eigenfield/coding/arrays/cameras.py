@@ -22,20 +22,20 @@ from eigenfield.coding.entropy.range_coder import (
     check_end,
     check_header,
     check_numbers,
-    coded,
-    damaged,
+    coded_bytes,
+    damaged_error,
     decoder,
-    filled_up,
     float32_numbers,
+    pad_bytes,
 )
 from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
 from eigenfield.core.camera import Camera
 
 VERSION = 1
 HEADER = struct.Struct("<BBHHI3d4d8d")  # version, kind, rows, columns, cameras; steps; first rotation; first numbers
-NUMBERS = 11
+CAMERA_NUMBERS = 11
 ON_GRID, FROM_BEFORE = 1, 2  # bits of the kind
-LARGEST = 2**20  # steps
+CAMERA_MAX_STEPS = 2**20  # steps
 
 
 def code_cameras(
@@ -46,12 +46,19 @@ def code_cameras(
     centre_step: float,
     grid: ArrayLike | None = None,
 ) -> tuple[bytes, NDArray[np.float32], NDArray[np.float32]]:
-    """The bytes, and what a decoder finds: intrinsics (Nc, 5) and poses (Nc, 3, 4) float32 as a scene file keeps them.
+    """The bytes, and what they decode to: intrinsics (Nc, 5) and poses (Nc, 3, 4) float32 as a scene file keeps them.
 
-    Steps, positive: of intrinsics in pixels, of rotations in radians, of centres in world units; every number is off by
-    at most half of its step. grid: (rows, columns) camera indices, -1 where there is none.
+    Every number is off by at most half of its step.
 
-    Raises ValueError for no cameras, no grid, or numbers more than 2^20 steps off what is expected.
+    Args:
+        cameras: Nc of them.
+        intrinsic_step: In pixels, positive.
+        rotation_step: In radians, positive.
+        centre_step: In world units, positive.
+        grid: (rows, columns) camera indices, -1 where there is none; None where the cameras stand on no grid.
+
+    Raises:
+        ValueError: No cameras, no grid, or numbers more than 2^20 steps from their prediction.
     """
     steps = np.array([intrinsic_step, rotation_step / 4, centre_step])
     if not cameras or not (np.isfinite(steps).all() and (steps > 0).all()):
@@ -62,21 +69,21 @@ def code_cameras(
         raise ValueError("a grid has at most 65535 rows and columns")
     turn = Rotation.from_matrix([camera.R for camera in cameras])
     first = turn[0].as_quat()
-    numbers = np.zeros((count, NUMBERS))
+    numbers = np.zeros((count, CAMERA_NUMBERS))
     numbers[:, :5] = [[c.K[0, 0], c.K[1, 1], c.K[0, 1], c.K[0, 2], c.K[1, 2]] for c in cameras]
     numbers[:, 5:8] = (turn * turn[0].inv()).as_mrp()
     numbers[:, 8:] = [camera.centre for camera in cameras]
     base = numbers[0, [0, 1, 2, 3, 4, 8, 9, 10]]
     unit = np.repeat(steps, [5, 3, 3])
     places = _places(cells, count)
-    planes = np.zeros((3, NUMBERS), np.float32)
+    planes = np.zeros((3, CAMERA_NUMBERS), np.float32)
     rest = numbers - _base(base)
     if cells is not None:
         planes = np.linalg.lstsq(places, rest, rcond=None)[0].astype(np.float32)
         rest = rest - places @ planes.astype(np.float64)
     table = np.rint(rest / unit)
-    if not np.abs(table).max() <= LARGEST:
-        raise ValueError(f"cameras more than {LARGEST} steps off what is expected")
+    if not np.abs(table).max() <= CAMERA_MAX_STEPS:
+        raise ValueError(f"cameras more than {CAMERA_MAX_STEPS} steps off what is expected")
     order = np.arange(count) if cells is None else cells[cells >= 0]
     whole = table.astype(np.int64)[order]
 
@@ -89,8 +96,8 @@ def code_cameras(
         shape = (0, 0) if cells is None else cells.shape
         front = HEADER.pack(VERSION, kind, *shape, count, *steps, *first, *base)
         surface = b"" if cells is None else planes.astype("<f4").tobytes()
-        body = coded(run, CONTEXTS, MIXTURES, room=4 * NUMBERS * count + 1024)
-        return filled_up(front + surface + body, max(NUMBERS * count, 0 if cells is None else cells.size))
+        body = coded_bytes(run, CONTEXTS, MIXTURES, room=4 * CAMERA_NUMBERS * count + 1024)
+        return pad_bytes(front + surface + body, max(CAMERA_NUMBERS * count, 0 if cells is None else cells.size))
 
     kind = 0 if cells is None else ON_GRID
     data = min(stream(kind), stream(kind | FROM_BEFORE), key=len)
@@ -98,25 +105,30 @@ def code_cameras(
 
 
 def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32. Raises
-    FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    """Intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t], world to camera; both float32.
+
+    Raises:
+        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
+    """
     check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, *rest = HEADER.unpack_from(data)
     steps, first, base = np.array(rest[:3]), np.array(rest[3:7]), np.array(rest[7:])
     gridded = bool(kind & ON_GRID)
     if kind > 3 or count == 0 or not np.isfinite(rest).all():
-        raise damaged("cameras of an unknown kind, none, or not finite", where)
+        raise damaged_error("cameras of an unknown kind, none, or not finite", where)
     if count > limits.MAX_CAMERAS or (gridded and rows * columns < count):
-        raise damaged("a number of cameras that cannot be", where)
-    check_numbers(data, max(NUMBERS * count, rows * columns if gridded else 0), NUMBERS * limits.MAX_CAMERAS, where)
-    body = HEADER.size + (3 * NUMBERS * 4 if gridded else 0)
+        raise damaged_error("a number of cameras that cannot be", where)
+    check_numbers(
+        data, max(CAMERA_NUMBERS * count, rows * columns if gridded else 0), CAMERA_NUMBERS * limits.MAX_CAMERAS, where
+    )
+    body = HEADER.size + (3 * CAMERA_NUMBERS * 4 if gridded else 0)
     check_header(data, body, VERSION, where)
-    planes = np.zeros((3, NUMBERS))
+    planes = np.zeros((3, CAMERA_NUMBERS))
     if gridded:
-        planes = float32_numbers(data, 3 * NUMBERS, HEADER.size).reshape(3, NUMBERS)
+        planes = float32_numbers(data, 3 * CAMERA_NUMBERS, HEADER.size).reshape(3, CAMERA_NUMBERS)
     coder = decoder(data[body:], CONTEXTS, MIXTURES)
     cells = read_grid(coder, rows, columns, count, where) if gridded else None
-    whole = np.zeros((count, NUMBERS), np.int64)
+    whole = np.zeros((count, CAMERA_NUMBERS), np.int64)
     code_lines(coder, whole, _before(kind, count))
     check_end(coder, where)
     order = np.arange(count) if cells is None else cells[cells >= 0]
@@ -125,7 +137,7 @@ def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.floa
         numbers = whole[np.argsort(order)] * unit + _base(base) + _places(cells, count) @ planes
         intrinsics, poses = _assembled(numbers, first)
     if not (np.isfinite(intrinsics).all() and np.isfinite(poses).all()):
-        raise damaged("cameras that are not finite", where)
+        raise damaged_error("cameras that are not finite", where)
     return intrinsics, poses
 
 

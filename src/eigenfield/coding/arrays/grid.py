@@ -1,4 +1,4 @@
-"""Cameras on a regular grid: which one stands where."""
+"""The grid of cameras on a regular array."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.coding.entropy.range_coder import damaged
+from eigenfield.coding.entropy.range_coder import damaged_error
 from eigenfield.coding.entropy.table_kernels import code_cells
 
 
@@ -29,9 +29,13 @@ def write_grid(coder: Any, grid: NDArray[np.int64]) -> None:
 
 
 def read_grid(coder: Any, rows: int, columns: int, cameras: int, where: str) -> NDArray[np.int64]:
-    """Raises FormatError `coded-damaged` for what is no grid of so many cameras."""
+    """The grid of `cameras` cameras that `write_grid` coded.
+
+    Raises:
+        FormatError: `coded-damaged`, no such grid.
+    """
     cells = np.full(rows * columns, -1, np.int64)
     code_cells(coder, cells)
     if not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras)):
-        raise damaged("a grid that has not every camera once", where)
+        raise damaged_error("a grid that has not every camera once", where)
     return cells.reshape(rows, columns)

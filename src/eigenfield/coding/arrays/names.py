@@ -1,4 +1,4 @@
-"""Names of cameras in few bytes where no pattern says them: numbers that jitter, as measured positions do."""
+"""Names of cameras in few bytes where they follow no pattern: numbers that jitter, as measured positions do."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from collections.abc import Sequence
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 
-MOST_BYTES = 4 * limits.MAX_NAME  # of one name in UTF-8
+NAME_MAX_BYTES = 4 * limits.MAX_NAME  # in UTF-8
 
 
 def code_names(names: Sequence[str]) -> bytes | None:
     """The names' first bytes, then their second ones and so on, deflated; None where they have no UTF-8, hold a byte 0,
-    or are too many. Digits of the same place stand side by side so, which takes 40 % less than name after name."""
+    or are too many. Digits of the same place then stand side by side, which takes 40 % less than name after name."""
     try:
         texts = [name.encode() for name in names]
     except UnicodeEncodeError:
@@ -27,7 +27,7 @@ def code_names(names: Sequence[str]) -> bytes | None:
 
 def decode_names(data: bytes, count: int, where: str = "names") -> list[str]:
     """`count` names. Raises FormatError: `coded-truncated`, `coded-size`, `coded-damaged`."""
-    most = min(limits.MAX_NAMES, MOST_BYTES * count)
+    most = min(limits.MAX_NAMES, NAME_MAX_BYTES * count)
     inflater = zlib.decompressobj()
     try:
         columns = inflater.decompress(data, most + 1)

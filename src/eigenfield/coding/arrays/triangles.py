@@ -12,10 +12,10 @@ from eigenfield.coding.entropy.range_coder import (
     check_end,
     check_header,
     check_numbers,
-    coded,
-    damaged,
+    coded_bytes,
+    damaged_error,
     decoder,
-    filled_up,
+    pad_bytes,
 )
 from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
 
@@ -34,10 +34,10 @@ def code_triangles(triangles: NDArray[np.int32]) -> bytes:
     """Triangles (T, 3), which a decoder finds sorted."""
     count = len(triangles)
     lines = _lines(sorted_triangles(triangles))
-    body = coded(
+    body = coded_bytes(
         lambda coder: code_lines(coder, lines.copy(), np.arange(count) - 1), CONTEXTS, MIXTURES, room=4 * count + 256
     )
-    return filled_up(HEADER.pack(VERSION, count) + body, 3 * count)
+    return pad_bytes(HEADER.pack(VERSION, count) + body, 3 * count)
 
 
 def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]:
@@ -51,7 +51,7 @@ def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]
     check_end(coder, where)
     found = np.stack([lines[:, 0], lines[:, 0] + lines[:, 1], lines[:, 0] + lines[:, 2]], axis=1)
     if found.min(initial=0) < 0 or found.max(initial=0) >= limits.MAX_CAMERAS:
-        raise damaged("triangles of cameras that there cannot be", where)
+        raise damaged_error("triangles of cameras that there cannot be", where)
     return found.astype(np.int32)
 
 

@@ -20,11 +20,11 @@ from eigenfield.coding.entropy.range_coder import (
     check_end,
     check_header,
     check_numbers,
-    coded,
-    damaged,
+    coded_bytes,
+    damaged_error,
     decoder,
-    filled_up,
     float32_numbers,
+    pad_bytes,
 )
 from eigenfield.coding.entropy.range_kernels import AT, HIGH, LOW
 from eigenfield.coding.entropy.table_kernels import (
@@ -39,19 +39,22 @@ from eigenfield.coding.entropy.table_kernels import (
 
 VERSION = 1
 HEADER = struct.Struct("<BBHHII")  # version, whether there is a grid, its rows and columns, cameras, components
-LARGEST = 2**20  # steps
+WEIGHT_MAX_STEPS = 2**20  # steps
 
 
 def code_weights(
     weights: NDArray[np.float32], step: ArrayLike, grid: ArrayLike | None = None, *, dead_zone: float = 0.0
 ) -> tuple[bytes, NDArray[np.float32]]:
-    """The bytes, and the weights that a decoder finds.
+    """The bytes, and the weights that they decode to.
 
-    weights: (Ne, N) float32. step: (N,) or one for all, positive: what is coded is off by at most half of it (the
-    weights, or their cosine transform). grid: (rows, columns) camera indices, -1 where there is none. dead_zone: in
-    steps, up to 0.5: numbers are rounded towards 0 by this much more; the error grows by as much.
+    Args:
+        weights: (Ne, N) float32.
+        step: (N,) or one for all, positive: the weights, or their cosine transform, are off by at most half of it.
+        grid: (rows, columns) camera indices, -1 where there is none; None where the cameras stand on no grid.
+        dead_zone: In steps, up to 0.5: numbers are rounded towards 0 by this much more; the error grows by as much.
 
-    Raises ValueError for numbers beyond 2^20 steps, or not finite; for steps that are not positive; for no grid.
+    Raises:
+        ValueError: Numbers beyond 2^20 steps, or not finite; steps that are not positive; no grid.
     """
     count, components = weights.shape
     steps = np.broadcast_to(np.asarray(step, np.float32), components).copy()
@@ -77,16 +80,20 @@ def code_weights(
             result[:, k] = _values(table, way, cells, float(steps[k]))
 
     front = HEADER.pack(VERSION, int(cells is not None), *((0, 0) if cells is None else cells.shape), count, components)
-    body = coded(run, CONTEXTS, MIXTURES, room=2 * weights.size + rows * columns + 1024)
-    return filled_up(front + steps.astype("<f4").tobytes() + body, max(rows * columns, 1) * components), result
+    body = coded_bytes(run, CONTEXTS, MIXTURES, room=2 * weights.size + rows * columns + 1024)
+    return pad_bytes(front + steps.astype("<f4").tobytes() + body, max(rows * columns, 1) * components), result
 
 
 def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
-    """(Ne, N) float32. Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    """(Ne, N) float32.
+
+    Raises:
+        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
+    """
     check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, components = HEADER.unpack_from(data)
     if kind > 1 or count == 0:
-        raise damaged("weights of no camera, or of an unknown kind", where)
+        raise damaged_error("weights of no camera, or of an unknown kind", where)
     if kind == 0:
         rows, columns = 1, count
     check_numbers(data, rows * columns * max(components, 1), limits.MAX_WEIGHTS, where)
@@ -94,7 +101,7 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
     check_header(data, body, VERSION, where)
     steps = float32_numbers(data, components, HEADER.size)
     if not (np.isfinite(steps).all() and (steps > 0).all()) or rows * columns < count:
-        raise damaged("steps that are not positive, or a grid with too few cells", where)
+        raise damaged_error("steps that are not positive, or a grid with too few cells", where)
     coder = decoder(data[body:], CONTEXTS, MIXTURES)
     cells = read_grid(coder, rows, columns, count, where) if kind == 1 else None
     result = np.zeros((count, components), np.float32)
@@ -103,14 +110,14 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
         way = int(code_way(coder, 0))
         table = np.zeros((rows, columns), np.int64)
         code_table(coder, table, before[way], way)
-        if way not in _ways(cells) or np.abs(table).max() > 4 * LARGEST * max(rows, columns):
-            raise damaged(f"numbers of component {k} that cannot be", where)
+        if way not in _ways(cells) or np.abs(table).max() > 4 * WEIGHT_MAX_STEPS * max(rows, columns):
+            raise damaged_error(f"numbers of component {k} that cannot be", where)
         before[way] = table
         with np.errstate(over="ignore", invalid="ignore"):
             result[:, k] = _values(table, way, cells, steps[k])
         check_end(coder, where)
     if not np.isfinite(result).all():
-        raise damaged("weights that are not finite", where)
+        raise damaged_error("weights that are not finite", where)
     return result
 
 
@@ -145,15 +152,15 @@ def _values(table: NDArray[np.int64], way: int, cells: NDArray[np.int64] | None,
 def _cheapest(
     coder: Any, scaled: NDArray[np.float64], before: list[NDArray[np.int64]], ways: tuple[int, ...], dead_zone: float
 ) -> tuple[int, NDArray[np.int64]]:
-    """The way whose code is the shortest, the coder being as it is; it is left so."""
+    """The way of shortest code in the coder's present state, which is restored."""
     kept = [part.copy() for part in coder[1:]]
     best, found = np.inf, (VALUES, np.zeros(scaled.shape, np.int64))
     for way in ways:
         exact = dctn(scaled, norm="ortho") if way == FREQUENCIES else scaled
         table = np.sign(exact) * np.floor(np.abs(exact) + 0.5 - dead_zone)
-        if np.abs(table).max(initial=0) > LARGEST:
+        if np.abs(table).max(initial=0) > WEIGHT_MAX_STEPS:
             if way == VALUES:
-                raise ValueError(f"weights of more than {LARGEST} steps")
+                raise ValueError(f"weights of more than {WEIGHT_MAX_STEPS} steps")
             continue
         whole = table.astype(np.int64)
         code_way(coder, way)

@@ -1,8 +1,8 @@
 """Bytes to and from the kernels' coder, and the checks that all coded parts share.
 
-A part begins with a header that says how many numbers follow. A decoder allocates in proportion to them, so a byte may
-stand for at most RATIO of them: parts that would be shorter are filled up with zeros, which a decoder reads behind the
-end anyway.
+A part begins with a header that holds the count of its numbers. A decoder allocates in proportion to it, so a byte may
+stand for at most MAX_NUMBERS_PER_BYTE of them: parts that would be shorter are padded with zeros, which a decoder reads
+behind the end anyway.
 """
 
 from __future__ import annotations
@@ -16,13 +16,20 @@ from numpy.typing import NDArray
 from eigenfield.coding.entropy.range_kernels import AT, finish, new_coder
 from eigenfield.core.errors import FormatError
 
-RATIO = 16  # numbers, vertices or faces that a byte stands for, at most
-SPARE = 1024  # and so many more
-AHEAD = 4  # bytes that a decoder reads in advance
+MAX_NUMBERS_PER_BYTE = 16  # or vertices, or faces
+FREE_NUMBERS = 1024  # beyond these
+READ_AHEAD_BYTES = 4  # by a decoder
 
 
-def coded(run: Callable[[Any], None], contexts: int, mixtures: int, *, room: int) -> bytes:
-    """The bytes that `run(coder)` writes. room: how many to expect; where they do not suffice, it runs twice."""
+def coded_bytes(run: Callable[[Any], None], contexts: int, mixtures: int, *, room: int) -> bytes:
+    """The bytes that `run(coder)` writes.
+
+    Args:
+        run: Writes to a coder.
+        contexts: Of integers.
+        mixtures: Of contexts.
+        room: Bytes to expect; where they do not suffice, it runs twice.
+    """
     while True:
         coder = new_coder(np.zeros(room, np.uint8), True, contexts, mixtures)
         run(coder)
@@ -38,9 +45,9 @@ def decoder(data: bytes, contexts: int, mixtures: int) -> Any:
     return new_coder(np.frombuffer(data, np.uint8).copy(), False, contexts, mixtures)
 
 
-def filled_up(data: bytes, numbers: int) -> bytes:
-    """`data`, long enough to stand for that many numbers."""
-    return data + bytes(max(0, -(-(numbers - SPARE) // RATIO) - len(data)))
+def pad_bytes(data: bytes, numbers: int) -> bytes:
+    """`data`, padded so that it may stand for that many numbers."""
+    return data + bytes(max(0, -(-(numbers - FREE_NUMBERS) // MAX_NUMBERS_PER_BYTE) - len(data)))
 
 
 def check_header(data: bytes, size: int, version: int, where: str) -> None:
@@ -54,7 +61,7 @@ def check_header(data: bytes, size: int, version: int, where: str) -> None:
 
 def check_numbers(data: bytes, numbers: int, most: int, where: str) -> None:
     """Raise FormatError `coded-size` if there are more than `most` numbers, or more than the bytes may stand for."""
-    if numbers > most or numbers > RATIO * len(data) + SPARE:
+    if numbers > most or numbers > MAX_NUMBERS_PER_BYTE * len(data) + FREE_NUMBERS:
         raise FormatError("coded-size", f"{numbers} numbers announced in {len(data)} bytes", where=where)
 
 
@@ -66,10 +73,10 @@ def float32_numbers(data: bytes, count: int, offset: int) -> NDArray[np.float64]
 
 def check_end(coder: Any, where: str) -> None:
     """Raise FormatError `coded-truncated` if more was read than there is."""
-    if coder.state[AT] > len(coder.data) + AHEAD:
+    if coder.state[AT] > len(coder.data) + READ_AHEAD_BYTES:
         raise FormatError("coded-truncated", "coded numbers are cut off", where=where)
 
 
-def damaged(what: str, where: str) -> FormatError:
-    """For numbers that cannot be: code `coded-damaged`."""
+def damaged_error(what: str, where: str) -> FormatError:
+    """The error `coded-damaged` for impossible numbers."""
     return FormatError("coded-damaged", what, where=where)

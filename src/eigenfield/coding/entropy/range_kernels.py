@@ -44,11 +44,13 @@ RATES = np.rint(ONE / (np.arange(LIMIT + 1) + 1.5)).astype(np.int64)
 class Coder(NamedTuple):
     """State of a coder; arrays, because kernels change them.
 
-    data: (size,) uint8: what is read, or room for what is written; beyond it bytes are counted, not kept.
-    state: (4,) int64: low, high, code (of a decoder) and the next byte.
-    writing: (1,) bool.
-    probability, seen: (slots,) int64 of ones in 1/65536, and how many bits.
-    weights: (mixtures, INPUTS) int64.
+    Attributes:
+        data: (size,) uint8: what is read, or room for what is written; beyond it bytes are counted, not stored.
+        state: (4,) int64: low, high, code (of a decoder) and the next byte.
+        writing: (1,) bool.
+        probability: (slots,) int64, of ones in 1/65536.
+        seen: (slots,) int64, number of bits.
+        weights: (mixtures, INPUTS) int64.
     """
 
     data: NDArray[np.uint8]
@@ -98,7 +100,7 @@ def begin(coder):
 
 @kernel()
 def finish(coder):
-    """Write as few bytes as tell the interval, zeros being read behind them."""
+    """Write as few bytes as identify the interval, zeros being read behind them."""
     low, high = coder.state[LOW], coder.state[HIGH]
     for count in range(5):
         unit = np.int64(1) << (32 - 8 * count)

@@ -10,14 +10,14 @@ from eigenfield.coding.entropy.range_kernels import binary_digits, code_flag, co
 from eigenfield.runtime.jit import kernel
 
 SIZES = 12  # classes of a sum of magnitudes
-ZONES = 12  # places in a table of frequencies that are told apart
+ZONES = 12  # classes of places in a table of frequencies
 VALUES, SLOPES, FREQUENCIES = 0, 1, 2  # ways of a table: as they are; less what the neighbours suggest; as a DCT
 WAYS = 3
 OWN = SIZES * SIZES + 2 * SIZES + SIZES * ZONES  # contexts of a way
 WAY = WAYS * OWN
 LINE = WAY + 2
 SPREAD = 24  # classes of a magnitude in a line
-COLUMNS = 16  # of a line that are told apart
+COLUMNS = 16  # of a line with contexts of their own
 CELL = LINE + COLUMNS * SPREAD + COLUMNS * SPREAD + COLUMNS
 CONTEXTS = CELL + 4
 M_WAY, M_CELL, M_LINE = WAYS, WAYS + 1, WAYS + 2

@@ -9,16 +9,22 @@ from eigenfield.coding.mesh.corner_kernels import MAPPED, MIRRORED
 from eigenfield.core.mesh import signed_areas
 from eigenfield.imaging.graph import vertex_components
 
-FEWEST = 24  # vertices of a chart with a map of its own: 24 bytes
+MAPPED_CHART_MIN_VERTICES = 24  # of a chart with a map of its own, which takes 24 bytes
 
 
 def chart_kinds(
     faces: NDArray[np.int32], places: NDArray[np.float64], uv: NDArray[np.float64], tolerance: float
 ) -> tuple[NDArray[np.int32], NDArray[np.int8], NDArray[np.int64]]:
-    """(v,) the chart of every vertex (what hangs together by vertices), (charts,) kinds, (charts, 6) bits of the maps'
-    float32 numbers.
+    """Charts, which are components connected by vertices.
 
-    places: (v, 3) lattice coordinates. A chart is MAPPED if u and v are within `tolerance` of a x + b y + c.
+    Args:
+        faces: (m, 3).
+        places: (v, 3) lattice coordinates.
+        uv: (v, 2).
+        tolerance: A chart is MAPPED if u and v are within this of a x + b y + c.
+
+    Returns:
+        (v,) the chart of every vertex, (charts,) kinds, (charts, 6) bits of the maps' float32 numbers.
     """
     label = vertex_components(faces, len(places))
     charts = int(label.max(initial=-1)) + 1
@@ -44,7 +50,7 @@ def _affine(
         same = _with_offset(last[:4], xy, uv, tolerance)
         if same is not None:
             return same
-    if len(xy) < FEWEST:
+    if len(xy) < MAPPED_CHART_MIN_VERTICES:
         return None
     middle = xy.mean(axis=0)
     slope = np.linalg.lstsq(xy - middle, uv - uv.mean(axis=0), rcond=None)[0]

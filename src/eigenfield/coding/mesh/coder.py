@@ -25,10 +25,10 @@ from eigenfield.coding.entropy.range_coder import (
     check_end,
     check_header,
     check_numbers,
-    coded,
-    damaged,
+    coded_bytes,
+    damaged_error,
     decoder,
-    filled_up,
+    pad_bytes,
 )
 from eigenfield.coding.mesh.charts import chart_kinds, mapped_texture
 from eigenfield.coding.mesh.corner_kernels import MAPPED, Corners, code_corners, corner_lists, new_vertices, no_corners
@@ -40,15 +40,24 @@ from eigenfield.core.mesh import Mesh
 
 VERSION = 1
 HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
-REACH = 2**20 - 1  # of lattice coordinates, either way
-MOST_FINE = 8  # last digits of x and y
-MOST_DIGITS = 18  # of texture coordinates in 0..1
+MESH_MAX_STEPS = 2**20 - 1  # of lattice coordinates, either way
+MESH_MAX_FINE_DIGITS = 8  # binary, the last ones of x and y
+MESH_MAX_UV_DIGITS = 18  # binary, of texture coordinates in 0..1
 
 
 @dataclass(frozen=True, eq=False)
 class _Welded:
-    """places: (n, 3) int64. place: (v,) of each vertex. faces: (m, 3) of vertices, no two corners at one place. label,
-    kinds, maps: see `chart_kinds`. codes: (v, 2) int64 texture coordinates."""
+    """A mesh on its lattice.
+
+    Attributes:
+        places: (n, 3) int64.
+        place: (v,) of each vertex.
+        faces: (m, 3) of vertices, no two corners at one place.
+        label: See `chart_kinds`.
+        kinds: See `chart_kinds`.
+        maps: See `chart_kinds`.
+        codes: (v, 2) int64 texture coordinates.
+    """
 
     places: NDArray[np.int64]
     place: NDArray[np.int32]
@@ -60,24 +69,28 @@ class _Welded:
 
 
 def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 0) -> tuple[bytes, Mesh]:
-    """The bytes, and the mesh that a decoder finds: the same faces, each with its sense, in another order.
+    """The bytes, and the mesh that they decode to: the same faces, each with its sense, in another order.
 
     Positions are rounded to the lattice. Texture coordinates are off by at most half of 2^-uv_bits where they are
     coded; in charts that are an affine map of lattice x and y to within that, they are that map of the rounded x and
-    y, so that texture and surface move together. Left out: vertices without a face, and faces two
-    of whose corners fall onto one lattice point.
+    y, so that texture and surface move together. Left out: vertices without a face, and faces two of whose corners
+    are at one lattice point.
 
-    fine: on a flat lattice, how many of the last binary digits of x and y are 0 at most vertices, 0 to 8. Where those
-    inside a relief are at pixels and those of its contours between them, a step of 2^-fine pixels costs the latter
-    alone.
+    Args:
+        mesh: With texture coordinates.
+        lattice: Its positions are rounded to.
+        uv_bits: Binary digits of texture coordinates, 1 to 18.
+        fine: On a flat lattice, the number of the last binary digits of x and y that are 0 at most vertices, 0 to 8.
+            Where vertices inside a relief are at pixels and those of its contours between them, a step of 2^-fine
+            pixels costs the latter alone.
 
-    Raises ValueError for a mesh without texture coordinates, or one that reaches 2^20 steps from the lattice's origin,
-    or behind its camera; for `uv_bits` beyond 1 to 18, `fine` beyond
-    0 to 8 or in space.
+    Raises:
+        ValueError: The mesh has no texture coordinates, reaches 2^20 steps from the lattice's origin or behind its
+            camera; or `uv_bits` or `fine` is out of range.
     """
-    if mesh.uv is None or not 1 <= uv_bits <= MOST_DIGITS:
+    if mesh.uv is None or not 1 <= uv_bits <= MESH_MAX_UV_DIGITS:
         raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
-    if not 0 <= fine <= (MOST_FINE if lattice.flat else 0):
+    if not 0 <= fine <= (MESH_MAX_FINE_DIGITS if lattice.flat else 0):
         raise ValueError("0 to 8 fine digits, and only on a flat lattice")
     welded = _welded(mesh, lattice, uv_bits)
     n, m, v = len(welded.places), len(welded.faces), len(welded.place)
@@ -101,51 +114,60 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
 
     header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
-    body = coded(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
-    return filled_up(header + body, max(n, m, v)), found[0]
+    body = coded_bytes(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
+    return pad_bytes(header + body, max(n, m, v)), found[0]
 
 
 def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
-    """Raises FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`."""
+    """The mesh of `encode_mesh`.
+
+    Raises:
+        FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
+    """
     check_header(data, HEADER.size, VERSION, where)
     _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
     if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
-        raise damaged(f"{v} vertices and {m} faces, more than a scene may have", where)
+        raise damaged_error(f"{v} vertices and {m} faces, more than a scene may have", where)
     check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
-    if flat > 1 or not 1 <= uv_bits <= MOST_DIGITS or fine > MOST_FINE * flat or not np.isfinite(numbers).all():
-        raise damaged("a lattice that cannot be", where)
+    if (
+        flat > 1
+        or not 1 <= uv_bits <= MESH_MAX_UV_DIGITS
+        or fine > MESH_MAX_FINE_DIGITS * flat
+        or not np.isfinite(numbers).all()
+    ):
+        raise damaged_error("a lattice that cannot be", where)
     lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
     coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
     built = new_built(n, m)
     if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat, fine):
-        raise damaged("faces that cannot be", where)
+        raise damaged_error("faces that cannot be", where)
     check_end(coder, where)
     first, corners = corner_lists(built.faces, n)
     if lattice.flat:
         code_depths(coder, built, first, corners)
     vertices = new_vertices(v, n, m)
     if not code_corners(coder, no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
-        raise damaged("corners of faces that cannot be", where)
+        raise damaged_error("corners of faces that cannot be", where)
     codes = np.zeros((v, 2), np.int64)
     code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
     check_end(coder, where)
     mesh = _mesh(lattice, uv_bits, built, vertices, codes)
     assert mesh.uv is not None
-    if not (np.abs(mesh.vertices) <= limits.LARGEST).all() or not (np.abs(mesh.uv) <= limits.LARGEST).all():
-        raise damaged("positions or texture coordinates that are not finite", where)
+    if not (np.abs(mesh.vertices) <= limits.MAX_NUMBER).all() or not (np.abs(mesh.uv) <= limits.MAX_NUMBER).all():
+        raise damaged_error("positions or texture coordinates that are not finite", where)
     return mesh
 
 
 def _welded(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
-    """The mesh on the lattice, without what takes part in no face."""
+    """The mesh on the lattice, without vertices that no face has."""
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)
     steps = np.rint(exact)
-    if not (np.abs(steps) <= REACH).all() or (lattice.flat and steps[:, 2].min(initial=0) < 0):
+    if not (np.abs(steps) <= MESH_MAX_STEPS).all() or (lattice.flat and steps[:, 2].min(initial=0) < 0):
         raise ValueError("the mesh reaches beyond the lattice, or behind its camera")
     uv = mesh.uv.astype(np.float64)
     scale = 2.0**uv_bits
-    if not (np.abs(uv) * scale <= REACH).all():
+    if not (np.abs(uv) * scale <= MESH_MAX_STEPS).all():
         raise ValueError("texture coordinates that are not finite, or far beyond 0 to 1")
     label, kinds, maps = chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
     codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)

@@ -17,23 +17,31 @@ from eigenfield.coding.entropy.range_kernels import binary_digits, code_flag, co
 from eigenfield.coding.mesh.face_kernels import FACES
 from eigenfield.runtime.jit import kernel
 
-MOST = 32  # faces at a place that are looked at
-RECENT = 256  # charts that are searched for the same map
-CHOICES = 4  # vertices that are asked for
+CORNER_MAX_FACES = 32  # at a place, that are searched
+CHART_MAX_SEARCH = 256  # latest charts that are searched for the same map
+CORNER_MAX_CHOICES = 4  # vertices of which each has a flag
 UNKNOWN, AGREES, CUT, NONE = 0, 1, 2, 3  # what is known of the edge to a neighbour
 ASKED = FACES
-NEW = ASKED + CHOICES * 16 + CHOICES * 3 + 16
-CHART = NEW + CHOICES + 1
+NEW = ASKED + CORNER_MAX_CHOICES * 16 + CORNER_MAX_CHOICES * 3 + 16
+CHART = NEW + CORNER_MAX_CHOICES + 1
 CORNERS = CHART + 4  # all contexts so far
 M_ASKED, M_NEW, M_CHART = 9, 10, 11
 PLAIN, MAPPED, MIRRORED = 0, 1, 2  # charts: texture coordinates coded; by an affine map; coded, and turned over
 
 
 class Vertices(NamedTuple):
-    """faces: (m, 3) int32 vertices of the built faces' corners. place, chart: (v,) int32. latest, older: (n,) and (v,)
-    int32: the vertex that came last at a place and the one before it there, or -1. kinds: (charts,) int8 and maps
-    (charts, 6) int64, the bits of float32 numbers. counts: (3,)
-    int64 vertices and charts so far, and the number of the last chart with a map, plus 1."""
+    """Vertices and charts as far as they are known.
+
+    Attributes:
+        faces: (m, 3) int32 vertices of the built faces' corners.
+        place: (v,) int32.
+        chart: (v,) int32.
+        latest: (n,) int32, the vertex that came last at a place, or -1.
+        older: (v,) int32, the vertex before it at the same place, or -1.
+        kinds: (charts,) int8.
+        maps: (charts, 6) int64, the bits of float32 numbers.
+        counts: (3,) int64 vertices and charts so far, and the number of the last chart with a map, plus 1.
+    """
 
     faces: NDArray[np.int32]
     place: NDArray[np.int32]
@@ -46,9 +54,17 @@ class Vertices(NamedTuple):
 
 
 class Corners(NamedTuple):
-    """The vertices to be coded; of size 0 in decoding: faces (m, 3) int32 and label (v,) int32, the chart of a vertex,
-    in the source's numbers; place (v,) int32 in the bytes' numbers; kinds, maps of the charts; number (v,) int32, a
-    vertex's in the bytes or -1, and its inverse `order`."""
+    """The vertices to be coded; of size 0 in decoding.
+
+    Attributes:
+        faces: (m, 3) int32, in the source's numbers.
+        label: (v,) int32, the chart of a vertex, likewise.
+        place: (v,) int32, in the bytes' numbers.
+        kinds: (charts,) int8.
+        maps: (charts, 6) int64.
+        number: (v,) int32, a vertex's in the bytes or -1.
+        order: (v,) int32, the inverse of `number`.
+    """
 
     faces: NDArray[np.int32]
     label: NDArray[np.int32]
@@ -104,9 +120,9 @@ def _corner_of(faces, face, place):
 
 @kernel()
 def _across(faces, first, corners, face, k):
-    """The first face before `face` that has its edge k, or -1; of the first MOST at its start."""
+    """The first face before `face` that has its edge k, or -1; of the first CORNER_MAX_FACES at its start."""
     a, b = faces[face, k], faces[face, (k + 1) % 3]
-    for i in range(first[a], min(first[a + 1], first[a] + MOST)):
+    for i in range(first[a], min(first[a + 1], first[a] + CORNER_MAX_FACES)):
         other = np.int64(corners[i] // 3)
         if other >= face:
             break
@@ -122,8 +138,8 @@ def _code_corner(coder, built, out, beside, state, face, k, vertex):
     known = np.int64(out.latest[place])
     if known < 0:
         return np.int64(-1)
-    choice = np.full(CHOICES, -1, np.int64)
-    support = np.full((CHOICES, 2), NONE, np.int64)
+    choice = np.full(CORNER_MAX_CHOICES, -1, np.int64)
+    support = np.full((CORNER_MAX_CHOICES, 2), NONE, np.int64)
     count = 0
     for side in range(2):
         edge = k if side == 0 else (k + 2) % 3
@@ -136,8 +152,8 @@ def _code_corner(coder, built, out, beside, state, face, k, vertex):
             choice[count] = candidate
             support[count, 0] = state[edge]
             count += 1
-    for _ in range(MOST):
-        if count == CHOICES or known < 0:
+    for _ in range(CORNER_MAX_FACES):
+        if count == CORNER_MAX_CHOICES or known < 0:
             break
         if (count < 1 or known != choice[0]) and (count < 2 or known != choice[1]):
             choice[count] = known
@@ -146,15 +162,15 @@ def _code_corner(coder, built, out, beside, state, face, k, vertex):
     found = np.int64(-1)
     for j in range(count):
         one, two = support[j, 0], support[j, 1]
-        third = ASKED + CHOICES * 19 + min(count, 3) * 4 + one
+        third = ASKED + CORNER_MAX_CHOICES * 19 + min(count, 3) * 4 + one
         if code_flag(
-            coder, np.int64(vertex == choice[j]), ASKED + j * 16 + one * 4 + two, ASKED + CHOICES * 16 + j * 3 + k,
-            third, M_ASKED,
+            coder, np.int64(vertex == choice[j]), ASKED + j * 16 + one * 4 + two,
+            ASKED + CORNER_MAX_CHOICES * 16 + j * 3 + k, third, M_ASKED,
         ):  # fmt: skip
             found = choice[j]
             break
     if found < 0:
-        if code_flag(coder, np.int64(vertex < 0), NEW + count, NEW + count, NEW + CHOICES, M_NEW):
+        if code_flag(coder, np.int64(vertex < 0), NEW + count, NEW + count, NEW + CORNER_MAX_CHOICES, M_NEW):
             return np.int64(-1)
         found = code_raw(coder, vertex, binary_digits(out.counts[0] - 1))
         if found >= out.counts[0] or out.place[found] != place:
@@ -185,7 +201,7 @@ def _code_chart(coder, source, out, given):
             out.maps[chart, k] = source.maps[source.label[given], k]
     last, same = np.int64(out.counts[2]) - 1, np.int64(-1)
     out.counts[2] = chart + 1
-    for other in range(max(0, chart - RECENT), chart if writing else 0):
+    for other in range(max(0, chart - CHART_MAX_SEARCH), chart if writing else 0):
         alike = out.kinds[other] == MAPPED
         for k in range(6):
             alike = alike and out.maps[other, k] == out.maps[chart, k]

@@ -45,9 +45,12 @@ M_LEFT, M_RIGHT, M_EDGE, M_FRESH, M_SEED = 4, 5, 6, 7, 8
 class Built(NamedTuple):
     """Faces between places as far as they are known, places in the order of the bytes.
 
-    points: (n, 3) int64 lattice coordinates. faces: (m, 3) int32. parents: (n, 3) int32: start, end and third corner of
-    the gate over which a place came, or -1. fan: (n,) int32 faces at a place. counts: (2,) int64 places and faces so
-    far.
+    Attributes:
+        points: (n, 3) int64 lattice coordinates.
+        faces: (m, 3) int32.
+        parents: (n, 3) int32, start, end and third corner of the gate over which a place came, or -1.
+        fan: (n,) int32 faces at a place.
+        counts: (2,) int64 places and faces so far.
     """
 
     points: NDArray[np.int64]
@@ -60,9 +63,16 @@ class Built(NamedTuple):
 class Source(NamedTuple):
     """The mesh to be coded; of size 0 in decoding.
 
-    points (n, 3) int64; faces (m, 3) int32; seeds (m,) int32, the faces in the order in which they may begin a patch;
-    edges, edge_faces (3 m,): start * n + end of each face's edges, sorted, and whose they are; used (m,) bool; number
-    (n,) int32, a place's in the bytes or -1, and its inverse `order`; face_order (m,) int32 likewise.
+    Attributes:
+        points: (n, 3) int64.
+        faces: (m, 3) int32.
+        seeds: (m,) int32, the faces in the order in which they may begin a patch.
+        edges: (3 m,) int64, start * n + end of each face's edges, sorted.
+        edge_faces: (3 m,) int32, the face of each edge.
+        used: (m,) bool.
+        number: (n,) int32, a place's in the bytes or -1.
+        order: (n,) int32, the inverse of `number`.
+        face_order: (m,) int32, likewise of faces.
     """
 
     points: NDArray[np.int64]

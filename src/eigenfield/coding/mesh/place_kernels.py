@@ -11,8 +11,8 @@ import numpy as np
 from eigenfield.coding.entropy.range_kernels import binary_digits, code_flag, code_integer, code_raw
 from eigenfield.runtime.jit import kernel
 
-REACH = 2**20  # of lattice coordinates, either way
-OUT = 0.8  # a triangle's height over its base, in a plane
+PLACE_MAX_STEPS = 2**20  # of lattice coordinates, either way
+HEIGHT_RATIO = 0.8  # of a predicted triangle to its base, in a plane
 SIZES = 24  # binary digits of squared lengths that are told apart, in a plane
 DEEP = 44  # likewise, in space
 PAIRS = 169  # classes of both neighbours of a gate
@@ -26,8 +26,8 @@ M_X, M_Y, M_SPACE, M_START, M_REST = 0, 1, 2, 3, 15
 
 @kernel()
 def _bounded(value):
-    """The nearest whole number within REACH."""
-    return np.int64(math.floor(min(max(value, -float(REACH)), float(REACH)) + 0.5))
+    """The nearest whole number within PLACE_MAX_STEPS."""
+    return np.int64(math.floor(min(max(value, -float(PLACE_MAX_STEPS)), float(PLACE_MAX_STEPS)) + 0.5))
 
 
 @kernel()
@@ -51,12 +51,12 @@ def off_grid(points, vertex, fine):
 
 @kernel()
 def _code_flat(coder, points, vertex, a, b, o, pair, fine):
-    """x and y: predicted OUT times the gate's length in front of its middle, in units of 2^fine; then whether there is
-    more to them than these, and how much."""
+    """x and y: predicted HEIGHT_RATIO times the gate's length in front of its middle, in units of 2^fine; then whether
+    there is more to them than these, and how much."""
     gx, gy = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1]
     hx, hy = points[o, 0] - points[a, 0], points[o, 1] - points[a, 1]
     area = gx * hy - gy * hx
-    out = OUT if area > 0 else -OUT
+    out = HEIGHT_RATIO if area > 0 else -HEIGHT_RATIO
     x = _bounded((points[a, 0] + points[b, 0]) * 0.5 + out * gy)
     y = _bounded((points[a, 1] + points[b, 1]) * 0.5 - out * gx)
     half = np.int64(1 << fine >> 1)
@@ -120,7 +120,7 @@ def code_seed_place(coder, built, vertex, near, planar):
     """The place of a vertex of a patch's first face: its difference from vertex `near`, from 0 for the first of all."""
     points = built.points
     for axis in range(2 if planar else 3):
-        base = min(max(points[near, axis], -REACH), REACH) if near >= 0 else np.int64(0)
+        base = min(max(points[near, axis], -PLACE_MAX_STEPS), PLACE_MAX_STEPS) if near >= 0 else np.int64(0)
         slot = START + axis
         points[vertex, axis] = base + code_integer(
             coder, points[vertex, axis] - base, slot, slot + 3, slot + 6, M_START

@@ -16,8 +16,8 @@ from eigenfield.coding.entropy.range_kernels import binary_digits, code_integer
 from eigenfield.coding.mesh.corner_kernels import CORNERS, MAPPED, MIRRORED
 from eigenfield.runtime.jit import kernel
 
-REACH = 2.0**20  # of lattice coordinates, either way
-MOST = 16  # neighbours of a vertex that are looked at
+VALUE_MAX_STEPS = 2.0**20  # of lattice coordinates, either way
+VALUE_MAX_NEIGHBOURS = 16  # of a vertex, that predict its value
 FAR = 6  # classes of a difference of predictions, either way
 DIFFERENCES = 2 * FAR + 1
 SPREADS = 14
@@ -31,10 +31,10 @@ MIXTURES = 16
 
 @kernel()
 def _rounded(value, other):
-    """The nearest whole number within REACH; that of `other` for NaN."""
+    """The nearest whole number within VALUE_MAX_STEPS; that of `other` for NaN."""
     if value != value:
         value = other
-    return np.int64(math.floor(min(max(value, -REACH), REACH) + 0.5))
+    return np.int64(math.floor(min(max(value, -VALUE_MAX_STEPS), VALUE_MAX_STEPS) + 0.5))
 
 
 @kernel()
@@ -91,7 +91,7 @@ def code_depths(coder, built, first, corners):
         sums[:] = 0.0
         total, weight = 0.0, 0.0
         low, high = np.int64(2**40), np.int64(-(2**40))
-        for i in range(first[vertex], min(first[vertex + 1], first[vertex] + MOST)):
+        for i in range(first[vertex], min(first[vertex + 1], first[vertex] + VALUE_MAX_NEIGHBOURS)):
             for step in range(1, 3):
                 near = _beside(faces, corners[i], step)
                 if near >= vertex:
@@ -103,7 +103,7 @@ def code_depths(coder, built, first, corners):
                 weight += w
                 low, high = min(low, points[near, 2]), max(high, points[near, 2])
                 _add_moments(points, vertex, near, sums)
-                for j in range(first[near], min(first[near + 1], first[near] + MOST)):
+                for j in range(first[near], min(first[near + 1], first[near] + VALUE_MAX_NEIGHBOURS)):
                     for other_step in range(1, 3):
                         far = _beside(faces, corners[j], other_step)
                         if far < vertex:
@@ -172,7 +172,7 @@ def code_textures(coder, vertices, world, uv, first, corners):
             continue
         u, v, count, anchor = 0.0, 0.0, 0, -1
         reach = 0
-        for i in range(first[vertex], min(first[vertex + 1], first[vertex] + MOST)):
+        for i in range(first[vertex], min(first[vertex + 1], first[vertex] + VALUE_MAX_NEIGHBOURS)):
             a, b = _beside(faces, corners[i], 1), _beside(faces, corners[i], 2)
             if a < vertex and charts[a] == charts[vertex]:
                 anchor = max(anchor, a)

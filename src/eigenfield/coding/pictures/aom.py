@@ -1,5 +1,5 @@
-"""libaom, where the machine has an `ffmpeg` program that brings it: the pictures of 10 bits in 8 to 10 % fewer bytes
-than SVT-AV1 needs for them, in ten times the time. PyAV's libraries do not have it."""
+"""libaom, by an `ffmpeg` program that has it: the pictures of 10 bits in 8 to 10 % fewer bytes than by SVT-AV1, in ten
+times the time. PyAV's libraries do not have it."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import FLAT, PIXELS, SMALLEST, SVT
+from eigenfield.coding.pictures.pictures_10bit import MIDDLE_CODE, MIN_SIDE_TEXELS, PIXEL_FORMAT, SVT_CODER
 
 log = logging.getLogger("eigenfield.encode")
 
 # 1 needs the same bytes in the same time, 3 about 2 % more in half of it (Shop's mean and textures)
-SPEED = 2
-STOPPED = 255  # the program's exit status when the key that stops us has stopped it too
+AOM_SPEED = 2
+FFMPEG_INTERRUPTED_STATUS = 255  # of the program when Ctrl-C has stopped it too
 _OPTIONS = (
-    "-c:v", "libaom-av1", "-usage", "good", "-cpu-used", str(SPEED), "-tune", "psnr", "-b:v", "0", "-threads", "1",
+    "-c:v", "libaom-av1", "-usage", "good", "-cpu-used", str(AOM_SPEED), "-tune", "psnr", "-b:v", "0", "-threads", "1",
     "-still-picture", "1", "-color_range", "pc", "-f", "avif",
 )  # fmt: skip
 
@@ -33,7 +33,7 @@ def aom_program() -> str | None:
     if program is None:
         return None
     try:
-        _run(program, np.full((SMALLEST, SMALLEST), FLAT, np.uint16), 32)
+        _run(program, np.full((MIN_SIDE_TEXELS, MIN_SIDE_TEXELS), MIDDLE_CODE, np.uint16), 32)
     except (OSError, RuntimeError) as error:
         log.debug("%s is of no use: %s", program, error)
         return None
@@ -41,8 +41,12 @@ def aom_program() -> str | None:
 
 
 def encode_aom(codes: NDArray[np.uint16], crf: int) -> bytes:
-    """As `encode_10bit`, by libaom; by SVT-AV1, with a warning, where it fails. Raises ValueError where the machine
-    does not have it, KeyboardInterrupt where the program was interrupted."""
+    """As `encode_10bit`, by libaom; by SVT-AV1, with a warning, where it fails.
+
+    Raises:
+        ValueError: The machine does not have it.
+        KeyboardInterrupt: The program was interrupted.
+    """
     program = aom_program()
     if program is None:
         raise ValueError("no ffmpeg program with libaom")
@@ -50,19 +54,19 @@ def encode_aom(codes: NDArray[np.uint16], crf: int) -> bytes:
         return _run(program, codes, crf)
     except (OSError, RuntimeError) as error:
         log.warning("%s failed, SVT-AV1 codes a picture in its place: %s", program, error)
-        return SVT(codes, crf)
+        return SVT_CODER(codes, crf)
 
 
 def _run(program: str, codes: NDArray[np.uint16], crf: int) -> bytes:
     height, width = codes.shape
-    flat = np.full(height * width // 2, FLAT, "<u2")
-    source = ("-f", "rawvideo", "-pix_fmt", PIXELS, "-color_range", "pc", "-s", f"{width}x{height}", "-i", "-")
+    flat = np.full(height * width // 2, MIDDLE_CODE, "<u2")
+    source = ("-f", "rawvideo", "-pix_fmt", PIXEL_FORMAT, "-color_range", "pc", "-s", f"{width}x{height}", "-i", "-")
     with tempfile.TemporaryDirectory() as folder:  # an AVIF is not written from its first byte to its last
         file = Path(folder) / "picture.avif"
         command = [program, "-loglevel", "error", *source, "-frames:v", "1", "-crf", str(crf), *_OPTIONS, str(file)]
         values = codes.astype("<u2").tobytes() + flat.tobytes()
         done = subprocess.run(command, input=values, capture_output=True, check=False)
-        if done.returncode == STOPPED:
+        if done.returncode == FFMPEG_INTERRUPTED_STATUS:
             raise KeyboardInterrupt
         if done.returncode:
             raise RuntimeError(" ".join(done.stderr.decode(errors="replace").split())[-200:] or str(done.returncode))

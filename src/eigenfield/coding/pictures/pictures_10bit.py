@@ -20,15 +20,15 @@ from eigenfield.runtime.parallel import ordinary_scheduling
 
 Coder = Callable[[NDArray[np.uint16], int], bytes]  # as `encode_10bit`, from codes and crf
 
-BITS = 10
-TOP = 2**BITS - 1
-FLAT = 2 ** (BITS - 1)
-SMALLEST = 64  # texels a side that the encoder takes
+PICTURE_BITS = 10
+MAX_CODE = 2**PICTURE_BITS - 1
+MIDDLE_CODE = 2 ** (PICTURE_BITS - 1)
+MIN_SIDE_TEXELS = 64  # that the encoder takes
 MIME = "image/avif"
 # Quantiser steps of AV1 at 10 bits, in codes, at every fourth crf from 0 (its table of AC steps over 8, rounded)
 _STEPS = (0.5, 7, 14, 21, 28, 36, 43, 50, 58, 67, 79, 95, 116, 150, 206, 312, 668)
 CRFS = (*range(0, 61, 4), 63)
-PIXELS = "yuv420p10le"  # chroma is flat
+PIXEL_FORMAT = "yuv420p10le"  # chroma is flat
 
 
 def encoder_step(crf: float) -> float:
@@ -41,15 +41,18 @@ def crf_of(step: float) -> int:
     return int(np.clip(np.rint(np.interp(step, _STEPS, CRFS)), 1, 63))
 
 
-def svt(preset: int) -> Coder:
+def svt_coder(preset: int) -> Coder:
     """SVT-AV1 at a preset, 0 the slowest."""
     return partial(encode_10bit, preset=preset)
 
 
 def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
-    """(H, W) codes 0..TOP, sides even and at least SMALLEST, as an .avif; one thread, the same bytes each time.
+    """A picture as an .avif, by one thread, the same bytes each time.
 
-    crf: 0..63, the coarser the higher. preset: SVT-AV1's, 0 the slowest.
+    Args:
+        codes: (H, W) 0..MAX_CODE, sides even and at least MIN_SIDE_TEXELS.
+        crf: 0..63, the coarser the higher.
+        preset: SVT-AV1's, 0 the slowest.
     """
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
     import av
@@ -58,7 +61,7 @@ def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
     buffer = io.BytesIO()
     with av.open(buffer, "w", format="avif") as container:
         stream = container.add_stream("libsvtav1", rate=1)
-        stream.width, stream.height, stream.pix_fmt = width, height, PIXELS
+        stream.width, stream.height, stream.pix_fmt = width, height, PIXEL_FORMAT
         stream.codec_context.color_range = 2  # full
         stream.codec_context.thread_count = 1
         stream.options = {
@@ -66,10 +69,10 @@ def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
         }  # fmt: skip
         with ordinary_scheduling():
             stream.codec_context.open()
-        frame = av.VideoFrame(width, height, PIXELS)
+        frame = av.VideoFrame(width, height, PIXEL_FORMAT)
         frame.pts = 0
         for number, plane in enumerate(frame.planes):
-            values = np.full((plane.height, plane.line_size // 2), FLAT, "<u2")
+            values = np.full((plane.height, plane.line_size // 2), MIDDLE_CODE, "<u2")
             if number == 0:
                 values[:, :width] = codes
             plane.update(values.tobytes())
@@ -80,12 +83,20 @@ def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
 
 # SVT-AV1's preset. 2 takes longer, and needs about 8 % more bytes for the same textures, for the same means 1 % fewer
 # (Tarot) to 3 % more (Shop); 5 needs 3 % more for means, 6 needs 7 % more
-SVT = svt(4)
+SVT_CODER = svt_coder(4)
 
 
 def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[np.uint16]:
-    """(H, W) codes 0..TOP of the first channel; colour: not used, they are all grey. FormatError `picture-damaged`, for
-    8 bits `picture-channels`."""
+    """(H, W) codes 0..MAX_CODE of the first channel.
+
+    Args:
+        data: The file.
+        colour: Not used: all are grey.
+        where: Its place, for errors.
+
+    Raises:
+        FormatError: `picture-damaged`; `picture-channels`, the picture has 8 bits.
+    """
     import av
 
     try:
@@ -99,9 +110,9 @@ def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[
     except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
         reason = " ".join(str(error).split())[:80] or type(error).__name__
         raise FormatError("picture-damaged", f"the picture cannot be decoded: {reason}", where=where) from error
-    if frame.format.components[0].bits != BITS:
+    if frame.format.components[0].bits != PICTURE_BITS:
         bits = frame.format.components[0].bits
-        raise FormatError("picture-channels", f"a picture of {bits} bits, {BITS} are announced", where=where)
+        raise FormatError("picture-channels", f"a picture of {bits} bits, {PICTURE_BITS} are announced", where=where)
     plane = frame.planes[0]
     values = np.frombuffer(plane, "<u2").reshape(plane.height, -1)
     return np.ascontiguousarray(values[:, : plane.width], np.uint16)

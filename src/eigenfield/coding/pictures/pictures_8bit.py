@@ -1,7 +1,6 @@
 """Pictures of 8-bit codes: PNG and WebP (lossless), AVIF (lossy); a JPEG for viewers that know nothing of us.
 
-No profile, no orientation: the stored numbers are the codes. `stacking`
-says how channels and textures lie in a picture.
+No profile, no orientation: the stored numbers are the codes. `stacking` lays out channels and textures in a picture.
 """
 
 from __future__ import annotations
@@ -19,9 +18,9 @@ from eigenfield.core.errors import FormatError, OptionError
 Codes = NDArray[np.uint8]
 
 AVIF_SPEED = 6  # Tarot, 16 pictures of 1024 x 1024: 3 s; 5 saves 8 % of the bytes and takes 13 s, 4 saves no more
-PREVIEW_SIDE = 512
+PREVIEW_MAX_SIDE_TEXELS = 512
 PREVIEW_QUALITY = 85
-_WEBP_SIDE = 16_383
+_WEBP_MAX_SIDE_TEXELS = 16_383
 _READERS: dict[str, type[ImageFile.ImageFile]] = {
     "image/png": PngImagePlugin.PngImageFile,
     "image/jpeg": JpegImagePlugin.JpegImageFile,
@@ -31,16 +30,27 @@ _READERS: dict[str, type[ImageFile.ImageFile]] = {
 
 
 def encode_png(picture: Codes, quality: int) -> bytes:
-    """(H, W) or (H, W, 3) codes; one thread, the same bytes each time. quality: not used, a PNG is lossless."""
+    """A PNG by one thread, the same bytes each time.
+
+    Args:
+        picture: (H, W) or (H, W, 3) codes.
+        quality: Not used: a PNG is lossless.
+    """
     return _saved(Image.fromarray(picture), "PNG", compress_level=9)
 
 
 def encode_webp(picture: Codes, quality: int) -> bytes:
-    """As `encode_png`. Raises OptionError `codec-side` for a side that WebP does not hold."""
+    """As `encode_png`.
+
+    Raises:
+        OptionError: `codec-side`, a side is longer than WebP's.
+    """
     image = Image.fromarray(picture)
-    if max(image.size) > _WEBP_SIDE:
+    if max(image.size) > _WEBP_MAX_SIDE_TEXELS:
         raise OptionError(
-            "codec-side", f"webp holds {_WEBP_SIDE} texels a side, {max(image.size)} needed", remedy="use png"
+            "codec-side",
+            f"webp holds {_WEBP_MAX_SIDE_TEXELS} texels a side, {max(image.size)} needed",
+            remedy="use png",
         )
     return _saved(image, "WEBP", lossless=True, quality=80, method=4)
 
@@ -61,7 +71,7 @@ def encode_avif(picture: Codes, quality: int) -> bytes:
     )
 
 
-def encode_preview(picture: Codes, side: int = PREVIEW_SIDE, quality: int = PREVIEW_QUALITY) -> bytes:
+def encode_preview(picture: Codes, side: int = PREVIEW_MAX_SIDE_TEXELS, quality: int = PREVIEW_QUALITY) -> bytes:
     """(H, W) or (H, W, 3) codes as a JPEG of at most `side` texels on the longer side."""
     image = Image.fromarray(picture)
     scale = min(1.0, side / max(image.size))
@@ -80,15 +90,19 @@ def _saved(image: Image.Image, format: str, **options: Any) -> bytes:
 def header_size(data: memoryview, where: str, *, mime: str) -> tuple[int, int]:
     """Width and height from a picture's header alone; nothing is decoded or allocated.
 
-    FormatError: `codec-missing`, `picture-damaged`.
+    Raises:
+        FormatError: `codec-missing`, `picture-damaged`.
     """
     width, height = _webp_size(bytes(data[:30]), where) if mime == "image/webp" else _open(data, mime, where).size
     return int(width), int(height)
 
 
 def decode_picture(data: memoryview, colour: bool, where: str, *, mime: str) -> Codes:
-    """(H, W, 3) codes of a picture of colours, (H, W) of a grey one. FormatError: as `header_size`, and
-    `picture-channels`."""
+    """(H, W, 3) codes of a picture of colours, (H, W) of a grey one.
+
+    Raises:
+        FormatError: As `header_size`, and `picture-channels`.
+    """
     image = _open(data, mime, where)
     grey_in_colour = mime in ("image/avif", "image/webp")  # they may decode grey to RGB
     modes = ("RGB",) if colour else ("L", "RGB") if grey_in_colour else ("L",)

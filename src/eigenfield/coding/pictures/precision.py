@@ -1,7 +1,7 @@
-"""How finely each place of a mean is coded, as a small grey picture.
+"""The precision of a mean, place by place, as a small grey picture.
 
-A texel that few cameras see answers for few pixels, and is coded coarser: the mean is multiplied with its precision,
-0..1, before it is coded, and what its codes say is divided by it.
+A texel that few cameras see answers for few pixels, and is coded coarser: the mean is multiplied by its precision,
+0..1, before it is coded, and the decoded numbers are divided by it.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 One quantiser step for all components of a basis is least-squares optimal when every column of the weights has unit
 variance: a step in texture k then moves the pictures as much as one in texture 0, and late, faint textures use few
-codes and few bytes. The 127 codes on either side force a coarser step on the strongest textures; the others stop at
-FINEST of it. Tarot, 15 textures of 1024 x 1024, AVIF, noise of all textures together:
+codes and few bytes. The 127 codes on either side force a coarser step on the strongest textures; the others have at
+least MIN_STEP_RATIO of it. Tarot, 15 textures of 1024 x 1024, AVIF, noise of all textures together:
 
     step                              about 140 kB    about 208 kB
     the strongest texture's for all      43.4 dB         44.0 dB
@@ -19,38 +19,42 @@ from numpy.typing import NDArray
 from eigenfield.core.appearance import Basis
 from eigenfield.core.payloads import Affine
 
-ZERO = 128  # code of the value 0, so that 0 stays 0
-REACH = 127  # codes on either side of it
-CONSTANT = 1e-6  # relative step of a channel without range: an error of a few codes must not show
-FINEST = 0.5  # smallest step, of the strongest texture's
-OVERSHOOT = 0.125  # of bicubic and Lanczos filters beyond 0..1: 0.03 on Tarot's mean
+ZERO_CODE = 128  # code of the value 0, so that 0 stays 0
+MAX_OFFSET_CODES = 127  # codes on either side of it
+CONSTANT_STEP_RATIO = 1e-6  # of its value, of a channel without range: an error of a few codes must not show
+MIN_STEP_RATIO = 0.5  # of the strongest texture's step
+FILTER_OVERSHOOT = 0.125  # of bicubic and Lanczos filters beyond 0..1: 0.03 on Tarot's mean
 
 
-def unit_range(mean: NDArray[np.float32]) -> bool:
+def is_unit_range(mean: NDArray[np.float32]) -> bool:
     """Whether a mean lies in 0..1, where code / 255 is its value."""
     return bool(mean.min() >= 0 and mean.max() <= 1)
 
 
-def photographic(mean: NDArray[np.float32]) -> bool:
+def is_photographic(mean: NDArray[np.float32]) -> bool:
     """Three channels in 0..1 but for the overshoot of a resampling filter: R, G and B, which share a unit."""
-    return bool(mean.shape[2] == 3 and mean.min() >= -OVERSHOOT and mean.max() <= 1 + OVERSHOOT)
+    return bool(mean.shape[2] == 3 and mean.min() >= -FILTER_OVERSHOOT and mean.max() <= 1 + FILTER_OVERSHOOT)
 
 
 def mean_codes(mean: NDArray[np.float32], keep: bool = False) -> tuple[NDArray[np.uint8], Affine | None]:
-    """(H, W, C) mean to codes, and the scale and zero (C,) of the way back; None for code / 255.
+    """Codes of a mean, and the scale and zero (C,) that decode them; None for code / 255.
 
-    That is where it lies in 0..1, or is photographic: what overshoots is cut, nothing is darker than black. Elsewhere
-    the codes 0..255 span each channel's range. keep: cut nothing even if photographic; one range for all channels.
+    None is for means that lie in 0..1 or are photographic, whose overshoot is clipped. Otherwise the codes 0..255 span
+    each channel's range.
+
+    Args:
+        mean: (H, W, C).
+        keep: Clip nothing even if it is photographic; one range for all channels.
     """
     if not np.isfinite(mean).all():
         raise ValueError("a mean that is not finite")
-    if unit_range(mean) or (photographic(mean) and not keep):
+    if is_unit_range(mean) or (is_photographic(mean) and not keep):
         return np.rint(mean.clip(0, 1) * np.float32(255)).astype(np.uint8), None
     flat = mean.reshape(-1, mean.shape[2]).astype(np.float64)
     low, high = flat.min(axis=0), flat.max(axis=0)
     if keep:
         low, high = np.full_like(low, min(low.min(), 0)), np.full_like(high, max(high.max(), 1))
-    scale = np.where(high > low, (high - low) / 255, np.maximum(np.abs(low), 1) * CONSTANT)
+    scale = np.where(high > low, (high - low) / 255, np.maximum(np.abs(low), 1) * CONSTANT_STEP_RATIO)
     affine = Affine(scale, -low / scale)
     return np.rint(mean / affine.scale + affine.zero).clip(0, 255).astype(np.uint8), affine
 
@@ -65,8 +69,11 @@ def mean_values(codes: NDArray[np.uint8], affine: Affine | None) -> NDArray[np.f
 def basis_scale(basis: Basis, one_unit: bool) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(N, C) scale and zero for the codes of a basis; those it has if its textures are codes already.
 
-    one_unit: the channels share a unit (R, G, B), so they share a step too. A texture's largest value is always within
-    reach: nothing is ever clipped.
+    A texture's largest value always has a code: nothing is ever clipped.
+
+    Args:
+        basis: Of N textures.
+        one_unit: Whether the channels share a unit (R, G, B), and so a step.
     """
     if basis.textures.dtype == np.uint8:
         return basis.scale, basis.zero
@@ -79,8 +86,8 @@ def basis_scale(basis: Basis, one_unit: bool) -> tuple[NDArray[np.float32], NDAr
         raise ValueError("eigen textures that are not finite")
     if one_unit:
         largest[:] = largest.max(axis=1, keepdims=True)
-    step = np.maximum(largest, FINEST * largest.max(axis=0, initial=0)) / REACH
-    return np.where(step > 0, step, 1).astype(np.float32), np.full((count, channels), ZERO, np.float32)
+    step = np.maximum(largest, MIN_STEP_RATIO * largest.max(axis=0, initial=0)) / MAX_OFFSET_CODES
+    return np.where(step > 0, step, 1).astype(np.float32), np.full((count, channels), ZERO_CODE, np.float32)
 
 
 def texture_codes(basis: Basis, index: int, scale: NDArray[np.float32], zero: NDArray[np.float32]) -> NDArray[np.uint8]:

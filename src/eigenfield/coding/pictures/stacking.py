@@ -1,4 +1,4 @@
-"""How textures lie in pictures: channels and textures one below the other, checked against the announced size.
+"""The layout of textures in pictures: channels and textures one below the other, checked against the announced size.
 
 Codes of one channel are a grey picture, of three an RGB one of 8 bits; any other number, and any of 10 bits, is a grey
 picture in which the channels lie one below the other, the first on top.
@@ -22,7 +22,11 @@ DEFAULT_CODEC = "avif"
 
 
 def check_codec(codec: str, quality: int | None) -> None:
-    """Raises OptionError for a codec or a quality that cannot be: `codec`, `codec-missing`, `quality`."""
+    """Check the codec and quality of `save`.
+
+    Raises:
+        OptionError: `codec`, `codec-missing`, `quality`.
+    """
     if codec not in SAVE_CODECS:
         raise OptionError("codec", f"there is no codec {codec!r}", remedy=f"use {', '.join(SAVE_CODECS)}")
     if codec in ("avif", "webp") and not features.check(codec):
@@ -36,11 +40,11 @@ def check_codec(codec: str, quality: int | None) -> None:
 
 
 def codec_of(mime: str, bits: int = 8) -> str | None:
-    """The name of the codec of pictures of this type and depth, unless a file names another; None: there is none."""
+    """The default codec of pictures of this type and depth by name; None: there is none."""
     return next((name for name, codec in PICTURES.items() if (codec.mime, codec.bits) == (mime, bits)), None)
 
 
-def stacked(codes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def stacked_picture(codes: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """(H, W, C) codes as a picture: (H, W) for one channel, (H, W, 3) for three, else (C H, W)."""
     height, width, channels = codes.shape
     if channels == 3:
@@ -54,16 +58,22 @@ def picture_size(width: int, height: int, channels: int, count: int = 1, bits: i
 
 
 def encode(codes: NDArray[np.uint8], codec: str, quality: int) -> bytes:
-    """(H, W, C) uint8 codes as a picture by one of SAVE_CODECS; one thread, the same bytes each time. quality: 0..100,
-    for lossy ones."""
-    data: bytes = encoder(codec)(stacked(codes), quality)
+    """A picture by one thread, the same bytes each time.
+
+    Args:
+        codes: (H, W, C) uint8.
+        codec: One of SAVE_CODECS.
+        quality: 0..100, for lossy ones.
+    """
+    data: bytes = encoder(codec)(stacked_picture(codes), quality)
     return data
 
 
 def dimensions(data: memoryview, codec: str, where: str) -> tuple[int, int]:
     """Width and height from a picture's header alone; nothing is decoded or allocated.
 
-    FormatError: `codec-missing`, `picture-damaged`, `picture-limit`.
+    Raises:
+        FormatError: `codec-missing`, `picture-damaged`, `picture-limit`.
     """
     width, height = PICTURES[codec].size(data, where)
     if width > limits.MAX_SIDE or height > limits.MAX_STACKED or width * height > limits.MAX_TEXELS:
@@ -74,7 +84,11 @@ def dimensions(data: memoryview, codec: str, where: str) -> tuple[int, int]:
 def check_picture(
     data: memoryview, codec: str, width: int, height: int, channels: int, where: str, count: int = 1
 ) -> None:
-    """Hold a picture's header against the announced size. FormatError: as `dimensions`, and `picture-size`."""
+    """Compare a picture's header with the announced size.
+
+    Raises:
+        FormatError: As `dimensions`, and `picture-size`.
+    """
     found = dimensions(data, codec, where)
     expected = picture_size(width, height, channels, count, PICTURES[codec].bits)
     if found != expected:
@@ -90,7 +104,8 @@ def decode(
 ) -> NDArray[Any]:
     """(count, height, width, channels) codes, uint8 or of 10 bits uint16, of a picture of `count` textures.
 
-    FormatError: as `check_picture`, `picture-channels`, `picture-damaged`.
+    Raises:
+        FormatError: As `check_picture`, and `picture-channels`, `picture-damaged`.
     """
     check_picture(data, codec, width, height, channels, where, count)
     bits = PICTURES[codec].bits

@@ -1,4 +1,4 @@
-"""Films of 10-bit Y'CbCr, 4:2:0: AV1 as a bare stream of its own units, one key frame.
+"""Videos of 10-bit Y'CbCr, 4:2:0: AV1 as a bare stream of its own units, one key frame.
 
 SVT-AV1 codes them, tuned for squared error; dav1d decodes them, a frame at a time.
 """
@@ -15,38 +15,41 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import BITS
+from eigenfield.coding.pictures.pictures_10bit import PICTURE_BITS
 from eigenfield.core.errors import FormatError
 from eigenfield.runtime.parallel import ordinary_scheduling
 
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
 
-PIXELS = "yuv420p10le"
+PIXEL_FORMAT = "yuv420p10le"
 CONTAINER = "obu"
-RATE = 25  # frames a second: means nothing here, but a film has one
-PARALLEL = 2  # SVT-AV1's level of parallelism, fixed: its memory grows with it, and the bytes are the same
-FOREVER = 99999  # frames between key frames
+FRAME_RATE_HZ = 25  # without meaning here, but a video has one
+SVT_PARALLELISM = 2  # SVT-AV1's level, fixed: its memory grows with it, and the bytes are the same
+KEY_FRAME_INTERVAL = 99999  # frames
 
 
-def encode_film(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
-    """The film of luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023, the same bytes
-    each time.
+def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, preset: int) -> bytes:
+    """A video, the same bytes each time.
 
-    size: rows and columns, even and at least `SMALLEST`. crf: 1..63, the coarser the higher. preset: SVT-AV1's.
+    Args:
+        frames: Luma (rows, columns) and both chroma planes of half that, each way; codes 0..1023.
+        size: Rows and columns, even and at least `MIN_SIDE_TEXELS`.
+        crf: 1..63, the coarser the higher.
+        preset: SVT-AV1's, 0 the slowest.
     """
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: its settings go to stderr otherwise
     import av
 
     buffer = io.BytesIO()
     with av.open(buffer, "w", format=CONTAINER) as container:
-        stream: Any = container.add_stream("libsvtav1", rate=RATE)
+        stream: Any = container.add_stream("libsvtav1", rate=FRAME_RATE_HZ)
         stream.height, stream.width = size
-        stream.pix_fmt = PIXELS
+        stream.pix_fmt = PIXEL_FORMAT
         context = stream.codec_context
-        context.gop_size = FOREVER
+        context.gop_size = KEY_FRAME_INTERVAL
         context.color_range, context.colorspace = 2, 1  # full, BT.709
         stream.options = {
-            "crf": str(crf), "preset": str(preset), "svtav1-params": f"keyint=-1:scd=0:tune=1:lp={PARALLEL}",
+            "crf": str(crf), "preset": str(preset), "svtav1-params": f"keyint=-1:scd=0:tune=1:lp={SVT_PARALLELISM}",
         }  # fmt: skip
         with ordinary_scheduling():
             context.open()
@@ -60,20 +63,26 @@ def _frame(planes: Planes, number: int) -> Any:
     import av
 
     height, width = planes[0].shape
-    frame = av.VideoFrame(width, height, PIXELS)
+    frame = av.VideoFrame(width, height, PIXEL_FORMAT)
     for target, plane in zip(frame.planes, planes, strict=True):
         values = np.zeros((target.height, target.line_size // 2), "<u2")
         values[:, : plane.shape[1]] = plane
         target.update(values.tobytes())
-    frame.pts, frame.time_base = number, Fraction(1, RATE)
+    frame.pts, frame.time_base = number, Fraction(1, FRAME_RATE_HZ)
     return frame
 
 
-def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
-    """The frames of a film one after the other, as they were given to `encode_film`. No frame larger than `size` (rows,
-    columns) takes memory, and none beyond `count` is decoded.
+def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
+    """The frames of a video one after the other, as they were given to `encode_video`.
 
-    FormatError `residual-damaged` where the film is damaged, ends early, or has frames of another size or kind.
+    Args:
+        data: The video.
+        size: (rows, columns); no larger frame takes memory.
+        count: Frames; none beyond these is decoded.
+        where: The place of the video, for errors.
+
+    Raises:
+        FormatError: `residual-damaged`, the video is damaged, ends early, or has frames of another size or kind.
     """
     import av
 
@@ -82,7 +91,7 @@ def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> I
 
     context: Any = av.CodecContext.create("libdav1d", "r")
     context.options = {"max_pixels": str(size[0] * size[1])}
-    context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged film
+    context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged video
     number = 0
     for unit in chain(_units(data), [None]):
         try:
@@ -92,9 +101,9 @@ def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> I
         except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
             raise damaged(" ".join(str(error).split())[:80] or type(error).__name__) from error
         for frame in frames:
-            if (frame.height, frame.width) != size or frame.format.name != PIXELS:
+            if (frame.height, frame.width) != size or frame.format.name != PIXEL_FORMAT:
                 found = f"{frame.width}x{frame.height}, {frame.format.name}"
-                raise damaged(f"a frame of {found}; {size[1]}x{size[0]} of {BITS} bits announced")
+                raise damaged(f"a frame of {found}; {size[1]}x{size[0]} of {PICTURE_BITS} bits announced")
             luma, blue, red = (_samples(plane) for plane in frame.planes)
             yield luma, blue, red
             number += 1
@@ -104,7 +113,7 @@ def decode_film(data: bytes, size: tuple[int, int], count: int, where: str) -> I
 
 
 def _units(data: bytes) -> Iterator[bytes]:
-    """The open bitstream units of a film, as far as they are whole: each shows one frame at most, so that a decoder
+    """The open bitstream units of a video, as far as they are whole: each shows one frame at most, so that a decoder
     that is given one at a time never has more to hand out."""
     start = 0
     while start < len(data):

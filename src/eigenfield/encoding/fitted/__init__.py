@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from eigenfield.encoding.fitted.colour import split_matrix, to_rgb
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.observations import FitData, open_fit_data, subsampled
-from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, byte_price, fitted_textures, open_fits
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled
+from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, byte_lambda, fitted_textures, open_fits
 from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.surface import fit_surface
 
@@ -16,7 +16,7 @@ __all__ = [
     "Pixels",
     "PlaneSettings",
     "Rate",
-    "byte_price",
+    "byte_lambda",
     "code_plane",
     "coded_psnr",
     "fit_plane",
@@ -24,7 +24,7 @@ __all__ = [
     "fitted_textures",
     "open_fit_data",
     "open_fits",
+    "open_subsampled",
     "split_matrix",
-    "subsampled",
     "to_rgb",
 ]

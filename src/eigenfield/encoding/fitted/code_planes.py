@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import TOP, Coder, crf_of, decode_10bit
+from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, Coder, crf_of, decode_10bit
 from eigenfield.coding.pictures.precision import precision_codes, spread_precision
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.appearance import Basis, Plane
@@ -31,12 +31,12 @@ from eigenfield.core.payloads import (
 )
 from eigenfield.runtime.parallel import parallel_map
 
-FINEST = 1e-4  # of a code, in the photographs' range
+CODE_MIN_UNIT = 1e-4  # what a code stands for, in the photographs' range
 # Code of the value 0, and of most of a texture: 85 of 255 in 8 bits, exactly. Near the middle no code is exact, and
 # what every texture is off by adds up to grey levels.
-ZERO = 341
-ROWS = 4096  # of a picture of several textures, at most
-CODEC = "av1-10bit-1"  # of means and textures
+ZERO_CODE = 341
+PICTURE_MAX_ROWS = 4096  # of a picture of several textures
+PICTURES_CODEC = "av1-10bit-1"  # of means and textures
 PRECISION_CODEC = "png"
 
 
@@ -45,8 +45,8 @@ class CodedBasis:
     """A basis as its file gives it back, and what it was coded to.
 
     Attributes:
-        basis: With the decoded textures, uint16.
-        pictures: Of its textures, by rank.
+        basis: The basis, with the decoded textures, uint16.
+        pictures: The pictures of its textures, by rank.
         weights: Its coded weights; None: they are not coded yet.
     """
 
@@ -72,8 +72,8 @@ def code_mean(
 ) -> tuple[NDArray[np.float32], PicturePayload]:
     """(H, W, C) float32 as its file gives it back, and the picture.
 
-    One step for all channels. A photograph's means have the codes 0..TOP for 0..1; what a filter overshoots is cut off,
-    for codes twice as coarse need 2 to 3 % more bytes.
+    One step for all channels. A photograph's means have the codes 0..MAX_CODE for 0..1. The overshoot of a filter is
+    clipped, for codes twice as coarse need 2 to 3 % more bytes.
 
     Args:
         mean: (H, W, C) float32.
@@ -89,39 +89,42 @@ def code_mean(
         share = spread_precision(fineness, *mean.shape[:2])
         mean = mean * share
     if mean.shape[2] in (1, 3):
-        affine = Affine(np.full(mean.shape[2], 1 / TOP), np.zeros(mean.shape[2]))
+        affine = Affine(np.full(mean.shape[2], 1 / MAX_CODE), np.zeros(mean.shape[2]))
     else:  # differences of colours, to both sides of 0
         unit = _unit(float(mean.min()), float(mean.max()))
-        affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO)))
-    codes = np.rint(mean / affine.scale + affine.zero).clip(0, TOP).astype(np.uint16)
+        affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO_CODE)))
+    codes = np.rint(mean / affine.scale + affine.zero).clip(0, MAX_CODE).astype(np.uint16)
     data = coder(_stack(codes[None]), crf_of(step / float(affine.scale[0])))
     stored = _unstack(decode_10bit(data, False, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
-    return values, PicturePayload(CODEC, data, 1, affine, picture)
+    return values, PicturePayload(PICTURES_CODEC, data, 1, affine, picture)
 
 
 def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
-    """A basis of float textures (N, H, W, C), its textures coded.
+    """A basis with its textures coded.
 
-    step: of the quantiser, in the values' unit.
+    Args:
+        basis: Of float textures (N, H, W, C).
+        step: Of the quantiser, in the values' unit.
+        coder: Of the pictures.
     """
     count, height, _, channels = basis.textures.shape
     values = basis.values()
     stored, scale = np.empty(values.shape, np.uint16), np.empty((count, channels), np.float32)
-    each = max(1, min(ROWS // (height * channels), count))
+    each = max(1, min(PICTURE_MAX_ROWS // (height * channels), count))
 
     def code(first: int) -> PicturePayload:
         part = slice(first, first + each)
         unit = _unit(float(values[part].min()), float(values[part].max()))
-        codes = np.rint(values[part] / np.float32(unit) + ZERO).clip(0, TOP).astype(np.uint16)
+        codes = np.rint(values[part] / np.float32(unit) + ZERO_CODE).clip(0, MAX_CODE).astype(np.uint16)
         data = coder(_stack(codes), crf_of(step / unit))
         stored[part], scale[part] = _unstack(decode_10bit(data, False, "textures"), codes.shape), unit
         numbers = len(codes) * channels
-        affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO)))
-        return PicturePayload(CODEC, data, len(codes), affine)
+        affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO_CODE)))
+        return PicturePayload(PICTURES_CODEC, data, len(codes), affine)
 
     pictures = tuple(parallel_map(code, range(0, count, each)))
-    made = Basis(stored, scale, np.full_like(scale, ZERO), basis.weights, basis.grid, basis.corner)
+    made = Basis(stored, scale, np.full_like(scale, ZERO_CODE), basis.weights, basis.grid, basis.corner)
     return CodedBasis(made, pictures)
 
 
@@ -143,7 +146,15 @@ def coded_plane(
     coder: Coder,
     precision: NDArray[np.float32] | None = None,
 ) -> Coded[Plane]:
-    """A plane of coded bases with its mean coded, as its files give it back; see `code_mean`."""
+    """A plane of coded bases with its mean coded, as its files give it back.
+
+    Args:
+        mean: (H, W, C) float32.
+        bases: The coded bases.
+        step: As `code_mean`.
+        coder: As `code_mean`.
+        precision: As `code_mean`.
+    """
     values, picture = code_mean(mean, step, coder, precision)
     payloads = Payloads.joined(coded.payloads for coded in bases) | {mean_key(values): [picture]}
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
@@ -151,7 +162,7 @@ def coded_plane(
 
 def _unit(low: float, high: float) -> float:
     """What a code stands for, so that low..high have codes; of few digits."""
-    return math.ceil(max(FINEST, -low / ZERO, high / (TOP - ZERO)) * 1e6) / 1e6
+    return math.ceil(max(CODE_MIN_UNIT, -low / ZERO_CODE, high / (MAX_CODE - ZERO_CODE)) * 1e6) / 1e6
 
 
 def _stack(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:

@@ -1,4 +1,4 @@
-"""Texels that few observations show, and those that none shows: they are to cost as few bytes as they matter."""
+"""Texels that few observations show are coded coarsely, and those that none shows are filled smoothly."""
 
 from __future__ import annotations
 
@@ -13,16 +13,23 @@ from eigenfield.imaging.raster import rasterise
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.runtime.parallel import parallel_map
 
-CELL = 64  # texels of the mean for one number of its precision
-COARSEST = 2**-1.5  # precision; lower ones gain nothing (Tarot, Shop), and show where few cameras look
-PRECISIONS = 4  # to a factor of two: fewer numbers, fewer bytes
-GUTTER = 0.3  # of what a texel usually counts for: less beside a chart is as good as unseen
-WORTHWHILE = 0.97  # mean precision, above which the map is not worth its own bytes
+PRECISION_CELL_TEXELS = 64  # side of a cell of the mean that has one precision
+PRECISION_MIN_FACTOR = 2**-1.5  # lower ones gain nothing (Tarot, Shop), and show where few cameras look
+PRECISION_LEVELS_PER_OCTAVE = 4  # fewer numbers, fewer bytes
+PRECISION_MAX_MEAN_FACTOR = 0.97  # mean precision, above which the map saves fewer bytes than it takes
+OBSERVED_MIN_SHARE_RATIO = 0.3  # of the median share: less beside a chart counts as unseen
 
 
 def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
-    """Mean and textures go on smoothly where no photograph sees them, or beside a chart next to none: a step there
-    would be coded as one, and ring into the chart."""
+    """Continue mean and textures smoothly where no photograph sees them, or next to none beside a chart.
+
+    A step there would cost bytes, and ring into the chart.
+
+    Args:
+        model: Is changed in place.
+        scales: Of the data that it was fitted to.
+        surface: The mesh under the finest atlas.
+    """
     model.mean = _extended(model.mean, _observed(scales.mean, surface))
     coarse = _observed(scales.coarse, surface)
     for block in model.blocks:
@@ -35,7 +42,7 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
 
 
 def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
-    """(h, w) in COARSEST to 1: how finely each place of a mean is to be coded, None where all of it alike.
+    """(h, w) in PRECISION_MIN_FACTOR to 1: how finely each place of a mean is to be coded, None where all of it alike.
 
     Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
     pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
@@ -44,25 +51,25 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     if not known.any():
         return None
     share = np.minimum(scales.mean / np.median(scales.mean[known > 0]), 1).astype(np.float32)
-    rows, columns = (max(1, round(side / CELL)) for side in share.shape)
+    rows, columns = (max(1, round(side / PRECISION_CELL_TEXELS)) for side in share.shape)
     covered = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA)
     cells = cv2.resize(share * known, (columns, rows), interpolation=cv2.INTER_AREA) / np.maximum(covered, 1e-6)
-    level = np.rint(-PRECISIONS / 2 * np.log2(np.maximum(cells, COARSEST**2)))
-    precision = np.exp2(-level / PRECISIONS)
-    if np.average(precision, weights=covered) > WORTHWHILE:
+    level = np.rint(-PRECISION_LEVELS_PER_OCTAVE / 2 * np.log2(np.maximum(cells, PRECISION_MIN_FACTOR**2)))
+    precision = np.exp2(-level / PRECISION_LEVELS_PER_OCTAVE)
+    if np.average(precision, weights=covered) > PRECISION_MAX_MEAN_FACTOR:
         return None
     return np.asarray(precision, np.float32)
 
 
 def _observed(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
-    """(h, w) 1 where the photographs determine a texel: it is seen, and its middle is in a chart or it counts for
-    GUTTER of what most do."""
+    """(h, w) 1 where the photographs determine a texel: it is seen, and its middle is in a chart or its share is
+    OBSERVED_MIN_SHARE_RATIO of the median."""
     (height, width), (rows, columns) = surface.size, share.shape
     corners = np.ones((len(surface.texels), 3))
     corners[:, :2] = (surface.texels + 0.5) * (columns / width, rows / height)
     inside = rasterise(corners, surface.faces, columns, rows).face >= 0
     usual = float(np.median(share[share > 0])) if (share > 0).any() else 0.0
-    return ((share > 0) & (inside | (share > GUTTER * usual))).astype(np.float32)
+    return ((share > 0) & (inside | (share > OBSERVED_MIN_SHARE_RATIO * usual))).astype(np.float32)
 
 
 def _known(share: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -8,7 +8,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.encoder import open_encoder
 from eigenfield.encoding.fitted.reach import reach_target
-from eigenfield.encoding.options import known
+from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
 
 
@@ -29,4 +29,4 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
     if plan.asked.target is not None:
         return reach_target(plan, plan.asked.target, work, progress)
     with open_encoder(plan, work, progress) as encoder:
-        return encoder.coded(known(plan.options.quality))
+        return encoder.encode(resolved_value(plan.options.quality))

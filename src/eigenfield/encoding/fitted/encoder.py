@@ -16,7 +16,7 @@ from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import PLANE_PRESETS, Fits, fitted_textures, open_fits
-from eigenfield.encoding.options import PRESETS, EncodeOptions, known
+from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan, plan_encoding
 from eigenfield.encoding.projected import component_count, warn_of_disagreement
 
@@ -26,8 +26,8 @@ class FittedEncoder:
     """Planes fitted to photographs, which stay open, to be coded at one quality or many.
 
     Attributes:
-        plan: What they were fitted for.
-        data: The observations of the encoded cameras, and where their pixels land on the mesh.
+        plan: The plan whose photographs they are fitted to.
+        data: The observations of the encoded cameras, and their footprints on the mesh.
         fits: The planes.
         progress: Reports each coding.
     """
@@ -37,16 +37,16 @@ class FittedEncoder:
     fits: Fits
     progress: Progress | None = None
 
-    def coded(self, quality: int) -> EncodedScene:
-        """The scene coded at a quality, 0 to 100, with its figures."""
-        return self.with_figures(self.scene(quality))
+    def encode(self, quality: int) -> EncodedScene:
+        """The scene coded at a quality, 0 to 100, with the PSNR of its planes in its settings."""
+        return self.with_figures(self.encode_without_figures(quality))
 
-    def scene(self, quality: int) -> EncodedScene:
-        """The scene coded at a quality, without its figures: its settings have only the room for them."""
+    def encode_without_figures(self, quality: int) -> EncodedScene:
+        """The scene coded at a quality; its settings have placeholders of the same length for the PSNR."""
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
-        own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.reached()}}
-        planes = self.fits.coded(quality, self.plan.views.grid, self.progress)
+        own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
+        planes = self.fits.code_planes(quality, self.plan.views.grid, self.progress)
         return self.plan.scene(
             tuple(plane.value for plane in planes.values()),
             own,
@@ -55,8 +55,8 @@ class FittedEncoder:
         )
 
     def with_figures(self, scene: EncodedScene) -> EncodedScene:
-        """A scene that `scene` made, with the PSNR of each of its planes in its settings."""
-        fitted = {**scene.settings["fitted"], "psnr": self.fits.reached(scene.appearance.planes)}
+        """A scene of `encode_without_figures`, with the PSNR of each of its planes in its settings."""
+        fitted = {**scene.settings["fitted"], "psnr": self.fits.psnr_figures(scene.appearance.planes)}
         return replace(scene, settings={**scene.settings, "fitted": fitted})
 
 
@@ -75,11 +75,13 @@ def open_encoder(
     views, options = plan.views, plan.options
     cameras, observations = views.rig.encoded_cameras, views.observations
     asked = fitted_textures(len(observations)) if options.textures is None else options.textures
-    textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[known(options.planes)]
+    textures, planes = component_count(asked, len(observations)), PLANE_PRESETS[resolved_value(options.planes)]
     size = plan.atlas[1], plan.atlas[0]
     with (
         open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.rig.encoded_reference) as data,
-        open_fits(data, plan.density, textures, PRESETS[known(options.preset)], planes, work, progress) as fits,
+        open_fits(
+            data, plan.density, textures, PRESETS[resolved_value(options.preset)], planes, work, progress
+        ) as fits,
     ):
         if warn:
             mean = fits.planes[0][1].mean_alone

@@ -1,9 +1,9 @@
 """The fit: planes whose drawn pictures are as near the photographs as their bytes allow.
 
 Open loop first: the mean alone, the paper's decomposition of what it leaves, then mean and textures together and the
-weights, in turns, until a round changes less than `STOP`; from the second round on pixels with robust weights count
-less the farther they are from what is drawn (`SIGMA_RATIO`). Then closed loop, at any rates: the textures are coded,
-weights and mean are fitted again to what the coded ones draw, and the mean is coded last.
+weights, in turns, until a round changes less than `FIT_STOP_DB`; from the second round on pixels with robust weights
+count less the farther they are from what is drawn (`FIT_SIGMA_RATIO`). Then closed loop, at any rates: the textures are
+coded, weights and mean are fitted again to what the coded ones draw, and the mean is coded last.
 """
 
 from __future__ import annotations
@@ -27,21 +27,21 @@ from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
-from eigenfield.encoding.fitted.rate import Rate, code_worthwhile, price_of_mean
+from eigenfield.encoding.fitted.rate import Rate, code_block_rd, measure_lambda
 from eigenfield.encoding.fitted.regions import find_regions
 from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.encoding.fitted.start import principal_block, residual_energy
 
 log = logging.getLogger("eigenfield.fit")
 
-STOP = 0.05  # dB by which a round must change the pictures for another to follow
-SIGMA_RATIO = 4.0  # sigma of the robust weights, in root mean squares of what the round before left
-MEAN_STEPS = 8  # of conjugate gradients: the mean alone, at first
-TEXTURE_STEPS = 5
-WEIGHT_STEPS = 4
-WEIGHT_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
-WEIGHT_STEP_MOST = 1.5  # of weights of variance 1
-CLOSING_STEPS = 3  # for the mean, after coding
+FIT_STOP_DB = 0.05  # by which a round must change the pictures for another to follow
+FIT_SIGMA_RATIO = 4.0  # sigma of the robust weights, in root mean squares of the residual of the round before
+FIT_MEAN_ITERATIONS = 8  # of conjugate gradients: the mean alone, at first
+FIT_TEXTURE_ITERATIONS = 5
+FIT_WEIGHT_ITERATIONS = 4
+FIT_CLOSING_ITERATIONS = 3  # for the mean, after coding
+WEIGHT_QUANTISER_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
+WEIGHT_MAX_QUANTISER_STEP = 1.5  # of weights of variance 1
 WEIGHTS_CODEC = "weights-1"
 
 
@@ -51,9 +51,10 @@ class PlaneSettings:
 
     Attributes:
         matrix: (C, 3) its channels from R, G, B.
-        mean, grid: (rows, columns) of mean and components.
+        mean: (rows, columns) of the mean.
+        grid: (rows, columns) of the components.
         textures: N.
-        local: so many more for each region that needs them.
+        local: number of components of each region's own.
     """
 
     matrix: NDArray[np.float32]
@@ -69,7 +70,7 @@ class Pixels:
 
     Attributes:
         every: all their pixels.
-        fitted: what mean and textures are fitted to (`subsampled`, `with_robust_weights`).
+        fitted: what mean and textures are fitted to (`open_subsampled`, `with_robust_weights`).
         weighed: what weights are fitted to, likewise.
     """
 
@@ -126,8 +127,19 @@ def fit_plane(
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> OpenFit:
-    """Fit one plane in open loop, by at most so many rounds. Raises CaptureError `nothing-seen` where no camera covers
-    a pixel."""
+    """Fit one plane in open loop.
+
+    Args:
+        pixels: the observations.
+        settings: what the plane is to be.
+        name: of the plane.
+        rounds: at most.
+        work: folder for scratch files.
+        progress: reports the steps.
+
+    Raises:
+        CaptureError: `nothing-seen`, no camera covers a pixel.
+    """
     fitted, channels = pixels.fitted, len(settings.matrix)
     grey = np.full((channels, *settings.mean), 0.5, np.float32) * settings.matrix.sum(axis=1)[:, None, None]
     model = PlaneModel(settings.matrix, grey.astype(np.float32), settings.grid, [])
@@ -153,12 +165,12 @@ def fit_plane(
         left = residual(fitted, model, variance=variance)
         before, reached = reached, psnr_of(left.squares, left.pixels, channels)
         log.info("%s, after round %d: %.2f dB", name, number, reached)
-        if abs(reached - before) < STOP:
+        if abs(reached - before) < FIT_STOP_DB:
             break
-        fit_textures(fitted, model, scales, left, TEXTURE_STEPS)
+        fit_textures(fitted, model, scales, left, FIT_TEXTURE_ITERATIONS)
         tick()
-        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
-        variance = SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
+        fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
+        variance = FIT_SIGMA_RATIO**2 * float(left.squares.sum() / max(left.pixels.sum(), 1.0))
         whiten(model, scales)
         tick()
     surface = pixels.every.footprints.surface
@@ -170,7 +182,7 @@ def fit_plane(
 
 
 def _add_regions(pixels: Pixels, model: PlaneModel, scales: Scales, count: int, work: Path | None) -> None:
-    """So many components for each rectangle of which the model's leave most."""
+    """Add `count` components for each rectangle of which the model leaves much more than its share."""
     if not count:
         return
     for rectangle in find_regions(*residual_energy(pixels.weighed, model)):
@@ -201,9 +213,9 @@ def code_plane(
     tick = _ticker(progress, f"code {fit.name}", 3)
     model = replace(open_loop, mean=open_loop.mean.copy(), blocks=[])
     bases: list[CodedBasis] = []
-    price = price_of_mean(open_loop, scales, rate, precision)
+    lambda_ = measure_lambda(open_loop, scales, rate, precision)
     for block in open_loop.blocks:
-        coded = code_worthwhile(block, model.grid, scales, rate, price)
+        coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:
             continue
         values, weights = (
@@ -214,13 +226,13 @@ def code_plane(
         bases.append(coded)
     tick()
     if bases:
-        fit_weights(pixels.weighed, model, WEIGHT_STEPS)
+        fit_weights(pixels.weighed, model, FIT_WEIGHT_ITERATIONS)
         for number, block in enumerate(model.blocks):
             stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
     left = residual(pixels.fitted, model, True, fit.composer)
-    fit_textures(pixels.fitted, model, scales, left, CLOSING_STEPS, mean_only=True)
+    fit_textures(pixels.fitted, model, scales, left, FIT_CLOSING_ITERATIONS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision)
     tick(last=True)
@@ -255,7 +267,7 @@ def fit_mean(data: FitData, model: PlaneModel, scales: Scales) -> MeanAlone:
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
     sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
     total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
-    fit_textures(data, model, scales, left, MEAN_STEPS, mean_only=True)
+    fit_textures(data, model, scales, left, FIT_MEAN_ITERATIONS, mean_only=True)
     found = render_and_backproject(
         data, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
     )
@@ -268,7 +280,7 @@ def _weight_steps(block: Block, scales: Scales) -> NDArray[np.float32]:
     share = scales.coarse[block.window]
     squares = np.einsum("nchw,nchw,hw->n", block.textures, block.textures, share, dtype=np.float64)
     drawn = np.sqrt(squares / max(float(scales.coarse.sum()), 1e-12))
-    return np.clip(WEIGHT_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_STEP_MOST).astype(np.float32)
+    return np.clip(WEIGHT_QUANTISER_STEP / np.maximum(drawn, 1e-9), 1e-3, WEIGHT_MAX_QUANTISER_STEP).astype(np.float32)
 
 
 def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[..., None]:

@@ -14,9 +14,9 @@ from eigenfield.rendering.software.drawing import Surface
 from eigenfield.rendering.software.kernels import TILE
 from eigenfield.rendering.software.resample import Taps, make_taps
 
-ZERO = np.zeros((0, 0, 0), np.float32)
+NO_START = np.zeros((0, 0, 0), np.float32)
 
-COLUMNS = 1 << 16  # texels whose products with weights are made at a time: no second array as large as all textures
+PRODUCT_CHUNK_TEXELS = 1 << 16  # multiplied by weights at a time: no second array as large as all textures
 
 Rectangle = tuple[int, int, int, int]  # [top, bottom) x [left, right), in texels of the components' grid
 
@@ -26,7 +26,7 @@ class Block:
     """Components with one region.
 
     Attributes:
-        rectangle: the region.
+        rectangle: The region.
         textures: (n, C, rows, columns) float32.
         weights: (No, n) float32, a row for each observation.
     """
@@ -96,9 +96,11 @@ class Upsampler:
     """From a coarse atlas to the finest one, by Catmull-Rom.
 
     Attributes:
-        rows, columns: the taps of each fine row and column.
+        rows: The taps of each fine row.
+        columns: The taps of each fine column.
         spans: (H, 2) columns in use, see the kernel.
-        coarse, fine: (rows, columns) of both atlases.
+        coarse: (rows, columns) of the coarse atlas.
+        fine: (rows, columns) of the fine atlas.
     """
 
     rows: Taps
@@ -107,7 +109,7 @@ class Upsampler:
     coarse: tuple[int, int]
     fine: tuple[int, int]
 
-    def up(self, coarse: NDArray[np.float32], fine: NDArray[np.float32], start: NDArray[np.float32] = ZERO) -> None:
+    def up(self, coarse: NDArray[np.float32], fine: NDArray[np.float32], start: NDArray[np.float32] = NO_START) -> None:
         """fine (C, H, W) = start + coarse (C, h, w) made finer, in the columns in use."""
         lines = np.zeros((self.coarse[0], self.fine[1]), np.float32)
         taps = (self.rows.at, self.rows.weight, self.columns.at, self.columns.weight)

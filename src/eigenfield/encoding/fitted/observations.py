@@ -34,13 +34,14 @@ class DecodedObservations:
     """No photographs as 8-bit codes, which is what the measures compare with, and what their pixels count for.
 
     Attributes:
-        cameras, times: (No,) the camera and the instant of each observation.
+        cameras: (No,) the camera of each observation.
+        times: (No,) the instant of each observation.
         shapes: (h, w) of each observation.
         codes: (pixels of all, 3) uint8, R, G, B, observation by observation.
         offsets: (No + 1,) where the pixels of each observation begin.
         masks: (pixels of all,) uint8, 255 where a pixel counts, 0 where not; None: all count.
-        robust: likewise what the pixels count for, 255 for whole, by masks and by robust (IRLS) weights, which
-            `render_and_backproject` updates; None: the masks say.
+        robust: (pixels of all,) uint8, 255 times mask times robust (IRLS) weight, which `render_and_backproject`
+            updates; None: the masks alone count.
     """
 
     cameras: NDArray[np.int64]
@@ -78,9 +79,11 @@ class DecodedObservations:
 
 @dataclass(frozen=True, eq=False)
 class FitData:
-    """What a fit is held against: observations, and the footprints of their cameras on a mesh.
+    """The data of a fit. Several observations of a camera, at different times, share its footprint.
 
-    Several observations of a camera, at different times, share its footprint.
+    Attributes:
+        observations: The photographs.
+        footprints: Of their cameras on a mesh.
     """
 
     observations: DecodedObservations
@@ -117,15 +120,17 @@ def open_fit_data(
     photographs and about 9 a pixel of the cameras: memory does not grow with their number.
 
     Args:
-        cameras: of the observations, which are as large as their cameras' pictures.
+        cameras: Of the observations, which are as large as their cameras' pictures.
         observations: R, G, B.
-        mesh: at all their times.
+        mesh: The mesh at all their times.
         atlas: (rows, columns) of the finest texture.
-        work: folder for the scratch files.
-        progress: reports the photographs that are decoded.
-        reference: the scene's reference camera, in `cameras`.
+        work: Folder for the scratch files.
+        progress: Reports the photographs that are decoded.
+        reference: Index of the scene's reference camera in `cameras`.
 
-    Raises CaptureError, OutputError `disk-full`.
+    Raises:
+        CaptureError: A photograph cannot be read.
+        OutputError: `disk-full`.
     """
     with _open_observations(cameras, observations, work, progress) as decoded:
         surface = make_surface(mesh, *atlas)
@@ -158,7 +163,7 @@ def _open_observations(
 
 
 @contextlib.contextmanager
-def on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[FitData]:
+def open_on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[FitData]:
     """The same observations on another mesh under as large an atlas. cameras: of the observations."""
     surface = make_surface(mesh, *data.size)
     with open_footprints(surface, cameras, data.footprints.detail, work) as footprints:
@@ -166,7 +171,7 @@ def on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Path | N
 
 
 @contextlib.contextmanager
-def subsampled(data: FitData, step: int, work: Path | None = None) -> Iterator[FitData]:
+def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Iterator[FitData]:
     """Every `step`-th pixel each way, from a corner that changes with the camera; step 1: the data themselves."""
     if step == 1:
         yield data

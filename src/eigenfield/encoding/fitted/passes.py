@@ -1,4 +1,4 @@
-"""One pass over all observations: each is drawn, and what its difference asks of mean, textures and weights.
+"""One pass over all observations: each is drawn, and its difference is brought back to mean, textures and weights.
 
 What a renderer draws is the sum of mean and components in the finest atlas. Here each is drawn from its own grid, and
 the drawn pictures are summed: nearly the same (Catmull-Rom once instead of twice for what is coarse) for a third of the
@@ -18,12 +18,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.kernels import adjoint, forward, robust_weights, squares_of, target
-from eigenfield.encoding.fitted.model import COLUMNS, AtlasComposer, PlaneModel, sum_up
+from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel, sum_up
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-BATCH = 48  # observations whose sums are in memory at a time: each batch reads and writes all textures once
-PIECE = 12  # of them are one thread's task
+PASS_BATCH_OBSERVATIONS = 48  # whose sums are in memory at a time: each batch reads and writes all textures once
+PASS_TASK_OBSERVATIONS = 12  # of one thread's task
 PLUS, MINUS = np.float32(1), np.float32(-1)
 
 Textures = list[NDArray[np.float32]]
@@ -85,11 +85,13 @@ def render_and_backproject(
     matrix, sign = (model.matrix / np.float32(255)).astype(np.float32), MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
-    batch = min(BATCH, len(data))
+    batch = min(PASS_BATCH_OBSERVATIONS, len(data))
     room = np.empty((2, batch, model.channels, *model.grid), np.float32)  # pages not written to take no memory
-    product = np.empty((max((block.count for block in blocks), default=0), COLUMNS), np.float32)
-    shares = np.zeros((len(pieces(batch, PIECE)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32)
-    for first, last in pieces(len(data), BATCH):
+    product = np.empty((max((block.count for block in blocks), default=0), PRODUCT_CHUNK_TEXELS), np.float32)
+    shares = np.zeros(
+        (len(pieces(batch, PASS_TASK_OBSERVATIONS)), *(model.mean.shape if for_mean else (0, 0, 0))), np.float32
+    )
+    for first, last in pieces(len(data), PASS_BATCH_OBSERVATIONS):
         some = slice(first, last)
         sums, back = None, room[1, : last - first]
         if coarse and textures is not None:
@@ -102,7 +104,7 @@ def render_and_backproject(
             sums: NDArray[np.float32] | None = sums,
             back: NDArray[np.float32] = back,
         ) -> None:
-            added = shares[part[0] // PIECE]
+            added = shares[part[0] // PASS_TASK_OBSERVATIONS]
             for at in range(*part):
                 index = first + at
                 footprint, weight = data.footprint(index), observations.weights(index)
@@ -130,12 +132,12 @@ def render_and_backproject(
                     back[at] = 0
                     adjoint(*footprint, size, image, weight, back[at])
 
-        parallel_map(piece, pieces(last - first, PIECE))
+        parallel_map(piece, pieces(last - first, PASS_TASK_OBSERVATIONS))
         for number, block in enumerate(blocks if for_coarse else ()):
             inside = np.ascontiguousarray(back[:, :, *block.window]).reshape(last - first, -1)
             if for_textures and block.count:
                 into = found[number].reshape(block.count, -1)
-                for left, right in pieces(into.shape[1], COLUMNS):
+                for left, right in pieces(into.shape[1], PRODUCT_CHUNK_TEXELS):
                     part = product[: block.count, : right - left]
                     into[:, left:right] += np.matmul(block.weights[some].T, inside[:, left:right], out=part)
             if for_weights and block.count:

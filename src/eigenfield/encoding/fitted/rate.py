@@ -1,5 +1,7 @@
-"""Which of a plane's components are coded, and how finely: those that take more squared error off the pictures than
-their bytes would elsewhere."""
+"""Which of a plane's components are coded, and how finely, by rate and distortion.
+
+Squared error over all pictures + lambda x bytes is minimised, lambda being the error that a byte of the mean takes off.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,7 @@ from itertools import accumulate
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import Coder, svt
+from eigenfield.coding.pictures.pictures_10bit import Coder, svt_coder
 from eigenfield.core.appearance import Basis
 from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis, code_mean, first_pictures
 from eigenfield.encoding.fitted.model import Block, PlaneModel
@@ -19,19 +21,25 @@ from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.fit")
 
-LAGRANGE = 0.134  # squared error per bit in steps^2, as video encoders weigh them (0.85 2^((QP - 12) / 3), H.264)
-WEIGHT_BYTES = 0.4  # of a coded weight: what weak components' take
-NEAR = 1.25  # the mean's steps whose bytes and errors are compared lie so far to either side
-BELIEVED = 4.0  # a measured price is at most so many times the reckoned one, or that part of it
-OTHER_STEPS = 1.2, 1 / 1.2  # of the usual one, at which textures may be coded instead
-QUICK = svt(8)  # codes textures to find their step: in a quarter of the time, a few per cent larger
+RATE_LAMBDA_PER_SQUARED_STEP = 0.134  # for a bit, as in video encoders (0.85 2^((QP - 12) / 3), H.264)
+RATE_WEIGHT_BYTES = 0.4  # of a coded weight of a weak component
+RATE_SLOPE_STEP_RATIO = 1.25  # the mean is coded at its step times and over this, for the slope of error over bytes
+RATE_MAX_LAMBDA_RATIO = 4.0  # of the measured lambda to the predicted one, or of this to that
+RATE_STEP_RATIOS = 1.2, 1 / 1.2  # of the usual step, at which textures may be coded instead
+RATE_STEP_CODER = svt_coder(8)  # codes textures to find their step: in a quarter of the time, a few per cent larger
 
 
 @dataclass(frozen=True)
 class Rate:
-    """How finely a plane is coded. mean_step, texture_step: of the quantiser, in the photographs' range. coder: of the
-    pictures. trial: one that is faster, by which components are chosen; None: the same. search: whether textures may
-    be coded at one of OTHER_STEPS."""
+    """How finely a plane is coded.
+
+    Attributes:
+        mean_step: Of the quantiser, in the photographs' range.
+        texture_step: Likewise.
+        coder: Of the pictures.
+        trial: A faster coder, by which components are chosen; None: the same.
+        search: Whether textures may be coded at one of RATE_STEP_RATIOS.
+    """
 
     mean_step: float
     texture_step: float
@@ -41,40 +49,60 @@ class Rate:
 
 
 @dataclass(frozen=True)
-class Price:
-    """Squared error over all pictures that a byte of the mean takes off: a component is worth its bytes where it takes
-    off more. reckoned: `LAGRANGE` step^2 a bit, times the pixels that a texel of the mean answers for. measured: from
-    the mean's coding beside its step; `reckoned` where that was not looked at."""
+class Lambdas:
+    """Lagrange multipliers: squared error over all pictures that a byte of the mean takes off.
 
-    reckoned: float
+    Attributes:
+        predicted: By `lambda_of_step`, times the pixels that a texel of the mean answers for.
+        measured: From the mean's coding at two steps; `predicted` where that was not done.
+    """
+
+    predicted: float
     measured: float
 
 
-def price_of_mean(model: PlaneModel, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None) -> Price:
-    """precision: as `code_mean`. Measured where `rate` searches and there is what to search for."""
+def measure_lambda(
+    model: PlaneModel, scales: Scales, rate: Rate, precision: NDArray[np.float32] | None = None
+) -> Lambdas:
+    """The multipliers of a plane, measured where its rate searches and it has components.
+
+    Args:
+        model: The plane.
+        scales: Of the data that it was fitted to.
+        rate: How finely it is coded.
+        precision: As `code_mean`.
+    """
     seen = scales.mean[scales.mean > 0]
-    reckoned = price_of(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
+    predicted = lambda_of_step(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
     if not (rate.search and model.blocks):
-        return Price(reckoned, reckoned)
+        return Lambdas(predicted, predicted)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
 
     def coded(factor: float) -> tuple[float, int]:
         kept, picture = code_mean(mean, rate.mean_step * factor, rate.trial or rate.coder, precision)
         return float(np.einsum("hwc,hw->", np.square(kept - mean), scales.mean, dtype=np.float64)), len(picture.data)
 
-    (fine, more), (coarse, fewer) = parallel_map(coded, (1 / NEAR, NEAR))
-    slope = (coarse - fine) / (more - fewer) if more > fewer else reckoned
-    return Price(reckoned, min(max(slope, reckoned / BELIEVED), reckoned * BELIEVED))
+    (fine, more), (coarse, fewer) = parallel_map(coded, (1 / RATE_SLOPE_STEP_RATIO, RATE_SLOPE_STEP_RATIO))
+    slope = (coarse - fine) / (more - fewer) if more > fewer else predicted
+    return Lambdas(predicted, min(max(slope, predicted / RATE_MAX_LAMBDA_RATIO), predicted * RATE_MAX_LAMBDA_RATIO))
 
 
-def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, price: Price) -> CodedBasis:
-    """Those of a block's components that are worth their bytes, coded. grid: (rows, columns) that it is part of."""
+def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, lambda_: Lambdas) -> CodedBasis:
+    """The components of a block that take off more squared error than lambda x their bytes, coded.
+
+    Args:
+        block: The components.
+        grid: (rows, columns) that its rectangle is part of.
+        scales: Of the data that it was fitted to.
+        rate: How finely it is coded.
+        lambda_: Of the plane.
+    """
     basis = _basis_of(block, grid)
     step = rate.texture_step
     if rate.search:
-        step *= _best_factor(basis, block, scales, step, price)
+        step *= _best_factor(basis, block, scales, step, lambda_)
     coded = code_basis(basis, step, rate.trial or rate.coder)
-    _, count = _worthwhile(*_effects(coded, block, scales), price.reckoned)
+    _, count = _least_cost(*_effects(coded, block, scales), lambda_.predicted)
     log.debug("%d of %d components coded, at %.2f of the usual step", count, block.count, step / rate.texture_step)
     ends = list(accumulate((picture.count for picture in coded.pictures), initial=0))
     if count == 0 or (count in ends and rate.trial is None):
@@ -83,27 +111,26 @@ def code_worthwhile(block: Block, grid: tuple[int, int], scales: Scales, rate: R
     return code_basis(_basis_of(few, grid), step, rate.coder)
 
 
-def _best_factor(basis: Basis, block: Block, scales: Scales, step: float, price: Price) -> float:
-    """Of `step`: 1, or that of OTHER_STEPS which a quick coder finds cheaper at the reckoned and at the measured price.
+def _best_factor(basis: Basis, block: Block, scales: Scales, step: float, lambda_: Lambdas) -> float:
+    """Of `step`: 1, or that of RATE_STEP_RATIOS which a quick coder finds cheaper by both multipliers.
 
     Neither is right alone. Where bytes are few the measured one is up to 2.5 times the other, and too high, since
     drawing averages away part of the error of a mean denser than the pictures.
     """
 
     def costs(factor: float) -> tuple[float, float]:
-        errors, sizes = _effects(code_basis(basis, step * factor, QUICK), block, scales)
-        return _worthwhile(errors, sizes, price.reckoned)[0], _worthwhile(errors, sizes, price.measured)[0]
+        errors, sizes = _effects(code_basis(basis, step * factor, RATE_STEP_CODER), block, scales)
+        return _least_cost(errors, sizes, lambda_.predicted)[0], _least_cost(errors, sizes, lambda_.measured)[0]
 
     usual = costs(1.0)
-    for factor in OTHER_STEPS:
+    for factor in RATE_STEP_RATIOS:
         if all(other < least for other, least in zip(costs(factor), usual, strict=True)):
             return factor
     return 1.0
 
 
 def _effects(coded: CodedBasis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Of each component: squared error over all cameras that it brings, less than 0 where it takes some off, and bytes,
-    its weights' too."""
+    """The change of squared error over all cameras by each component, and its bytes with those of its weights."""
     share = scales.coarse[block.window]
     errors: list[float] = []
     sizes: list[float] = []
@@ -112,20 +139,20 @@ def _effects(coded: CodedBasis, block: Block, scales: Scales) -> tuple[NDArray[n
         before, after = block.textures[part], coded.basis.values(part.start, part.stop).transpose(0, 3, 1, 2)
         more = np.einsum("nchw,nchw,hw->n", after, after - 2 * before, share, dtype=np.float64)  # (b - a)^2 - b^2
         errors += more.tolist()
-        sizes += [len(picture.data) / picture.count + WEIGHT_BYTES * len(block.weights)] * picture.count
+        sizes += [len(picture.data) / picture.count + RATE_WEIGHT_BYTES * len(block.weights)] * picture.count
     return np.array(errors), np.array(sizes)
 
 
-def _worthwhile(errors: NDArray[np.float64], sizes: NDArray[np.float64], price: float) -> tuple[float, int]:
-    """Least of what components bring and their bytes cost, the strongest first, and with how many."""
-    totals = np.cumsum([0.0, *(errors + price * sizes)])
+def _least_cost(errors: NDArray[np.float64], sizes: NDArray[np.float64], lambda_: float) -> tuple[float, int]:
+    """The least rate-distortion cost of the first components, the strongest first, and their number."""
+    totals = np.cumsum([0.0, *(errors + lambda_ * sizes)])
     count = int(np.argmin(totals))
     return float(totals[count]), count
 
 
-def price_of(mean_step: float) -> float:
-    """Squared error of a mean that a byte of it takes off, for each pixel that a texel is seen in."""
-    return 8 * LAGRANGE * mean_step**2
+def lambda_of_step(mean_step: float) -> float:
+    """Lagrange multiplier of a mean's quantiser step: squared error for a byte, for each pixel that sees a texel."""
+    return 8 * RATE_LAMBDA_PER_SQUARED_STEP * mean_step**2
 
 
 def _basis_of(block: Block, grid: tuple[int, int]) -> Basis:

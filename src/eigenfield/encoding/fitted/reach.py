@@ -14,9 +14,9 @@ from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.options import known
+from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
-from eigenfield.encoding.target import FIRST, Target, Tried, search
+from eigenfield.encoding.target import TARGET_FIRST_QUALITY, Attempt, Target, search_quality
 from eigenfield.gltf import encode_scene
 from eigenfield.imaging.metrics import psnr, ssim, to_codes
 from eigenfield.rendering import Renderer
@@ -24,17 +24,23 @@ from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.encode")
 
-MESH_SHARE = 0.03  # of a file: what another mesh must save or cost for a second fit
-NEAR_QUALITIES = 3  # beside the plan's: those have as good as its mesh and atlas
-DENSITY_SHARE = 0.1  # by which another atlas must be coarser or finer for a second fit
-MEASURED_OBSERVATIONS = 48  # at most, evenly spread, by which a PSNR or SSIM is judged
+REFIT_MIN_MESH_RATIO = 0.03  # of a file's bytes by which another mesh must differ for a second fit
+REFIT_MAX_NEAR_QUALITIES = 3  # from the plan's quality, within which mesh and atlas are nearly the same
+REFIT_MIN_ATLAS_RATIO = 0.1  # of its side by which another atlas must differ for a second fit
+TARGET_MAX_OBSERVATIONS = 48  # evenly spread, over which a PSNR or SSIM is measured
 
 
 def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> EncodedScene:
     """The scene whose file reaches the target, or with a warning the nearest.
 
     Mesh and atlas belong to a quality. Where the target is met at one that has clearly others than the plan's, there is
-    a second fit, on those, and the better file of both is kept.
+    a second fit, on those, and the better file of both is taken.
+
+    Args:
+        plan: Made for the preset's quality.
+        target: A size, a PSNR or an SSIM.
+        work: Folder for scratch files.
+        progress: Reports each stage.
     """
     with open_encoder(plan, work, progress) as encoder:
         found = _search(target, encoder)
@@ -53,35 +59,35 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
                 found, scene = second, encoder.with_figures(second.result)
             else:
                 log.info("not kept: %d bytes, %.4f, and the first has %d, %.4f", *sizes)
-    if not target.met(found):
+    if not target.is_met(found):
         _warn_of_miss(target, found)
     return scene
 
 
 def _other_plan(
-    plan: EncodePlan, found: Tried[EncodedScene], work: Path | None, progress: Progress | None
+    plan: EncodePlan, found: Attempt[EncodedScene], work: Path | None, progress: Progress | None
 ) -> EncodePlan | None:
     """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
-    if abs(found.quality - known(plan.options.quality)) <= NEAR_QUALITIES:
+    if abs(found.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
         return None
     other = plan.at_quality(found.quality, work, progress)
-    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= MESH_SHARE * found.size
-    atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= DENSITY_SHARE
+    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= REFIT_MIN_MESH_RATIO * found.size
+    atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= REFIT_MIN_ATLAS_RATIO
     return other if mesh or atlas else None
 
 
-def _search(target: Target, encoder: FittedEncoder, first: int = FIRST) -> Tried[EncodedScene]:
-    """As `search`, of what the encoder makes."""
+def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[EncodedScene]:
+    """As `search_quality`, of what the encoder makes."""
 
-    def code(quality: int) -> Tried[EncodedScene]:
-        scene = encoder.scene(quality)
+    def code(quality: int) -> Attempt[EncodedScene]:
+        scene = encoder.encode_without_figures(quality)
         measured = 0.0 if target.size else _measured(target, scene, encoder.data)
-        return Tried(quality, len(encode_scene(scene)), measured, scene)
+        return Attempt(quality, len(encode_scene(scene)), measured, scene)
 
-    return search(target, code, first)
+    return search_quality(target, code, first)
 
 
-def _compared(target: Target, found: Tried[EncodedScene], data: FitData) -> Tried[EncodedScene]:
+def _compared(target: Target, found: Attempt[EncodedScene], data: FitData) -> Attempt[EncodedScene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
     return found if target.size is None else replace(found, measured=_measured(target, found.result, data))
 
@@ -99,12 +105,12 @@ def _measured(target: Target, scene: EncodedScene, data: FitData) -> float:
         measure = psnr if target.ssim is None else ssim
         return measure(to_codes(picture.image), observations.codes_of(index), covered)
 
-    some = np.unique(np.linspace(0, count - 1, min(count, MEASURED_OBSERVATIONS)).round().astype(int))
+    some = np.unique(np.linspace(0, count - 1, min(count, TARGET_MAX_OBSERVATIONS)).round().astype(int))
     values = [value for value in parallel_stream(of_observation, some.tolist()) if value is not None]
     return float(np.mean(values)) if values else 0.0
 
 
-def _warn_of_miss(target: Target, nearest: Tried[EncodedScene]) -> None:
+def _warn_of_miss(target: Target, nearest: Attempt[EncodedScene]) -> None:
     """Say that no file reaches the target, and why."""
     if target.size is not None:
         log.warning(
@@ -113,6 +119,6 @@ def _warn_of_miss(target: Target, nearest: Tried[EncodedScene]) -> None:
         )  # fmt: skip
     else:
         log.warning(
-            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.wanted,
+            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.goal,
             nearest.measured,
         )  # fmt: skip

@@ -9,38 +9,47 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.model import Rectangle
 
-SIDE = 8  # texels of a block's side: rectangles are made of whole blocks
-EXCESS = 2.0  # of the mean squared error over all pixels: what lies above it speaks for a region, what below against it
-LEAST = 0.1  # of all squared error that a region must have beyond its EXCESS
-MOST = 3  # regions
-WIDEST = 0.4  # of the pixels seen: more is no region
+REGION_BLOCK_TEXELS = 8  # side of a block: rectangles are made of whole blocks
+REGION_EXCESS_RATIO = 2.0  # of the mean squared error over all pixels: only what lies above it speaks for a region
+REGION_MIN_ERROR_RATIO = 0.1  # of all squared error that a region must have in excess
+REGION_MAX_COUNT = 3
+REGION_MAX_PIXEL_RATIO = 0.4  # of the pixels seen
 
 
 def find_regions(energy: NDArray[np.float32], seen: NDArray[np.float32]) -> list[Rectangle]:
     """Rectangles with far more squared error than their pixels' share, the one with most first; they do not overlap.
 
-    energy, seen: (h, w) of the components' grid: squared error that a texel answers for, and pixels.
+    Args:
+        energy: (h, w) of the components' grid, squared error that a texel answers for.
+        seen: (h, w) pixels that it answers for.
     """
     height, width = energy.shape
     error, pixels = _blocks(energy), _blocks(seen)
     total = float(error.sum())
     if total <= 0:
         return []
-    value = error - EXCESS * total / float(pixels.sum()) * pixels
+    value = error - REGION_EXCESS_RATIO * total / float(pixels.sum()) * pixels
     found: list[Rectangle] = []
-    for _ in range(MOST):
+    for _ in range(REGION_MAX_COUNT):
         gain, (top, bottom, left, right) = best_rectangle(value)
         part = float(pixels[top:bottom, left:right].sum())
-        if gain < LEAST * total or part > WIDEST * float(pixels.sum()):
+        if gain < REGION_MIN_ERROR_RATIO * total or part > REGION_MAX_PIXEL_RATIO * float(pixels.sum()):
             break
-        found.append((top * SIDE, min(bottom * SIDE, height), left * SIDE, min(right * SIDE, width)))
+        found.append(
+            (
+                top * REGION_BLOCK_TEXELS,
+                min(bottom * REGION_BLOCK_TEXELS, height),
+                left * REGION_BLOCK_TEXELS,
+                min(right * REGION_BLOCK_TEXELS, width),
+            )
+        )
         value[top:bottom, left:right] = -total
     return found
 
 
 def _blocks(values: NDArray[np.float32]) -> NDArray[np.float64]:
-    """Sums over SIDE x SIDE texels, the last ones over what is left."""
-    rows, columns = (np.arange(0, side, SIDE) for side in values.shape)
+    """Sums over REGION_BLOCK_TEXELS x REGION_BLOCK_TEXELS texels, the last ones over what is left."""
+    rows, columns = (np.arange(0, side, REGION_BLOCK_TEXELS) for side in values.shape)
     return np.add.reduceat(np.add.reduceat(values.astype(np.float64), rows, axis=0), columns, axis=1)
 
 

@@ -2,7 +2,7 @@
 
 Minimised is the sum over observations i of |photograph_i - G M - G sum_j w_ij E_j|^2, where G, of the camera that took
 i, draws a texture of any size as the renderer does (see `passes`), plus small Laplacians of mean and textures, which
-settle what no photograph sees. Only pixels that a camera covers count, each against what is drawn there: nothing is
+determine what no photograph sees. Only pixels that a camera covers count, each against what is drawn there: nothing is
 filled in first, so that this is principal component analysis with missing data, in the pictures instead of the texture
 maps.
 """
@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, next_direction, take_step
-from eigenfield.encoding.fitted.model import COLUMNS, AtlasComposer, PlaneModel
+from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import PIECE, NormalEquations, Textures, render_and_backproject
+from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, NormalEquations, Textures, render_and_backproject
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-MEAN_SMOOTHNESS = 0.004  # of a seen texel's own part in the pictures, the median
-TEXTURE_SMOOTHNESS = 0.0025
-RIDGE = 1e-5  # of the mean diagonal, for weights
+MEAN_SMOOTHNESS_RATIO = 0.004  # of the median diagonal entry of a seen texel
+TEXTURE_SMOOTHNESS_RATIO = 0.0025  # likewise
+WEIGHT_RIDGE_RATIO = 1e-5  # of the mean diagonal entry
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,12 @@ class Scales:
 
 def measure_scales(data: FitData, model: PlaneModel) -> Scales:
     """Row sums of the normal matrix, G^T G 1 = G^T 1: what Catmull-Rom's negative taps leave of its diagonal plus all
-    around it, on either grid."""
+    around it, on either grid.
+
+    Args:
+        data: The observations.
+        model: A model of the same grids.
+    """
     fine, coarse = np.zeros((1, *model.mean.shape[1:]), np.float32), np.zeros((1, *model.grid), np.float32)
 
     def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -58,12 +63,14 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
             adjoint(*footprint, data.size, ones, weight, grid)
         return mean, grid
 
-    for mean, grid in parallel_map(piece, pieces(len(data), PIECE)):
+    for mean, grid in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
         fine += mean
         coarse += grid
     np.maximum(fine, 0, out=fine)
     np.maximum(coarse, 0, out=coarse)
-    return Scales(fine[0], coarse[0], (MEAN_SMOOTHNESS * _median(fine), TEXTURE_SMOOTHNESS * _median(coarse)))
+    return Scales(
+        fine[0], coarse[0], (MEAN_SMOOTHNESS_RATIO * _median(fine), TEXTURE_SMOOTHNESS_RATIO * _median(coarse))
+    )
 
 
 def _median(values: NDArray[np.float32]) -> float:
@@ -78,8 +85,15 @@ def residual(
     composer: AtlasComposer | None = None,
     variance: float | None = None,
 ) -> NormalEquations:
-    """What the model leaves of the photographs, and what that asks of mean and textures. composer, variance: see
-    `render_and_backproject`."""
+    """The model's residual in the photographs, brought back to mean and textures.
+
+    Args:
+        data: The observations.
+        model: Is drawn.
+        mean_only: Whether only the mean's part is wanted.
+        composer: As `render_and_backproject`.
+        variance: As `render_and_backproject`.
+    """
     return render_and_backproject(
         data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
         weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
@@ -107,16 +121,16 @@ def fit_textures(
     """
     blocks = [] if mean_only else model.blocks
     weights = [block.weights for block in model.blocks]
-    kinds = [_Kind(scales.mean, scales.smooth[0], 1.0)]
+    scales_of_parts = [_PartScales(scales.mean, scales.smooth[0], 1.0)]
     for block in blocks:
         share, energy = np.ascontiguousarray(scales.coarse[block.window]), np.square(block.weights, dtype=np.float64)
-        kinds += [_Kind(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
+        scales_of_parts += [_PartScales(share, scales.smooth[1], max(float(e), 1e-6)) for e in energy.mean(axis=0)]
     mean, textures = np.zeros_like(model.mean), [np.zeros_like(block.textures) for block in blocks]
-    descent = _Descent(
-        kinds, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
+    gradients = _ConjugateGradients(
+        scales_of_parts, _parts(model.mean, [block.textures for block in blocks]), _parts(left.mean, left.textures),
         _parts(mean, textures),
     )  # fmt: skip
-    product = descent.begin()
+    product = gradients.begin()
     for _ in range(iterations):
         if product <= 0:
             break
@@ -125,9 +139,9 @@ def fit_textures(
             wanted=(True, not mean_only, False),
         )  # fmt: skip
         image = _parts(back.mean, back.textures)
-        length = product / descent.curvature(image)
-        product, before = descent.take_step(image, length), product
-        descent.next_direction(product / before)
+        length = product / gradients.curvature(image)
+        product, before = gradients.take_step(image, length), product
+        gradients.next_direction(product / before)
 
 
 def _parts(mean: NDArray[np.float32], textures: Textures) -> Textures:
@@ -136,41 +150,57 @@ def _parts(mean: NDArray[np.float32], textures: Textures) -> Textures:
 
 
 @dataclass(frozen=True, eq=False)
-class _Descent:
-    """The vectors of preconditioned conjugate gradients, in parts. rest: what the state leaves."""
+class _ConjugateGradients:
+    """The vectors of preconditioned conjugate gradients, in parts: the mean, and each component.
 
-    kinds: list[_Kind]
+    Attributes:
+        scales_of_parts: The diagonal of the normal matrix.
+        state: The solution so far.
+        rest: The residual of the normal equations.
+        direction: The search direction.
+    """
+
+    scales_of_parts: list[_PartScales]
     state: Textures
     rest: Textures
     direction: Textures
 
     def begin(self) -> float:
         """The first direction, of what is left without the Laplacian; how much is left, by the preconditioner."""
-        self._sum(lambda i: add_laplacian(self.state[i], -self.kinds[i].strength, self.rest[i]))
+        self._sum(lambda i: add_laplacian(self.state[i], -self.scales_of_parts[i].strength, self.rest[i]))
         return self.next_direction(0.0)
 
     def curvature(self, image: Textures) -> float:
         """direction . A direction; image: A direction, but for the Laplacian, which is added."""
-        return self._sum(lambda i: add_laplacian(self.direction[i], self.kinds[i].strength, image[i]))
+        return self._sum(lambda i: add_laplacian(self.direction[i], self.scales_of_parts[i].strength, image[i]))
 
     def take_step(self, image: Textures, length: float) -> float:
         """A step along the direction; how much is left, by the preconditioner."""
         step, state, rest, along = np.float32(length), self.state, self.rest, self.direction
-        return self._sum(lambda i: take_step(state[i], rest[i], along[i], image[i], step, *self.kinds[i].diagonal))
+        return self._sum(
+            lambda i: take_step(state[i], rest[i], along[i], image[i], step, *self.scales_of_parts[i].diagonal)
+        )
 
     def next_direction(self, ratio: float) -> float:
         """The next direction, with `ratio` of the present one."""
         part = np.float32(ratio)
-        return self._sum(lambda i: next_direction(self.direction[i], self.rest[i], part, *self.kinds[i].diagonal))
+        return self._sum(
+            lambda i: next_direction(self.direction[i], self.rest[i], part, *self.scales_of_parts[i].diagonal)
+        )
 
     def _sum(self, function: Callable[[int], float]) -> float:
-        return float(np.sum(parallel_map(function, range(len(self.kinds)))))
+        return float(np.sum(parallel_map(function, range(len(self.scales_of_parts)))))
 
 
 @dataclass(frozen=True, eq=False)
-class _Kind:
-    """The mean, or one component: what its texels answer for (h, w), its Laplacian's strength at weights of mean square
-    1, and the mean square of its weights."""
+class _PartScales:
+    """The diagonal of the normal matrix for the mean, or for one component.
+
+    Attributes:
+        share: (h, w) what its texels answer for.
+        smooth: Its Laplacian's strength at weights of mean square 1.
+        energy: The mean square of its weights.
+    """
 
     share: NDArray[np.float32]
     smooth: float
@@ -202,7 +232,7 @@ def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
     def split(rows: NDArray[np.float32]) -> Textures:
         return [np.ascontiguousarray(rows[:, a:b]) for a, b in pairwise(cuts)]
 
-    def asked(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
+    def backproject(rows: NDArray[np.float32], photographs: bool) -> NDArray[np.float32]:
         found = render_and_backproject(
             data, model, mean=model.mean if photographs else None, textures=textures, weights=split(rows),
             photographs=photographs, wanted=(False, False, True),
@@ -210,14 +240,14 @@ def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
         return np.concatenate(found.weights, axis=1)
 
     state = np.concatenate([block.weights for block in blocks], axis=1)
-    rest = asked(state, True)
+    rest = backproject(state, True)
     # Whitened components draw pictures of about one size, so that the diagonal is about one number a row
     energy = np.concatenate([np.einsum("nchw,nchw->n", texture, texture) for texture in textures])
-    ridge = np.float32(RIDGE * max(float(energy.mean()), 1e-12))
+    ridge = np.float32(WEIGHT_RIDGE_RATIO * max(float(energy.mean()), 1e-12))
     direction = rest.copy()
     product = np.square(rest, dtype=np.float64).sum(axis=1)
     for _ in range(iterations):
-        image = asked(direction, False) + ridge * direction
+        image = backproject(direction, False) + ridge * direction
         curvature = (direction.astype(np.float64) * image).sum(axis=1)
         length = np.divide(product, curvature, out=np.zeros_like(product), where=curvature > 0)
         length = length.astype(np.float32)[:, None]
@@ -231,9 +261,13 @@ def fit_weights(data: FitData, model: PlaneModel, iterations: int) -> None:
 
 
 def whiten(model: PlaneModel, scales: Scales) -> None:
-    """Turn each block's components so that their weights are uncorrelated, of mean square 1, and the textures
-    orthogonal in the pictures (texels counted by what they answer for), the strongest first; signs as eigen textures
-    have them. What is drawn stays the same."""
+    """Rotate each block's components so that their weights are uncorrelated, of mean square 1, and the textures
+    orthogonal in the pictures, the strongest first; signs as eigen textures have them. What is drawn stays the same.
+
+    Args:
+        model: Is changed in place.
+        scales: By which texels count.
+    """
     for block in model.blocks:
         if not block.count:
             continue
@@ -243,7 +277,7 @@ def whiten(model: PlaneModel, scales: Scales) -> None:
         flat = block.textures.reshape(block.count, -1)
         share = np.tile(np.sqrt(scales.coarse[block.window]).reshape(-1), model.channels)
         gram = np.zeros((block.count, block.count))
-        for first, last in pieces(flat.shape[1], COLUMNS):
+        for first, last in pieces(flat.shape[1], PRODUCT_CHUNK_TEXELS):
             part = flat[:, first:last] * share[first:last]
             gram += part @ part.T
         _, rotation = np.linalg.eigh(r @ gram @ r.T)

@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import Block, PlaneModel, Rectangle
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import MINUS, PIECE
+from eigenfield.encoding.fitted.passes import MINUS, PASS_TASK_OBSERVATIONS
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-FLOOR = 0.2  # of a texel's median part in one picture, below which an observation is taken to show less of it
-COLUMNS = 1 << 16  # numbers of a map that are summed at a time
+MAP_MIN_SHARE_RATIO = 0.2  # of a texel's median share in one picture: residuals are divided by no smaller one
+MAP_CHUNK_NUMBERS = 1 << 16  # of a map, summed at a time
 
 
 def principal_block(
@@ -36,17 +36,17 @@ def principal_block(
 
     Args:
         data: No observations.
-        model: what is drawn so far.
-        scales: of these data.
-        count: of eigen textures.
-        rectangle: of the grid, which they fill.
-        work: folder for a scratch file of 4 bytes an observation and number.
+        model: What is drawn so far.
+        scales: Of these data.
+        count: Of eigen textures.
+        rectangle: Of the grid, which they fill.
+        work: Folder for a scratch file of 4 bytes an observation and number.
     """
     top, bottom, left, right = rectangle
     shape = (model.channels, bottom - top, right - left)
     size = int(np.prod(shape))
     seen = scales.coarse[scales.coarse > 0]
-    floor = np.float32(FLOOR * (float(np.median(seen)) if len(seen) else 1.0) / len(data))
+    floor = np.float32(MAP_MIN_SHARE_RATIO * (float(np.median(seen)) if len(seen) else 1.0) / len(data))
     with scratch_array((len(data), size), np.float32, work) as maps:
 
         def put(index: int) -> None:
@@ -57,13 +57,13 @@ def principal_block(
         share = np.sqrt(scales.coarse[top:bottom, left:right]).reshape(-1)
         weight = np.tile(share, model.channels)
         gram = np.zeros((len(data), len(data)))
-        for first, last in pieces(size, COLUMNS):
+        for first, last in pieces(size, MAP_CHUNK_NUMBERS):
             part = maps[:, first:last] * weight[first:last]
             gram += part.astype(np.float64) @ part.T.astype(np.float64)
         _, vectors = np.linalg.eigh(gram)
         weights = vectors[:, ::-1][:, :count] * np.sqrt(len(data))
         textures = np.zeros((weights.shape[1], size), np.float32)
-        for first, last in pieces(size, COLUMNS):
+        for first, last in pieces(size, MAP_CHUNK_NUMBERS):
             textures[:, first:last] = (weights.T / len(data)).astype(np.float32) @ maps[:, first:last]
     return Block(rectangle, textures.reshape(-1, *shape), weights.astype(np.float32))
 
@@ -80,7 +80,7 @@ def residual_energy(data: FitData, model: PlaneModel) -> tuple[NDArray[np.float3
         return added
 
     total = np.zeros((2, *model.grid), np.float32)
-    for added in parallel_map(piece, pieces(len(data), PIECE)):
+    for added in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
         total += added
     energy, seen = np.maximum(total, 0)
     return energy, seen

@@ -7,10 +7,10 @@ mean's slopes, the picture changes by g for a unit of the step. Gauss-Newton on 
 the photographs, r, is to be g x for the steps x, less what is the same in all of them, for the mean takes that. Then
 the mean is fitted again on the moved mesh, in turns.
 
-Errors count by those around, so that glass and gloss, which no depth draws, move nothing; and no vertex moves far from
-its given place, or apart from its neighbours, that the photographs do not hold to another. Open edges of what is no
-relief stay where they are: another surface may touch them there without a common vertex, and a gap would show what is
-behind.
+Errors are divided by those around, so that glass and gloss, which no depth draws, move nothing. A prior keeps vertices
+near their given places and together with their neighbours where the photographs do not determine them. Open edges of
+what is no relief stay where they are: another surface may touch them there without a common vertex, and a gap would
+show what is behind.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -38,7 +38,7 @@ from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward, target
 from eigenfield.encoding.fitted.model import PlaneModel
-from eigenfield.encoding.fitted.observations import FitData, on_mesh, open_fit_data, subsampled
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_mesh, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
 from eigenfield.encoding.fitted.surface_kernels import gather_steps
@@ -47,19 +47,43 @@ from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.fit")
 
-ROUNDS = 4
-CAMERAS = 49  # of the array, spread over it, are looked at
-SUBSAMPLED_FROM = 25  # observations of them, from which every second pixel each way is enough,
-PIXELS = 1 << 25  # and pixels of all together
-STOP = 0.003  # of the squared error that a round must promise to take off
-STIFF = 0.5  # what it costs that vertices a texel apart are a pixel further apart than given, beside `weight`
-RIDGE = 0.015  # likewise, that a texel is a pixel off its given place
-LONGEST = 4.0  # pixels that a vertex may move a round
-AROUND = 4.0  # texels, the deviation over which errors are averaged
-LEAST_ERROR = 0.002  # of the photographs' range: what rounding leaves
-FEWEST = 1 / 8  # of the pixels that show most texels must show one for it to count
-SIDE_MOST = 2048  # texels
-SOME = 2000  # vertices by which pixels are measured
+
+@dataclass(frozen=True)
+class SurfaceTuning:
+    """Numbers of the surface fit.
+
+    Attributes:
+        rounds: Rounds of Gauss-Newton steps, at most.
+        max_cameras: Cameras, spread over the array, whose photographs are decoded.
+        subsample_observations: Observations of these from which every second pixel each way is enough.
+        subsample_pixels: Pixels of all of them together from which it is.
+        stop_fraction: Fraction of the squared error that a round must be expected to take off.
+        stiffness: Cost of vertices a texel apart being a pixel further apart than given, beside the data's weight.
+        ridge: Cost of a texel being a pixel off its given place, likewise.
+        max_step_pixels: Movement of a vertex in a round.
+        error_sigma_texels: Standard deviation of the window in which errors are averaged.
+        min_error: Error in the photographs' range that rounding leaves.
+        min_share_fraction: Fraction of the median texel's pixels that must show a texel for it to count.
+        max_side_texels: Side of the atlas.
+        sample_points: Points by which the length of lines in pixels is measured.
+    """
+
+    rounds: int = 4
+    max_cameras: int = 49
+    subsample_observations: int = 25
+    subsample_pixels: int = 1 << 25
+    stop_fraction: float = 0.003
+    stiffness: float = 0.5
+    ridge: float = 0.015
+    max_step_pixels: float = 4.0
+    error_sigma_texels: float = 4.0
+    min_error: float = 0.002
+    min_share_fraction: float = 1 / 8
+    max_side_texels: int = 2048
+    sample_points: int = 2000
+
+
+SURFACE_TUNING = SurfaceTuning()
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,15 +91,15 @@ class MovableMesh:
     """A mesh as it was given, whose p points may move along lines.
 
     Attributes:
-        given: the mesh, of n vertices.
-        lattice: of a relief; None for other meshes.
+        given: The mesh, of n vertices.
+        lattice: Of a relief; None for other meshes.
         lines: (p, 3) along which points move; a unit is about a pixel in the camera that moves most.
-        shape: rows and columns of the atlas.
+        shape: Rows and columns of the atlas.
         same: (n,) the point at which each vertex is; vertices that are doubled for their texture are at one.
-        free: (p,) which points may move.
+        free: (p,) whether each point may move.
         owners: (rows, columns) the face of each texel, -1 where there is none.
         spread: (t, p) from points to the t covered texels.
-        prior: (p, p) what displacements cost.
+        prior: (p, p) cost of displacements.
     """
 
     given: Mesh
@@ -88,21 +112,21 @@ class MovableMesh:
     spread: csr_array
     prior: csr_array
 
-    def moved(self, off: NDArray[np.float64]) -> Mesh:
-        """With the points so many units (p,) off."""
+    def displaced_mesh(self, off: NDArray[np.float64]) -> Mesh:
+        """The mesh with its points `off` (p,) units from their given places."""
         vertices = self.given.vertices + (off[:, None] * self.lines)[self.same]
         return replace(self.given, vertices=vertices.astype(np.float32))
 
 
 @dataclass(frozen=True, eq=False)
 class StepEquations:
-    """What t texels ask of the steps of the points in them, as least squares: sum of weight (step - pull / weight)^2.
+    """Least squares of the steps of points in t texels: the sum of weight (step - pull / weight)^2.
 
     Attributes:
         pull: (t,) the right-hand side.
-        weight: (t,) the square of what a unit changes beside that of the errors around, less for fewer cameras.
-        scale: (t,) by which both are more than in the pictures.
-        squares: of all errors in the pictures.
+        weight: (t,) the squared change for a unit over the mean squared error around, less for fewer cameras.
+        scale: (t,) by which both are greater than in the pictures.
+        squares: Squared error of all pictures.
     """
 
     pull: NDArray[np.float64]
@@ -124,29 +148,31 @@ def fit_surface(
     not help.
 
     Args:
-        mesh: with UVs, the same at all times of the observations.
-        lattice: of a relief, whose vertices stay on their rays; None: they move along their normals.
-        cameras: of the observations.
-        observations: those of CAMERAS cameras, spread over the array, are decoded.
-        side: texels of the atlas, about a pixel each.
-        work: folder for scratch files.
-        progress: reports the rounds.
+        mesh: With UVs, the same at all times of the observations.
+        lattice: Of a relief, whose vertices stay on their rays; None: they move along their normals.
+        cameras: Of the observations.
+        observations: Those of `max_cameras` cameras, spread over the array, are decoded.
+        side: Texels of the atlas, about a pixel each.
+        work: Folder for scratch files.
+        progress: Reports the rounds.
 
-    Raises CaptureError, OutputError.
+    Raises:
+        CaptureError: A photograph cannot be read.
+        OutputError: `disk-full`.
     """
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), SURFACE_TUNING.max_cameras)
     some, used = of_cameras(observations, chosen), [cameras[index] for index in chosen]
-    shape = (min(side, SIDE_MOST),) * 2
+    shape = (min(side, SURFACE_TUNING.max_side_texels),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
-    step = 2 if len(some) >= SUBSAMPLED_FROM or pixels > PIXELS else 1
+    step = 2 if len(some) >= SURFACE_TUNING.subsample_observations or pixels > SURFACE_TUNING.subsample_pixels else 1
     movable = _movable_mesh(mesh, lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
     with open_fit_data(used, some, mesh, shape, work) as every:
-        for number in range(ROUNDS + 1):
+        for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
-                progress("fit surface", number, ROUNDS + 1)
-            moved = on_mesh(every, used, mesh, work) if number else nullcontext(every)
-            with moved as whole, subsampled(whole, step, work) as data:
+                progress("fit surface", number, SURFACE_TUNING.rounds + 1)
+            moved = open_on_mesh(every, used, mesh, work) if number else nullcontext(every)
+            with moved as whole, open_subsampled(whole, step, work) as data:
                 model = PlaneModel(split_matrix()[0], np.full((1, *shape), 0.5, np.float32), (1, 1), [])
                 left = fit_mean(data, model, measure_scales(data, model))
                 if not left.pixels.any():
@@ -156,15 +182,15 @@ def fit_surface(
                 if now <= reached:
                     break
                 best, reached = mesh, now
-                if number == ROUNDS:
+                if number == SURFACE_TUNING.rounds:
                     break
                 further, promised = _step(movable, mesh, off, data, used, model)
-            if promised < STOP:
+            if promised < SURFACE_TUNING.stop_fraction:
                 break
             off += further
-            mesh = movable.moved(off)
+            mesh = movable.displaced_mesh(off)
     if progress is not None:
-        progress("fit surface", ROUNDS + 1, ROUNDS + 1)
+        progress("fit surface", SURFACE_TUNING.rounds + 1, SURFACE_TUNING.rounds + 1)
     return best
 
 
@@ -180,7 +206,8 @@ def _movable_mesh(
     spread = coo_array((weights.reshape(-1), (rows, same[corners].reshape(-1))), shape=size).tocsr()
     area: NDArray[np.float64] = np.asarray(spread.sum(axis=0)).reshape(-1)
     uv = mesh.uv.astype(np.float64) * [shape[1], shape[0]]
-    prior = STIFF * _laplacian(same, mesh.faces, uv) + RIDGE * diags_array(np.maximum(area, 1))
+    stiff = SURFACE_TUNING.stiffness * _laplacian(same, mesh.faces, uv)
+    prior = stiff + SURFACE_TUNING.ridge * diags_array(np.maximum(area, 1))
     lines = _lines(points, same[mesh.faces], lattice, cameras)
     free = np.ones(len(points), bool)
     if lattice is None:
@@ -196,8 +223,8 @@ def _step(
     cameras: Sequence[Camera],
     model: PlaneModel,
 ) -> tuple[NDArray[np.float64], float]:
-    """(p,) by how much points that are `off` (p,), as in `mesh`, move in a round, and the part of the squared error
-    that this is expected to take off."""
+    """The (p,) steps of points that are `off` (p,), as in `mesh`, in a round, and the fraction of the squared error
+    that they are expected to take off."""
     step, spread, free = np.zeros(len(off)), movable.spread, np.flatnonzero(movable.free)
     if not len(free):
         return step, 0.0
@@ -205,7 +232,7 @@ def _step(
     normal = (spread.T @ diags_array(asked.weight) @ spread + movable.prior).tocsr()[free][:, free]
     pull = np.asarray(spread.T @ asked.pull - movable.prior @ off)[free]
     found, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
-    step[free] = found.clip(-LONGEST, LONGEST)
+    step[free] = found.clip(-SURFACE_TUNING.max_step_pixels, SURFACE_TUNING.max_step_pixels)
     moved = spread @ step
     less = ((2 * moved * asked.pull - moved * moved * asked.weight) / asked.scale).sum()
     return step, float(less) / max(asked.squares, 1e-12)
@@ -214,7 +241,7 @@ def _step(
 def _step_equations(
     movable: MovableMesh, mesh: Mesh, data: FitData, cameras: Sequence[Camera], model: PlaneModel
 ) -> StepEquations:
-    """What all observations together ask of the covered texels."""
+    """The equations of the covered texels, summed over all observations."""
     covered, mean, observations = movable.owners >= 0, model.mean[0], data.observations
     places = np.zeros(movable.lines.shape)
     places[movable.same] = mesh.vertices
@@ -243,12 +270,13 @@ def _step_equations(
     weight -= np.square(first) / least  # what is the same in all of them the mean takes
     pull -= first * rest / least
     usual = float(np.median(shown[shown > 0])) if (shown > 0).any() else 1.0
-    trusted = (weight > 0) & (shown > FEWEST * usual)
+    trusted = (weight > 0) & (shown > SURFACE_TUNING.min_share_fraction * usual)
     often = np.zeros_like(mean)
     often[covered] = shown
-    error = gaussian_filter(squares, AROUND) / np.maximum(gaussian_filter(often, AROUND), 1e-6)
-    sure = len(cameras) / CAMERAS  # fewer cameras tell light from depth less well
-    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), LEAST_ERROR**2))
+    sigma = SURFACE_TUNING.error_sigma_texels
+    error = gaussian_filter(squares, sigma) / np.maximum(gaussian_filter(often, sigma), 1e-6)
+    sure = len(cameras) / SURFACE_TUNING.max_cameras  # fewer cameras separate light from depth less well
+    scale = sure / (usual * np.maximum(error[covered].astype(np.float64), SURFACE_TUNING.min_error**2))
     return StepEquations(
         np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum())
     )
@@ -271,7 +299,7 @@ def _lines(
         normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
         middle = np.mean([camera.centre for camera in cameras], axis=0)
         lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
-    few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SOME)).astype(int))
+    few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SURFACE_TUNING.sample_points)).astype(int))
     length = max(float(np.linalg.norm(lines[few])), 1e-30)
     small = 1e-4 * float(np.linalg.norm(points[few] - cameras[0].centre)) / length
     most = 0.0
@@ -284,8 +312,7 @@ def _lines(
 
 def _tangents(mesh: Mesh, lattice: Lattice | None, shape: tuple[int, int]) -> NDArray[np.float64]:
     """(m, 2, 3) for each face how the world's point moves for a texel to the right, and one down. A relief's faces are
-    taken as if they faced its camera: those that are steep, across steps of depth, would ask for more than all
-    others."""
+    taken as if they faced its camera: those that are steep, across steps of depth, would outweigh all others."""
     assert mesh.uv is not None
     uv = (mesh.uv.astype(np.float64) * [shape[1], shape[0]])[mesh.faces]
     points = mesh.vertices.astype(np.float64)[mesh.faces]

@@ -1,4 +1,4 @@
-"""What a step of the surface changes in one camera's picture, gathered in the atlas."""
+"""Derivatives of one camera's picture with respect to steps of the surface, summed in the atlas."""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -8,18 +8,24 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 
-FLAT = 1e-6  # of the tangents' product: seen edge-on, where what is drawn cannot be followed
+EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen edge-on, without a derivative
 
 
 @kernel()
 def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, out):
-    """Add what one observation asks to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g
-    is what the picture there changes by for a unit of the step, s how many pixels the texel answers for and r what
-    those ask of it.
+    """Add one observation to out (5, t) float64: texel by texel the sums of g r, g g s, g s, s and r, where g is the
+    change of the picture for a unit of the step, s the pixels that the texel answers for and r their residual.
 
-    matrix: (3, 4) of its camera. points, steps: (t, 3) places of the texels in the world and how a unit moves them.
-    tangents: (m, 2, 3) how a texel to the right and one down move in the world, owners (t,) the face of each texel.
-    slopes: (t, 2) the mean's, for a texel right and down. asked, seen: (t,) r and s.
+    Args:
+        matrix: (3, 4) of its camera.
+        points: (t, 3) places of the texels in the world.
+        steps: (t, 3) how a unit moves them.
+        tangents: (m, 2, 3) how a texel to the right and one down move in the world.
+        owners: (t,) the face of each texel.
+        slopes: (t, 2) the mean's, for a texel right and down.
+        asked: (t,) r.
+        seen: (t,) s.
+        out: The sums.
     """
     for t in range(points.shape[0]):
         s = seen[t]
@@ -47,7 +53,7 @@ def gather_steps(matrix, points, steps, tangents, owners, slopes, asked, seen, o
             step_y += along_y * steps[t, k]
         area = right_x * down_y - right_y * down_x
         size = (abs(right_x) + abs(right_y)) * (abs(down_x) + abs(down_y))
-        if abs(area) <= FLAT * size:
+        if abs(area) <= EDGE_ON_MAX_RATIO * size:
             continue
         # the picture's point stays where the surface moved by the step: the texel there is that many back
         back_right = (step_x * down_y - step_y * down_x) / area

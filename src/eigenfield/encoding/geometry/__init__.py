@@ -1,17 +1,17 @@
-"""A proxy in as few bytes as its pictures are worth: simplified and rounded by what the photographs lose."""
+"""A proxy in few bytes: simplified and rounded by rate and distortion in the photographs."""
 
-from eigenfield.encoding.geometry.distortion import Effect, depth_effect, spread_cameras, texels_of
+from eigenfield.encoding.geometry.distortion import DistortionMap, depth_distortion, spread_cameras, texels_of
 from eigenfield.encoding.geometry.simplify import simplify_proxy_rd
-from eigenfield.encoding.geometry.simplify_relief import Form, simplify_relief_rd
-from eigenfield.encoding.geometry.triangle_count import triangles_worth
+from eigenfield.encoding.geometry.simplify_relief import CodedRelief, simplify_relief_rd
+from eigenfield.encoding.geometry.triangle_count import triangle_count_rd
 
 __all__ = [
-    "Effect",
-    "Form",
-    "depth_effect",
+    "CodedRelief",
+    "DistortionMap",
+    "depth_distortion",
     "simplify_proxy_rd",
     "simplify_relief_rd",
     "spread_cameras",
     "texels_of",
-    "triangles_worth",
+    "triangle_count_rd",
 ]

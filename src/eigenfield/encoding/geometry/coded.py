@@ -1,6 +1,6 @@
 """Mesh and cameras as a file keeps them in few bytes: rounded first, so that what follows is made for what is drawn.
 
-How far a rounding moves anything is said in pixels of the photographs.
+Rounding steps are in pixels of the photographs.
 """
 
 from __future__ import annotations
@@ -19,18 +19,26 @@ from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.gltf.layout_geometry import cameras_of
 
-PIXEL_STEP = 0.25  # pixels of the reference camera, for meshes that are no relief
-DEPTH_ERROR = 0.04  # pixels by which a rounded depth moves a point in the camera that is farthest from the reference
-WORLD_STEP = 0.1  # pixels of the reference camera at the median depth: of a mesh that is not all before that camera
-CAMERA_STEP = 0.04  # pixels
+MESH_STEP_PX = 0.25  # in the reference camera, of meshes that are no relief
+DEPTH_ERROR_PX = 0.04  # by which a rounded depth moves a point in the camera that is farthest from the reference
+WORLD_STEP_PX = 0.1  # in the reference camera at the median depth, of a mesh that is not all before that camera
+CAMERA_STEP_PX = 0.04
 UV_BITS = 12
 MESH_CODEC = "mesh-1"
 CAMERAS_CODEC = "cameras-1"
 
 
 def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:
-    """The mesh as a file will have it: rounded to pixels and inverse depth of the camera that a relief was made in,
-    else of the reference camera where that has all of the mesh before it, else to a grid in the world."""
+    """The mesh as a file will have it, rounded to a lattice.
+
+    The lattice is pixels and inverse depth of the camera that a relief was made in, else of the reference camera where
+    all of the mesh lies before it, else a grid in the world.
+
+    Args:
+        proxy: The mesh, with its lattice if it is a relief.
+        cameras: All cameras of the file.
+        reference: Index of the reference camera.
+    """
     return mesh_of_stream(*_code_mesh(proxy, cameras, reference))
 
 
@@ -49,28 +57,33 @@ def _code_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> tuple
     depth = camera.project(mesh.vertices)[1]
     if (depth > 0).all():
         shifts = np.array([(camera.K @ camera.R @ (camera.centre - other.centre))[:2] for other in cameras])
-        inverse = 2 * DEPTH_ERROR / max(float(np.linalg.norm(shifts, axis=1).max()), 1e-9)
+        inverse = 2 * DEPTH_ERROR_PX / max(float(np.linalg.norm(shifts, axis=1).max()), 1e-9)
         inverse = max(inverse, float(1 / depth.min() / 2**19))
         matrix = camera.K @ np.hstack([camera.R, camera.t[:, None]])
         with contextlib.suppress(ValueError):  # as above
-            return encode(mesh, camera_lattice(matrix, PIXEL_STEP, inverse), uv_bits=UV_BITS)
+            return encode(mesh, camera_lattice(matrix, MESH_STEP_PX, inverse), uv_bits=UV_BITS)
     low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else float(np.linalg.norm(high - low))
-    step = max(WORLD_STEP * near / float(camera.K[0, 0]), float((high - low).max()) / 2**19)
+    step = max(WORLD_STEP_PX * near / float(camera.K[0, 0]), float((high - low).max()) / 2**19)
     return encode(mesh, world_lattice(low, step), uv_bits=UV_BITS)
 
 
 def coded_cameras(cameras: Sequence[Camera], mesh: Mesh, grid: NDArray[np.int64] | None) -> Coded[tuple[Camera, ...]]:
-    """The cameras as a file will have them: each number is off by at most CAMERA_STEP / 2 pixels at the mesh's median
-    depth."""
+    """The cameras as a file will have them: each number is off by at most CAMERA_STEP_PX / 2 at the median depth.
+
+    Args:
+        cameras: All cameras of the file.
+        mesh: Whose median depth counts.
+        grid: (rows, columns) of indices of cameras that stand on a regular array; None where they do not.
+    """
     focal = float(np.median([camera.K[0, 0] for camera in cameras]))
     depth = np.concatenate(
         [camera.project(mesh.vertices[:: max(1, len(mesh.vertices) // 200)])[1] for camera in cameras]
     )
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else 1.0
     stream, intrinsics, poses = encoder(CAMERAS_CODEC)(
-        cameras, intrinsic_step=CAMERA_STEP, rotation_step=CAMERA_STEP / focal,
-        centre_step=CAMERA_STEP * near / focal, grid=grid,
+        cameras, intrinsic_step=CAMERA_STEP_PX, rotation_step=CAMERA_STEP_PX / focal,
+        centre_step=CAMERA_STEP_PX * near / focal, grid=grid,
     )  # fmt: skip
     made = cameras_of(intrinsics, poses, np.array([[camera.width, camera.height] for camera in cameras]))
     return Coded(made, Payloads({cameras_key(made): [Payload(CAMERAS_CODEC, stream)]}))

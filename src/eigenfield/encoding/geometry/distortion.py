@@ -22,34 +22,39 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh, barycentric, signed_areas
 from eigenfield.core.observations import Observations, of_cameras
-from eigenfield.encoding.geometry.raster_kernels import HALF, STEPS, Ground, draw_owners
+from eigenfield.encoding.geometry.raster_kernels import HALF_TEXEL_STEPS, TEXEL_STEPS, CostMap, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.runtime.parallel import parallel_stream
 
-CAMERAS = 25  # of the array, spread over it, are looked at
-OUTERMOST = 9  # of them for holes
-SIDE_MOST = 1536  # texels
-AROUND = 9  # pixels over which photographs vary
-SMOOTH = 3  # texels over which errors are averaged
-BEHIND = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
-CELL = 4  # pixels within which one point must lie behind another to stand for it
-APART = 0.01  # of inverse depth, by which it must
+DISTORTION_MAX_CAMERAS = 25  # spread over the array, whose photographs are decoded
+HOLE_MAX_CAMERAS = 9  # likewise, for holes
+DISTORTION_MAX_SIDE_TEXELS = 1536
+DISTORTION_WINDOW_TEXELS = 3  # over which errors are averaged
+VARIANCE_WINDOW_PX = 9  # over which the variance of photographs is taken
+VISIBLE_MAX_DEPTH_RATIO = 0.004  # of inverse depth, by which a visible point may lie behind what is drawn
+COVER_CELL_PX = 4  # within which one point must lie behind another to stand for it
+COVER_MIN_DEPTH_RATIO = 0.01  # of inverse depth, by which it must
 
 
 @dataclass(frozen=True, eq=False)
-class Effect:
-    """to_ground: texels of the ground along an axis of the atlas, and where the atlas begins in it. seen: pixels, of
-    all photographs, that most texels are seen in."""
+class DistortionMap:
+    """What depths of a relief that are off cost in the photographs.
 
-    ground: Ground
-    to_ground: tuple[float, NDArray[np.float64]]
+    Attributes:
+        cost_map: Texel by texel.
+        to_map: Texels of the map along an axis of the atlas, and (2,) where the atlas begins in it.
+        seen: Pixels of all photographs that see a texel, the median.
+    """
+
+    cost_map: CostMap
+    to_map: tuple[float, NDArray[np.float64]]
     seen: float
 
     def places(self, uv: NDArray[np.float32]) -> NDArray[np.int64]:
         """(n, 2) texture coordinates as the kernels have them."""
-        return _places(uv, *self.to_ground)
+        return _places(uv, *self.to_map)
 
 
 def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
@@ -57,17 +62,17 @@ def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
     return np.asarray(observations.photograph(index).pixels @ np.array(LUMA_BT709, np.float32), np.float32)
 
 
-def depth_effect(
+def depth_distortion(
     mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[Camera], observations: Observations
-) -> Effect:
-    """The effect of lattice depths of a relief on photographs, in squared units of those, all of them together.
+) -> DistortionMap:
+    """Squared error of all photographs together for wrong depths of a relief.
 
     Args:
-        mesh: the relief, with UVs.
-        lattice: of the relief.
-        pixel: steps of the lattice.
-        cameras: of the observations.
-        observations: those of CAMERAS cameras, spread over the array, are decoded.
+        mesh: The relief, with UVs.
+        lattice: Of the relief.
+        pixel: Steps of the lattice for one pixel.
+        cameras: Of the observations.
+        observations: Those of DISTORTION_MAX_CAMERAS cameras, spread over the array, are decoded.
     """
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)
@@ -82,25 +87,26 @@ def depth_effect(
     depth[given] = points[:, 2]
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
 
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), DISTORTION_MAX_CAMERAS)
     some = of_cameras(observations, chosen)
 
-    def look(index: int) -> NDArray[np.float64]:
-        return _looked(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
+    def of_observation(index: int) -> NDArray[np.float64]:
+        return _camera_distortion(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
 
     seen, first, second, most, black, pixels = np.zeros((6, len(points)))
-    for found in parallel_stream(look, range(len(some))):  # in order: the same numbers at any number of threads
+    # in order: the same numbers at any number of threads
+    for found in parallel_stream(of_observation, range(len(some))):
         for total, one in zip((seen, first, second, most, black, pixels), found, strict=True):
             total += one
     if not seen.any():
-        return Effect(_ground(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
+        return DistortionMap(_cost_map(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
     of_texel = len(observations) / len(some) * float(pixels[0] / seen.sum())
     curve = second - np.square(first) / np.maximum(seen, 1)
     for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
         values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
-    bare = np.where(_covering(points / [pixel, pixel, 1]), most, np.maximum(black, most))
-    ground = _ground(depth, given, curve * of_texel, most * of_texel, bare * of_texel)
-    return Effect(ground, (side, start), float(np.median(seen[seen > 0])) * of_texel)
+    bare = np.where(_has_surface_behind(points / [pixel, pixel, 1]), most, np.maximum(black, most))
+    cost_map = _cost_map(depth, given, curve * of_texel, most * of_texel, bare * of_texel)
+    return DistortionMap(cost_map, (side, start), float(np.median(seen[seen > 0])) * of_texel)
 
 
 def texel_values(
@@ -126,10 +132,10 @@ def texel_weights(
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
     corners = faces[owners[row, column]]
-    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * STEPS + HALF)
+    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * TEXEL_STEPS + HALF_TEXEL_STEPS)
 
 
-def _looked(
+def _camera_distortion(
     mesh: Mesh, camera: Camera, photograph: NDArray[np.float32], world: NDArray[np.float64], deeper: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """(6, t): whether the camera sees each texel, error for a step of depth and its square, variance around, the
@@ -140,10 +146,10 @@ def _looked(
     inside = (depth > 0) & (column >= 0) & (row >= 0) & (column < camera.width) & (row < camera.height)
     column, row = np.where(inside, column, 0), np.where(inside, row, 0)
     with np.errstate(divide="ignore"):
-        inside &= 1 / depth >= drawn.inverse_depth[row, column] * (1 - BEHIND)
+        inside &= 1 / depth >= drawn.inverse_depth[row, column] * (1 - VISIBLE_MAX_DEPTH_RATIO)
     down, right = np.gradient(photograph, axis=0), np.gradient(photograph, axis=1)
-    mean = uniform_filter(photograph, AROUND)
-    varies = np.maximum(uniform_filter(np.square(photograph), AROUND) - np.square(mean), 0)
+    mean = uniform_filter(photograph, VARIANCE_WINDOW_PX)
+    varies = np.maximum(uniform_filter(np.square(photograph), VARIANCE_WINDOW_PX) - np.square(mean), 0)
     shift = np.nan_to_num(beside - at)
     error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
     pixels = np.full(len(world), float((drawn.face >= 0).sum()))
@@ -151,22 +157,32 @@ def _looked(
     return np.stack([inside, error, np.square(error), *found, pixels])
 
 
-def _covering(points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _has_surface_behind(points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(t,) whether more of the surface lies behind each of some points (pixel, pixel, inverse depth)."""
-    _, cell = np.unique(np.floor(points[:, :2] / CELL), axis=0, return_inverse=True)
+    _, cell = np.unique(np.floor(points[:, :2] / COVER_CELL_PX), axis=0, return_inverse=True)
     cell = cell.reshape(-1)
     farthest = np.full(int(cell.max(initial=-1)) + 1, np.inf)
     np.minimum.at(farthest, cell, points[:, 2])
-    return points[:, 2] > farthest[cell] * (1 + APART)
+    return points[:, 2] > farthest[cell] * (1 + COVER_MIN_DEPTH_RATIO)
 
 
-def opened(
+def hole_error(
     given: Mesh, mesh: Mesh, cameras: Sequence[Camera], observations: Observations
 ) -> tuple[float, NDArray[np.int64]]:
-    """Squared error of luma, summed over all observations, where a camera sees through `mesh` but not through `given`,
-    and the vertices of `given` that it sees there: judged by the OUTERMOST cameras of the array, which see the most of
-    what lies behind."""
-    chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), OUTERMOST)
+    """Squared error of luma, summed over all observations, where a camera sees through `mesh` but not through `given`.
+
+    It is estimated from HOLE_MAX_CAMERAS cameras far apart, which see the most of what lies behind.
+
+    Args:
+        given: The mesh before it was simplified.
+        mesh: The simplified one.
+        cameras: Of the observations.
+        observations: Those of the chosen cameras are decoded.
+
+    Returns:
+        The error, and the vertices of `given` that are seen there.
+    """
+    chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), HOLE_MAX_CAMERAS)
     some = of_cameras(observations, chosen)
     error, seen = 0.0, []
     for index in range(len(some)):
@@ -180,27 +196,27 @@ def opened(
     return error * len(observations) / len(some), vertices.astype(np.int64)
 
 
-def _ground(
+def _cost_map(
     depth: NDArray[np.float32],
     given: NDArray[np.bool_],
     curve: NDArray[np.float64],
     most: NDArray[np.float64],
     bare: NDArray[np.float64],
-) -> Ground:
+) -> CostMap:
     """The curve smoothed; beside the surface a texel costs what the nearest on it does."""
     full = np.zeros((3, *given.shape), np.float32)
     full[:, given] = curve, most, bare
-    share = np.maximum(uniform_filter(given.astype(np.float32), SMOOTH), 1e-6)
-    smooth = np.where(given, uniform_filter(full[0], SMOOTH) / share, 0).astype(np.float32)
+    share = np.maximum(uniform_filter(given.astype(np.float32), DISTORTION_WINDOW_TEXELS), 1e-6)
+    smooth = np.where(given, uniform_filter(full[0], DISTORTION_WINDOW_TEXELS) / share, 0).astype(np.float32)
     row, column = distance_transform_edt(~given, return_distances=False, return_indices=True)
-    return Ground(
+    return CostMap(
         depth, given.astype(np.uint8), smooth, np.ascontiguousarray(full[1][row, column]), full[2],
         np.zeros(given.shape, np.int16),
     )  # fmt: skip
 
 
 def _places(uv: NDArray[np.float32], side: float | NDArray[np.int64], start: NDArray[np.float64]) -> NDArray[np.int64]:
-    return np.rint((uv.astype(np.float64) * side + start) * STEPS).astype(np.int64)
+    return np.rint((uv.astype(np.float64) * side + start) * TEXEL_STEPS).astype(np.int64)
 
 
 def _phase(values: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -217,7 +233,7 @@ def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
         return 2 * float(np.abs(signed_areas(points[mesh.faces])).sum())
 
     pixels = areas(exact[:, :2]) / pixel**2 / max(areas(mesh.uv.astype(np.float64)), 1e-12)
-    return int(np.clip(round(np.sqrt(pixels)), 16, SIDE_MOST))
+    return int(np.clip(round(np.sqrt(pixels)), 16, DISTORTION_MAX_SIDE_TEXELS))
 
 
 def spread_cameras(centres: NDArray[np.float64], count: int) -> list[int]:

@@ -15,7 +15,7 @@ from eigenfield.encoding.geometry.simplify_relief import simplify_relief_rd
 
 
 def simplify_proxy_rd(
-    proxy: Proxy, cameras: Sequence[Camera], reference: int, observations: Observations, price: float, texels: float
+    proxy: Proxy, cameras: Sequence[Camera], reference: int, observations: Observations, lambda_: float, texels: float
 ) -> Coded[Mesh]:
     """The mesh as a file keeps it: a relief simplified by rate and distortion, other meshes with all their triangles.
 
@@ -24,11 +24,11 @@ def simplify_proxy_rd(
         cameras: The encoded ones.
         reference: Index of the reference camera among them.
         observations: Theirs.
-        price: Squared error that one byte is worth.
+        lambda_: Rate-distortion weight: squared error for one byte, for each pixel that a texel is seen in.
         texels: Of the atlas, for one pixel of the reference camera.
     """
     if proxy.lattice is not None:
         with contextlib.suppress(ValueError):  # too far off the picture for the lattice
-            made = simplify_relief_rd(proxy.mesh, proxy.lattice, cameras, observations, price, texels)
+            made = simplify_relief_rd(proxy.mesh, proxy.lattice, cameras, observations, lambda_, texels)
             return mesh_of_stream(made.stream, made.mesh)
     return coded_mesh(proxy, cameras, reference)

@@ -1,6 +1,6 @@
-"""How many triangles a mesh is worth.
+"""The number of triangles of a mesh by rate and distortion.
 
-A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and charts that it cuts short.
+A mesh of photogrammetry has more than its pictures need: each takes bytes of the mesh, and makes charts smaller.
 Where a simplified mesh puts a pixel's point elsewhere, a texture of what the other cameras see is off: by what they see
 beside the point, the mean over them of gradient times displacement. A view that no camera has is drawn so. However far
 it is off, it is no worse than something else in its place: the variance of the photograph around. Where nothing is
@@ -22,21 +22,21 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, of_cameras
-from eigenfield.encoding.geometry.distortion import AROUND, BEHIND, luma_of, spread_cameras
-from eigenfield.encoding.geometry.simplify_relief import LEFT
+from eigenfield.encoding.geometry.distortion import VARIANCE_WINDOW_PX, VISIBLE_MAX_DEPTH_RATIO, luma_of, spread_cameras
+from eigenfield.encoding.geometry.simplify_relief import REMAINING_LOSS_RATIO
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, simplify_mesh, weld_vertices
 from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger("eigenfield.encode")
 
-CAMERAS = 16  # spread over the array, are looked at
-LARGEST = 1 << 20  # pixels a view: larger ones are made smaller
-PIXELS = 8000  # of each, evenly spread
-FINER = 2**0.5  # times as many triangles as the next that is tried
-FEWEST = 250  # triangles: below, a mesh takes next to nothing
+TRIANGLE_MAX_CAMERAS = 16  # spread over the array, whose photographs are decoded
+TRIANGLE_VIEW_MAX_PX = 1 << 20  # of a view: larger ones are scaled down
+TRIANGLE_VIEW_SAMPLES = 8000  # pixels of each view, evenly spread
+TRIANGLE_COUNT_RATIO = 2**0.5  # of one count to the next that is tried
+TRIANGLE_MIN_COUNT = 250  # below, a mesh takes next to nothing
 TRIANGLE_BYTES = 6.0  # its own 2.6, and what its share of the charts' borders takes in textures: measured on the cube
-PAYS = 0.6  # of the triangles, or less, must be enough for new charts to be cut
+TRIANGLE_MAX_KEPT_RATIO = 0.6  # of the triangles, or less, must be enough for new charts to be cut
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,11 +44,14 @@ class _View:
     """What an observation shows of the mesh.
 
     Attributes:
-        camera, time: of the observation, the camera made smaller.
-        grey, right, down: luma and its gradient.
-        around: luma's variance around.
-        inverse_depth: of the mesh.
-        pixels: of the photograph, for one of these.
+        camera: Of the observation, scaled down.
+        time: Of the observation.
+        grey: (h, w) luma.
+        right: (h, w) its gradient along a row.
+        down: (h, w) its gradient along a column.
+        around: (h, w) its variance in a window.
+        inverse_depth: (h, w) of the mesh.
+        pixels: Of the photograph, for one of these.
     """
 
     camera: Camera
@@ -63,8 +66,14 @@ class _View:
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """Some pixels (row, column) of a view and the mesh's points there. each: how many of its pixels one stands for.
-    beside: for each other view at the same time whether it sees the points and, where it does, its gradient there."""
+    """Some pixels of a view, and the mesh's points there.
+
+    Attributes:
+        pixel: (n,) rows and (n,) columns.
+        world: (n, 3) the points.
+        each: Pixels of the view that one of them stands for.
+        beside: For each other view at the same time, whether it sees the points, where, and its gradient there.
+    """
 
     pixel: tuple[NDArray[np.int64], NDArray[np.int64]]
     world: NDArray[np.float64]
@@ -77,63 +86,64 @@ class _Points:
         return np.ones(len(self.world), np.int64) + sum(there for _, there, _, _ in self.beside)
 
 
-def triangles_worth(mesh: Mesh, cameras: Sequence[Camera], observations: Observations, price: float) -> int | None:
-    """The number of triangles, by `proxy.simplified`, at which bytes and errors together are least; None where those
-    that it has, or PROXY_DEFAULT_TRIANGLES, are.
+def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Observations, lambda_: float) -> int | None:
+    """The number of triangles of least rate-distortion cost, by `proxy.simplify_mesh`.
 
     Args:
-        mesh: to be simplified.
-        cameras: of the observations.
-        observations: those of CAMERAS cameras, spread over the array, are decoded.
-        price: squared error that a byte takes off the pictures elsewhere, for each pixel that a texel is seen in, per
-            texel for a pixel.
+        mesh: To be simplified.
+        cameras: Of the observations.
+        observations: Those of TRIANGLE_MAX_CAMERAS cameras, spread over the array, are decoded.
+        lambda_: Squared error for one byte, for each pixel that a texel is seen in, at one texel a pixel.
+
+    Returns:
+        The number; None where that of the mesh, at most PROXY_DEFAULT_TRIANGLES, is best.
     """
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), CAMERAS)
+    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), TRIANGLE_MAX_CAMERAS)
     some = of_cameras(observations, chosen)
 
     def view(index: int) -> _View:
         return _view(mesh, cameras[chosen[some.camera_of(index)]], some.time_of(index), luma_of(some, index))
 
     views = parallel_map(view, range(len(some)))
-    looked = parallel_map(lambda number: _points(views, number), range(len(views)))
+    samples = parallel_map(lambda number: _points(views, number), range(len(views)))
     share = len(observations) / len(some)
-    seen = np.concatenate([points.seen for points in looked])
+    seen = np.concatenate([points.seen for points in samples])
     if not (seen > 1).any():
-        return None  # one camera tells no depth
+        return None  # one camera determines no depth
     times = len({view.time for view in views})  # a texel is seen about as often at each
-    price *= share * times * float(np.median(seen)) * TRIANGLE_BYTES
+    lambda_ *= share * times * float(np.median(seen)) * TRIANGLE_BYTES
     plain = weld_vertices(mesh)
     best = most = min(len(plain.faces), PROXY_DEFAULT_TRIANGLES)
-    least, count = price * most, float(most)
+    least, count = lambda_ * most, float(most)
     # Fewer than of a mesh that is worse may still be better
-    while (count := count / FINER) >= FEWEST and price * count < least:
+    while (count := count / TRIANGLE_COUNT_RATIO) >= TRIANGLE_MIN_COUNT and lambda_ * count < least:
         if count >= len(plain.faces):  # more went than was asked for
             continue
         try:
             plain = simplify_mesh(plain, int(count))
         except ProxyError:  # nothing is left
             break
-        cost = price * len(plain.faces) + LEFT * share * _loss(plain, views, looked)
-        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(plain.faces), cost, price * len(plain.faces))
+        cost = lambda_ * len(plain.faces) + REMAINING_LOSS_RATIO * share * _loss(plain, views, samples)
+        log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(plain.faces), cost, lambda_ * len(plain.faces))
         if cost < least:
             best, least = len(plain.faces), cost
-    return best if best <= PAYS * most else None
+    return best if best <= TRIANGLE_MAX_KEPT_RATIO * most else None
 
 
 def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _View:
-    pixels = max(1.0, camera.width * camera.height / LARGEST)
+    pixels = max(1.0, camera.width * camera.height / TRIANGLE_VIEW_MAX_PX)
     if pixels > 1:
         camera = camera.resized(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
         grey = np.asarray(cv2.resize(grey, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.float32)
-    mean = uniform_filter(grey, AROUND)
-    around = np.maximum(uniform_filter(np.square(grey), AROUND) - np.square(mean), 0)
+    mean = uniform_filter(grey, VARIANCE_WINDOW_PX)
+    around = np.maximum(uniform_filter(np.square(grey), VARIANCE_WINDOW_PX) - np.square(mean), 0)
     down, right = np.asarray(np.gradient(grey, axis=0)), np.asarray(np.gradient(grey, axis=1))
     return _View(camera, time, grey, right, down, around, rasterise_view(mesh, camera).inverse_depth, pixels)
 
 
 def _points(views: Sequence[_View], number: int) -> _Points:
     view = views[number]
-    step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / PIXELS)))
+    step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / TRIANGLE_VIEW_SAMPLES)))
     row, column = step * np.array(np.nonzero(view.inverse_depth[::step, ::step] > 0))
     world = _unprojected(view.camera, row, column, view.inverse_depth[row, column])
     beside = []
@@ -144,7 +154,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
             there = (depth > 0) & (x >= 0) & (y >= 0) & (x < camera.width) & (y < camera.height)
             x, y = np.where(there, x, 0), np.where(there, y, 0)
             with np.errstate(divide="ignore"):
-                there &= 1 / depth >= other.inverse_depth[y, x] * (1 - BEHIND)
+                there &= 1 / depth >= other.inverse_depth[y, x] * (1 - VISIBLE_MAX_DEPTH_RATIO)
             gradient = np.stack([other.right[y, x], other.down[y, x]], axis=1).astype(np.float64)
             beside.append((other, there, at, gradient))
     each = float((view.inverse_depth > 0).sum()) / max(len(row), 1)
@@ -159,11 +169,11 @@ def _unprojected(
     return np.asarray((rays / inverse_depth - camera.t[:, None]).T @ camera.R)
 
 
-def _loss(mesh: Mesh, views: Sequence[_View], looked: Sequence[_Points]) -> float:
-    """Squared error of luma in all views together; where nothing is left more, for no texture mends it."""
+def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> float:
+    """Squared error of luma in all views together. Where no surface is left it counts more: no texture corrects it."""
 
     def of_view(number: int) -> float:
-        view, points = views[number], looked[number]
+        view, points = views[number], samples[number]
         drawn = rasterise_view(mesh, view.camera).inverse_depth
         black = (drawn <= 0) & (view.inverse_depth > 0)
         holes = float(np.square(view.grey[black], dtype=np.float64).sum())
@@ -174,6 +184,6 @@ def _loss(mesh: Mesh, views: Sequence[_View], looked: Sequence[_Points]) -> floa
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)
             error += np.where(there, (gradient * shift).sum(axis=1), 0)
         squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), view.around[points.pixel])
-        return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / LEFT)
+        return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / REMAINING_LOSS_RATIO)
 
     return sum(parallel_map(of_view, range(len(views))))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from eigenfield.encoding.projected.agreement import disagreement_of, warn_of_disagreement
-from eigenfield.encoding.projected.align import METHODS, align_map, align_maps
+from eigenfield.encoding.projected.align import ALIGN_METHODS, align_map, align_maps
 from eigenfield.encoding.projected.atlas import (
-    SIDE_CAP,
-    SIDE_STEP,
+    ATLAS_SIDE_CAP_TEXELS,
+    ATLAS_SIDE_STEP_TEXELS,
     Atlas,
     atlas_side,
     make_atlas,
@@ -20,18 +20,18 @@ from eigenfield.encoding.projected.eigen import (
     spectrum,
     weights_of,
 )
-from eigenfield.encoding.projected.harmonise import fit_colours, harmonise_maps, harmonised
-from eigenfield.encoding.projected.mean import Mean, filled, mean_map
-from eigenfield.encoding.projected.project import FILTERS, TextureMaps, texture_map, texture_maps
+from eigenfield.encoding.projected.harmonise import fit_colours, harmonise_maps, harmonised_map
+from eigenfield.encoding.projected.mean import Mean, filled_map, mean_map
+from eigenfield.encoding.projected.project import RESAMPLING_FILTERS, TextureMaps, texture_map, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader, push_pull
 from eigenfield.encoding.projected.uv_measure import measure_map, smallest_count
 from eigenfield.encoding.projected.write_maps import write_maps
 
 __all__ = [
-    "FILTERS",
-    "METHODS",
-    "SIDE_CAP",
-    "SIDE_STEP",
+    "ALIGN_METHODS",
+    "ATLAS_SIDE_CAP_TEXELS",
+    "ATLAS_SIDE_STEP_TEXELS",
+    "RESAMPLING_FILTERS",
     "Atlas",
     "Mean",
     "Spectrum",
@@ -43,11 +43,11 @@ __all__ = [
     "component_count",
     "disagreement_of",
     "eigen_textures",
-    "filled",
+    "filled_map",
     "fit_colours",
     "gram_matrix",
     "harmonise_maps",
-    "harmonised",
+    "harmonised_map",
     "make_atlas",
     "make_spreader",
     "mean_map",

@@ -1,4 +1,4 @@
-"""Whether the photographs show the same thing on the proxy: what a wrong camera, mesh or photograph gives away."""
+"""Whether the photographs show the same thing on the proxy, by which a wrong camera, mesh or photograph is found."""
 
 from __future__ import annotations
 
@@ -15,12 +15,14 @@ from eigenfield.encoding.projected.project import TextureMaps
 
 log = logging.getLogger("eigenfield.encode")
 
-# beyond the typical difference from the mean texture: robust standard deviations, parts of it, and grey levels
-STRANGE = (5.0, 0.6, 4.0)
-NORMAL = 1.4826  # standard deviation of a normal distribution over its median deviation
-SHARED = 0.5  # of the photographs' contrast that the mean texture must hold; real captures: 0.95, three of noise: 0.33
-BESIDE = 24  # observations nearest to one: what they have too, as light that falls off towards corners, is no fault
-FEWEST_SEEN = 50  # texels or pixels of an observation from which it is judged
+# An outlier is farther from the mean texture than most, by all of these:
+OUTLIER_MIN_DEVIATIONS = 5.0  # robust standard deviations
+OUTLIER_MIN_RATIO = 0.6  # of the typical difference
+OUTLIER_MIN_GREY_LEVELS = 4.0
+NORMAL_DEVIATION_RATIO = 1.4826  # standard deviation of a normal distribution over its median deviation
+AGREEMENT_MIN_CONTRAST_RATIO = 0.5  # of the mean texture to the photographs; real captures: 0.95, three of noise: 0.33
+AGREEMENT_NEIGHBOURS = 24  # nearest observations: errors that they share, as vignetting, are no fault
+AGREEMENT_MIN_PIXELS = 50  # or texels, for an observation to be judged
 
 
 def disagreement_of(
@@ -34,12 +36,12 @@ def disagreement_of(
     """`warn_of_disagreement` of texture maps.
 
     Args:
-        maps: of No observations.
-        mean: of the maps.
+        maps: Of No observations.
+        mean: Of the maps.
         gram: (No, No) of `gram_matrix`; its diagonal holds the squared deviations from the mean.
-        names: of each observation's camera.
+        names: Of each observation's camera.
         places: (No, 2) of each observation's camera on the view plane.
-        aligned: the maps were aligned, which may have failed for one.
+        aligned: Whether the maps were aligned, which may have failed for one.
     """
     seen = np.array([int(np.count_nonzero(row)) for row in maps.seen])
     squares = np.diag(gram)
@@ -64,28 +66,28 @@ def warn_of_disagreement(
     Args:
         squares: (No,) squared deviations from the mean, of values 0..1.
         seen: (No,) texels or pixels that these are over.
-        channels: of each texel or pixel.
-        total: squared deviations of all observations from one colour.
-        names: of each observation's camera.
+        channels: Of each texel or pixel.
+        total: Squared deviations of all observations from one colour.
+        names: Of each observation's camera.
         places: (No, 2) of each observation's camera on the view plane.
-        aligned: texture maps were aligned, which may have failed for one.
+        aligned: Whether texture maps were aligned, which may have failed for one.
 
     Returns:
         (No,) the root mean square deviations in grey levels, NaN for an observation that shows next to nothing.
     """
-    error = np.where(seen >= FEWEST_SEEN, 255 * np.sqrt(squares / np.maximum(seen * channels, 1)), np.nan)
-    for index in np.flatnonzero(seen < FEWEST_SEEN).tolist():
+    error = np.where(seen >= AGREEMENT_MIN_PIXELS, 255 * np.sqrt(squares / np.maximum(seen * channels, 1)), np.nan)
+    for index in np.flatnonzero(seen < AGREEMENT_MIN_PIXELS).tolist():
         log.warning("%s sees next to nothing of the proxy: its camera or its mask may be wrong", names[index])
     if not np.isfinite(error).any():
         return error
     typical = float(np.nanmedian(error))
-    spread = NORMAL * float(np.nanmedian(np.abs(error - typical)))
-    beyond = max(STRANGE[0] * spread, STRANGE[1] * typical, STRANGE[2])
+    spread = NORMAL_DEVIATION_RATIO * float(np.nanmedian(np.abs(error - typical)))
+    beyond = max(OUTLIER_MIN_DEVIATIONS * spread, OUTLIER_MIN_RATIO * typical, OUTLIER_MIN_GREY_LEVELS)
     why = (
         "an alignment that failed, another scene, or a wrong camera" if aligned else "another scene, or a wrong camera"
     )
-    strange = np.flatnonzero(error > np.maximum(typical, _beside(error, places)) + beyond).tolist()
-    for index in strange:
+    outliers = np.flatnonzero(error > np.maximum(typical, _neighbours_error(error, places)) + beyond).tolist()
+    for index in outliers:
         log.warning(
             "%s does not show what the others do: it differs by %.0f grey levels from the mean texture (they by %.0f); "
             "%s? take it out of the capture, or leave it out with --hold-out",
@@ -93,7 +95,7 @@ def warn_of_disagreement(
         )  # fmt: skip
     shared = 1 - float(squares.sum()) / total if total > 0 else 1.0
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
-    if shared < SHARED and not strange:  # which spoil the mean for all
+    if shared < AGREEMENT_MIN_CONTRAST_RATIO and not outliers:  # which spoil the mean for all
         log.warning(
             "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at cameras "
             "and mesh (eigenfield inspect --overlay)", 100 * shared,
@@ -101,11 +103,11 @@ def warn_of_disagreement(
     return error
 
 
-def _beside(error: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(No,) the median error of each observation and the BESIDE nearest to it; NaN for those that show next to
-    nothing."""
+def _neighbours_error(error: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(No,) the median error of each observation and its nearest ones; NaN for those that show next to nothing."""
     known = np.flatnonzero(np.isfinite(error))
-    nearest = KDTree(places[known]).query(places[known], min(BESIDE + 1, len(known)))[1].reshape(len(known), -1)
+    count = min(AGREEMENT_NEIGHBOURS + 1, len(known))
+    nearest = KDTree(places[known]).query(places[known], count)[1].reshape(len(known), -1)
     result = np.full(len(error), np.nan)
     result[known] = np.median(error[known][nearest], axis=1)
     return result

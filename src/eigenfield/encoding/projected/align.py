@@ -38,7 +38,7 @@ def _tvl1(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np
     return np.stack([right, down], axis=-1).astype(np.float32)
 
 
-METHODS: dict[str, Flow] = {"dis": _dis, "tvl1": _tvl1}
+ALIGN_METHODS: dict[str, Flow] = {"dis": _dis, "tvl1": _tvl1}
 
 
 def align_map(
@@ -55,16 +55,17 @@ def align_map(
     warped texel counts as seen if all texels it is interpolated from are.
 
     Args:
-        atlas: whose n chart texels the maps have.
+        atlas: The atlas of n chart texels.
         values: (n, C) of the map.
         seen: (n,) where the map has values.
-        reference, reference_seen: likewise of the reference.
-        method: one of METHODS.
+        reference: (n, C) of the reference.
+        reference_seen: (n,) where the reference has values.
+        method: One of ALIGN_METHODS.
 
     Returns:
         Values and visibility, warped.
     """
-    flow = METHODS[method](
+    flow = ALIGN_METHODS[method](
         _grey(atlas, np.where(reference_seen[:, None] > 0, reference, values), seen | reference_seen),
         _grey(atlas, np.where(seen[:, None] > 0, values, reference), seen | reference_seen),
     )
@@ -83,9 +84,15 @@ def align_map(
 
 
 def align_maps(maps: TextureMaps, reference: int, method: str = "dis", progress: Progress | None = None) -> None:
-    """Align all maps in place to the one at index `reference`.
+    """Align all maps in place to one of them.
 
     The mean must be taken again afterwards (equation 1): it changes the fill of every map (equation 2).
+
+    Args:
+        maps: Are changed.
+        reference: Index of the map that stays.
+        method: One of ALIGN_METHODS.
+        progress: Reports each map.
     """
     fixed, fixed_seen = np.array(maps.values[reference]), np.array(maps.seen[reference])
 

@@ -13,20 +13,25 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
 
-SIDE_STEP = 64  # atlas sides are multiples of this
-TEXELS_A_PIXEL = 2.0  # of all photographs, that a density leads to at most
-SIDE_CAP = 4096  # largest side that a density leads to; `atlas=` may ask for more
+ATLAS_SIDE_STEP_TEXELS = 64  # sides are multiples of this
+ATLAS_MAX_TEXELS_PER_PIXEL = 2.0  # of all photographs together, where a density is asked for
+ATLAS_SIDE_CAP_TEXELS = 4096  # where a density is asked for; `atlas=` may ask for more
 
 
 @dataclass(frozen=True, eq=False)
 class Atlas:
     """The texels whose centre lies in a triangle ("chart texels"), n of them, in row-major order.
 
-    mesh: with UVs. width, height: of the atlas in texels.
-    texel: (n,) int64, row * width + column.
-    face: (n,) int32. position: (n, 3) float32, world.
-    normal: (m, 3) float32 of each face.
-    along, down: (m, 3) float32, how far one texel to the right, and one down, leads in the world, on each face.
+    Attributes:
+        mesh: With UVs.
+        width: In texels.
+        height: In texels.
+        texel: (n,) int64, row * width + column.
+        face: (n,) int32.
+        position: (n, 3) float32, world.
+        normal: (m, 3) float32 of each face.
+        along: (m, 3) float32, how far one texel to the right leads in the world, on each face.
+        down: (m, 3) float32, how far one texel down does.
     """
 
     mesh: Mesh
@@ -53,7 +58,8 @@ class Atlas:
 def make_atlas(mesh: Mesh, width: int, height: int) -> Atlas:
     """Rasterise a mesh in UV space: the inverse texturing map at every texel centre.
 
-    Raises ProxyError `atlas-empty` when no texel centre lies in a triangle.
+    Raises:
+        ProxyError: `atlas-empty`, no texel centre lies in a triangle.
     """
     assert mesh.uv is not None
     raster = rasterise_atlas(mesh, width, height)
@@ -87,7 +93,8 @@ def make_atlas(mesh: Mesh, width: int, height: int) -> Atlas:
 def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     """Median over the visible surface of sqrt(UV area / pixel area): times the atlas side, this is the density.
 
-    Raises ProxyError `proxy-not-seen` when the camera sees nothing of the mesh.
+    Raises:
+        ProxyError: `proxy-not-seen`, the camera sees nothing of the mesh.
     """
     assert mesh.uv is not None
     seen = rasterise_view(mesh, camera).face
@@ -110,11 +117,25 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
 
 
 def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = None) -> int:
-    """Side of a square atlas whose density in `camera` is at least `density`, at most SIDE_CAP.
+    """Side of a square atlas whose density in `camera` is at least `density`, at most ATLAS_SIDE_CAP_TEXELS.
 
-    pixels: of all photographs together. The atlas has at most TEXELS_A_PIXEL times as many texels: where most of the
-    surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
+    Args:
+        mesh: With UVs.
+        camera: The reference camera.
+        density: Atlas texels per photograph pixel along one axis.
+        pixels: Of all photographs together. The atlas has at most ATLAS_MAX_TEXELS_PER_PIXEL times as many texels:
+            where most of the surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
     """
     side = density / texels_per_pixel(mesh, camera)
-    cap = SIDE_CAP if pixels is None else min(SIDE_CAP, math.sqrt(TEXELS_A_PIXEL * pixels))
-    return int(np.clip(np.ceil(min(side, cap) / SIDE_STEP) * SIDE_STEP, SIDE_STEP, SIDE_CAP))
+    cap = (
+        ATLAS_SIDE_CAP_TEXELS
+        if pixels is None
+        else min(ATLAS_SIDE_CAP_TEXELS, math.sqrt(ATLAS_MAX_TEXELS_PER_PIXEL * pixels))
+    )
+    return int(
+        np.clip(
+            np.ceil(min(side, cap) / ATLAS_SIDE_STEP_TEXELS) * ATLAS_SIDE_STEP_TEXELS,
+            ATLAS_SIDE_STEP_TEXELS,
+            ATLAS_SIDE_CAP_TEXELS,
+        )
+    )

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from eigenfield.core.progress import Progress, track
-from eigenfield.encoding.projected.mean import TILE, Mean
+from eigenfield.encoding.projected.mean import MAP_TILE_TEXELS, Mean
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_stream, pieces
 
@@ -53,7 +53,7 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
         return tile @ tile.T
 
     total = np.zeros((maps.count, maps.count))
-    parts = pieces(maps.atlas.count, TILE)
+    parts = pieces(maps.atlas.count, MAP_TILE_TEXELS)
     with threadpool_limits(1, "blas"):
         for gram in track(parallel_stream(product, parts), "inner products", len(parts), progress):
             total += gram
@@ -111,7 +111,7 @@ def eigen_textures(
         tile = projection @ _deviations(maps, mean, first, last)
         textures[:, first:last] = tile.reshape(count, last - first, maps.channels)
 
-    parts = pieces(maps.atlas.count, TILE)
+    parts = pieces(maps.atlas.count, MAP_TILE_TEXELS)
     with threadpool_limits(1, "blas"):
         for _ in track(parallel_stream(piece, parts), "eigen textures", len(parts), progress):
             pass

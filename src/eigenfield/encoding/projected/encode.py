@@ -11,7 +11,7 @@ from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
-from eigenfield.encoding.options import known
+from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
 from eigenfield.encoding.projected.align import align_maps
@@ -39,7 +39,7 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
         OutputError: The scratch folder is full (`disk-full`), or maps cannot be written.
     """
     options, views = plan.options, plan.views
-    resampling = known(options.resampling)
+    resampling = resolved_value(options.resampling)
     own = {"uvSsim": options.uv_ssim, "align": options.align, "resampling": resampling}
     colours = None
     with texture_maps(
@@ -88,7 +88,7 @@ def _basis_of(
     disagreement_of(maps, mean, gram, names, places, aligned=options.align is not None)
     decomposition = spectrum(gram)  # equation 4
     if options.uv_ssim is None:
-        count = component_count(known(options.textures), maps.count)
+        count = component_count(resolved_value(options.textures), maps.count)
     else:
         average = spreader(mean.values)
         count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)

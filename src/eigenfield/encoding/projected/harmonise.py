@@ -9,8 +9,8 @@ with one mean map M for all observations, as in the compensation of exposures fo
 The noise stands on the photograph's side: fitted the other way round, noise in T would pull every gain towards 0.
 
 An exposure changes the whole picture alike; a gloss that comes and goes with the viewpoint does not, and taking the
-average of it for an exposure would only spoil the maps. So the fit also looks at how far the blocks of the surface
-depart from it, each on its own, and colours are believed only as far as they explain more than that (`_belief`).
+average of it for an exposure would only spoil the maps. So the fit also measures how far the blocks of the surface
+depart from it, each on its own, and colours are shrunk unless they explain more than that (`_shrinkage`).
 
 A resampling filter sums to 1, so gain and offset pass through it: a harmonised map is the map of the harmonised
 photograph, and no photograph is decoded twice.
@@ -19,6 +19,7 @@ photograph, and no photograph is decoded twice.
 from __future__ import annotations
 
 import logging
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,30 +31,64 @@ from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
 log = logging.getLogger("eigenfield.texturing")
 
-DARK = 16 / 255  # up to here stray light, clipping and noise are as large as what a gain would change
-BRIGHT = 253 / 255  # from here on a photograph says no more than "bright"
-CELLS = 4096  # of the atlas, at most, that the fit looks at
-NUMBERS = 4_000_000  # camera x cell, at most
-WHOLE = 0.9  # of a cell's texels that a camera must see
-ROUNDS = 30
-CLOSE = 1e-4  # a round that moves no gain further is the last
-CAUCHY = 2.385  # residuals of this many standard deviations count half
-LEAST_NOISE = 1 / 255
-PRIOR_GAIN, PRIOR_OFFSET = 0.1, 0.03  # standard deviations round (1, 0), and
-PRIOR_CELLS = 25  # how many residuals of average size the prior weighs as much as
-LARGEST_GAIN = 4.0
-BLOCKS = 4  # of the surface along each of its two longest axes, and
-ALONE = 4  # how many of all of them a gloss changes independently of each other
-FEWEST = 8  # cells that a camera must share with others
+
+@dataclass(frozen=True)
+class HarmoniseTuning:
+    """Numbers of the colour fit.
+
+    Attributes:
+        dark: Up to here in 0..1 stray light, clipping and noise are as large as what a gain would change.
+        bright: From here in 0..1 a photograph is saturated.
+        max_cells: Cells of the atlas in the fit, at most.
+        max_numbers: Observations x cells, at most.
+        min_cell_fraction: Fraction of a cell's texels that a camera must see.
+        max_rounds: Rounds of reweighted least squares.
+        min_gain_change: A round that moves no gain further is the last.
+        half_weight_deviations: Residuals of so many standard deviations count half (Cauchy).
+        min_noise: Least noise in 0..1, that of rounding.
+        gain_prior: Standard deviation of gains round 1.
+        offset_prior: Standard deviation of offsets round 0.
+        prior_cells: Residuals of average size that the prior weighs as much as.
+        max_gain: Largest gain; its inverse is the smallest.
+        blocks_per_axis: Blocks of the surface along each of its two longest axes.
+        independent_blocks: How many of all blocks a gloss changes independently of each other.
+        min_shared_cells: Cells that a camera must share with others.
+    """
+
+    dark: float = 16 / 255
+    bright: float = 253 / 255
+    max_cells: int = 4096
+    max_numbers: int = 4_000_000
+    min_cell_fraction: float = 0.9
+    max_rounds: int = 30
+    min_gain_change: float = 1e-4
+    half_weight_deviations: float = 2.385
+    min_noise: float = 1 / 255
+    gain_prior: float = 0.1
+    offset_prior: float = 0.03
+    prior_cells: int = 25
+    max_gain: float = 4.0
+    blocks_per_axis: int = 4
+    independent_blocks: int = 4
+    min_shared_cells: int = 8
+
+
+HARMONISE_TUNING = HarmoniseTuning()
 
 
 def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | None = None) -> NDArray[np.float32]:
     """Fit the cameras' colours to their common mean and change all maps in place; the values are not cut to 0..1.
 
-    model: "gain", or "affine" for gain and offset. Returns (No, 2, C) float32, gains then offsets: the maps become
-    gain * T + offset. In each channel the gains have the geometric mean 1 and the offsets the mean 0 over the cameras
-    that have something in common with others; the rest keep (1, 0), with a warning. Texels at either end of the range
-    do not count.
+    Texels at either end of the range do not count.
+
+    Args:
+        maps: Of No observations; they become gain * T + offset.
+        model: "gain", or "affine" for gain and offset.
+        progress: Reports each pass.
+
+    Returns:
+        (No, 2, C) float32, gains then offsets. In each channel the gains have the geometric mean 1 and the offsets the
+        mean 0 over the cameras that have something in common with others; the rest keep (1, 0), with a warning.
     """
     values, weights, blocks = _cells(maps, progress)
     channels = range(maps.channels)
@@ -67,14 +102,14 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     log.info("harmonised: gains %.3f to %.3f", gains.min(), gains.max())
 
     def change(index: int) -> None:
-        maps.values[index] = harmonised(maps.values[index], maps.seen[index], colours[index])
+        maps.values[index] = harmonised_map(maps.values[index], maps.seen[index], colours[index])
 
     for _ in track(parallel_stream(change, range(maps.count)), "harmonise", maps.count, progress):
         pass
     return colours
 
 
-def harmonised(
+def harmonised_map(
     values: NDArray[np.float32], seen: NDArray[np.uint8], colour: NDArray[np.float32]
 ) -> NDArray[np.float32]:
     """One camera's (n, C) map with its gain and offset, (2, C), applied where it sees; zero elsewhere."""
@@ -87,13 +122,16 @@ def fit_colours(
 ) -> NDArray[np.float64]:
     """(No, 2) gains and offsets of one channel.
 
-    values: (No, m), what each camera shows of m places. weights: (No, m), 0 where that does not count.
-    blocks: (m,) in which part of the surface each place lies.
-
     Iteratively reweighted least squares (Cauchy's weights) of T - a M - b with a = 1 / g, b = -o / g. Each round is a
     Gauss-Newton step in all a and b at once, the map M eliminated by its Schur complement: alternating between map and
-    cameras needs very many rounds where each camera overlaps only its neighbours. A weak prior holds what the maps do
-    not say at a = 1, b = 0.
+    cameras needs very many rounds where each camera overlaps only its neighbours. A weak prior keeps what the maps do
+    not determine at a = 1, b = 0.
+
+    Args:
+        values: (No, m), what each camera shows of m places.
+        weights: (No, m), 0 where that does not count.
+        blocks: (m,) the part of the surface in which each place lies.
+        model: "gain" or "affine".
     """
     active = _sharing(weights)
     result = np.zeros((len(values), 2))
@@ -105,26 +143,27 @@ def fit_colours(
     T, base, blocks = np.ascontiguousarray(T[:, shared]), np.ascontiguousarray(w[:, shared]), blocks[shared]
     a, b = np.ones(len(T)), np.zeros(len(T))
     M = _map(T, base, a, b)
-    for count in range(ROUNDS):
+    for count in range(HARMONISE_TUNING.max_rounds):
         residual = T - a[:, None] * M - b[:, None]
-        noise = max(1.4826 * float(np.median(np.abs(residual[base > 0]))), LEAST_NOISE)
-        w = base / (1 + (residual / (CAUCHY * noise)) ** 2) if count else base
+        noise = max(1.4826 * float(np.median(np.abs(residual[base > 0]))), HARMONISE_TUNING.min_noise)
+        w = base / (1 + (residual / (HARMONISE_TUNING.half_weight_deviations * noise)) ** 2) if count else base
         M = _map(T, w, a, b)
-        step_a, step_b = _step(T - a[:, None] * M - b[:, None], w, a, b, M, PRIOR_CELLS * noise**2, model == "affine")
+        prior = HARMONISE_TUNING.prior_cells * noise**2
+        step_a, step_b = _step(T - a[:, None] * M - b[:, None], w, a, b, M, prior, model == "affine")
         before = 1 / a
-        a = np.clip(a + step_a, 1 / LARGEST_GAIN, LARGEST_GAIN)
+        a = np.clip(a + step_a, 1 / HARMONISE_TUNING.max_gain, HARMONISE_TUNING.max_gain)
         b = b + step_b
         a = a / np.exp(np.log(a).mean())
         b = b - a * (b / a).mean()
         M = _map(T, w, a, b)
-        if count and np.abs(1 / a - before).max() < CLOSE:
+        if count and np.abs(1 / a - before).max() < HARMONISE_TUNING.min_gain_change:
             break
-    belief = _belief(T, w, a, b, M, blocks)
-    result[active] = np.stack([a**-belief, -belief * b / a], axis=1)
+    kept = _shrinkage(T, w, a, b, M, blocks)
+    result[active] = np.stack([a**-kept, -kept * b / a], axis=1)
     return result
 
 
-def _belief(
+def _shrinkage(
     T: NDArray[np.float64],
     w: NDArray[np.float64],
     a: NDArray[np.float64],
@@ -132,11 +171,11 @@ def _belief(
     M: NDArray[np.float64],
     blocks: NDArray[np.int64],
 ) -> float:
-    """From 0 to 1, max(0, 1 - V / (ALONE E)): the positive part of James and Stein's factor.
+    """From 0 to 1, max(0, 1 - V / (n E)): the positive part of James and Stein's factor, n = `independent_blocks`.
 
     E: squares of what the colours change, Σ w (a M + b - M)². V: what gains of each block's own would change on top of
     that, Σ over cameras and blocks of (Σ w r M)² / Σ w M², with the residuals r. Were V all there is, the average
-    over blocks would make E = V / ALONE of it.
+    over blocks would make E = V / n of it.
     """
     change = (a[:, None] - 1) * M + b[:, None]
     explained = float((w * change**2).sum())
@@ -147,7 +186,7 @@ def _belief(
         above = (w[:, here] * residual[:, here] * M[here]).sum(axis=1)
         below = (w[:, here] * M[here] ** 2).sum(axis=1)
         apart += float(np.divide(above**2, below, out=np.zeros_like(above), where=below > 0).sum())
-    return max(0.0, 1 - apart / (ALONE * explained)) if explained > 0 else 0.0
+    return max(0.0, 1 - apart / (HARMONISE_TUNING.independent_blocks * explained)) if explained > 0 else 0.0
 
 
 def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -156,7 +195,7 @@ def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
     while True:
         counts = weights > 0
         common = counts[active].sum(axis=0) >= 2
-        kept = active & ((counts & common).sum(axis=1) >= FEWEST)
+        kept = active & ((counts & common).sum(axis=1) >= HARMONISE_TUNING.min_shared_cells)
         if (kept == active).all():
             return active
         active = kept
@@ -191,7 +230,7 @@ def _step(
     coupling = w * a[:, None] * root
     parts = [M, np.ones_like(M)] if affine else [M]
     start = [1 - a, -b]
-    strength = [prior / PRIOR_GAIN**2, prior / PRIOR_OFFSET**2]
+    strength = [prior / HARMONISE_TUNING.gain_prior**2, prior / HARMONISE_TUNING.offset_prior**2]
     B = np.concatenate([coupling * part for part in parts])
     H = -(B @ B.T)
     gradient = np.empty(len(B))
@@ -210,8 +249,8 @@ def _blocks(positions: NDArray[np.float64]) -> NDArray[np.int64]:
     centred = positions - positions.mean(axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1][:, :0:-1]
     rank = np.argsort(np.argsort(centred @ axes, axis=0, kind="stable"), axis=0, kind="stable")
-    quarter = rank * BLOCKS // len(positions)
-    return np.asarray(quarter[:, 0] * BLOCKS + quarter[:, 1], np.int64)
+    quarter = rank * HARMONISE_TUNING.blocks_per_axis // len(positions)
+    return np.asarray(quarter[:, 0] * HARMONISE_TUNING.blocks_per_axis + quarter[:, 1], np.int64)
 
 
 def _cells(
@@ -224,7 +263,7 @@ def _cells(
     Averages, since single texels differ from camera to camera by what calibration and proxy are off.
     """
     atlas = maps.atlas
-    most = min(CELLS, max(NUMBERS // maps.count, 64))
+    most = min(HARMONISE_TUNING.max_cells, max(HARMONISE_TUNING.max_numbers // maps.count, 64))
     side = max(1, int(np.ceil(np.sqrt(atlas.width * atlas.height / most))))
     row, column = np.divmod(atlas.texel, atlas.width)
     _, cell = np.unique((row // side) * atlas.width + column // side, return_inverse=True)
@@ -236,10 +275,10 @@ def _cells(
         seen = maps.seen[index] > 0
         part = cell[seen]
         number = np.bincount(part, minlength=len(texels))
-        enough = number >= WHOLE * texels
+        enough = number >= HARMONISE_TUNING.min_cell_fraction * texels
         for channel in range(maps.channels):
             shown = maps.values[index, :, channel][seen]
-            ends = np.bincount(part, (shown <= DARK) | (shown >= BRIGHT), len(texels))
+            ends = np.bincount(part, (shown <= HARMONISE_TUNING.dark) | (shown >= HARMONISE_TUNING.bright), len(texels))
             usable = enough & (ends == 0)
             values[index, :, channel] = np.bincount(part, shown, len(texels)) / np.maximum(number, 1)
             weights[index, :, channel] = np.where(usable, texels / side**2, 0)

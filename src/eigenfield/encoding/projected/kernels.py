@@ -9,7 +9,7 @@ import numpy as np
 from eigenfield.runtime.jit import kernel
 
 BILINEAR, BICUBIC, LANCZOS = 0, 1, 2
-LARGEST_FOOTPRINT = 16.0  # pixels a texel may average over, each way
+MAX_FOOTPRINT_PX = 16.0  # that a texel may average over, each way
 
 
 @kernel(inline=True)
@@ -81,7 +81,7 @@ def project_texels(
     """
     height, width, channels = photograph.shape
     radius = 1.0 if kind == 0 else (2.0 if kind == 1 else 3.0)
-    most = int(2 * 3 * LARGEST_FOOTPRINT) + 4
+    most = int(2 * 3 * MAX_FOOTPRINT_PX) + 4
     ix, iy = np.empty(most, np.int64), np.empty(most, np.int64)
     wx, wy = np.empty(most), np.empty(most)
     for n in range(first, last):
@@ -110,8 +110,8 @@ def project_texels(
         xd = (matrix[0, 0] * d[0] + matrix[0, 1] * d[1] + matrix[0, 2] * d[2] - x * zd) / z
         ya = (matrix[1, 0] * a[0] + matrix[1, 1] * a[1] + matrix[1, 2] * a[2] - y * za) / z
         yd = (matrix[1, 0] * d[0] + matrix[1, 1] * d[1] + matrix[1, 2] * d[2] - y * zd) / z
-        sx = min(max(np.sqrt(xa * xa + xd * xd), 1.0), LARGEST_FOOTPRINT)
-        sy = min(max(np.sqrt(ya * ya + yd * yd), 1.0), LARGEST_FOOTPRINT)
+        sx = min(max(np.sqrt(xa * xa + xd * xd), 1.0), MAX_FOOTPRINT_PX)
+        sy = min(max(np.sqrt(ya * ya + yd * yd), 1.0), MAX_FOOTPRINT_PX)
         nx = _taps(kind, radius, x, sx, width, ix, wx)
         ny = _taps(kind, radius, y, sy, height, iy, wy)
         if masked:

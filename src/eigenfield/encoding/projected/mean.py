@@ -11,7 +11,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_stream, pieces
 
-TILE = 4096  # chart texels worked on at a time
+MAP_TILE_TEXELS = 4096  # chart texels worked on at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,12 +47,12 @@ def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
         values[first:last] = total / np.maximum(number, 1)[:, None]
         count[first:last] = number
 
-    parts = pieces(maps.atlas.count, TILE)
+    parts = pieces(maps.atlas.count, MAP_TILE_TEXELS)
     for _ in track(parallel_stream(piece, parts), "mean", len(parts), progress):
         pass
     return Mean(values, count)
 
 
-def filled(values: NDArray[np.float32], seen: NDArray[np.uint8], mean: NDArray[np.float32]) -> NDArray[np.float32]:
+def filled_map(values: NDArray[np.float32], seen: NDArray[np.uint8], mean: NDArray[np.float32]) -> NDArray[np.float32]:
     """Equation 2: a map with the mean where nothing is seen. All (n, C) or (n,) over chart texels."""
     return np.where(seen[:, None] > 0, values, mean)

@@ -19,9 +19,9 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_stream
 
-FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
-DEPTH_BIAS = 2e-3  # of a view's range of inverse depths
-GRAZING = 0.0872  # cosine of 85 degrees
+RESAMPLING_FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
+DEPTH_BIAS_RATIO = 2e-3  # of a view's range of inverse depths
+GRAZING_COSINE = 0.0872  # cosine of 85 degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +29,7 @@ class TextureMaps:
     """What every observation shows of the atlas's chart texels, before filling. The paper has one for each camera c.
 
     Attributes:
-        atlas: whose n chart texels the maps have.
+        atlas: The atlas of n chart texels.
         values: (No, n, C) float32, T(c); zero where not seen.
         seen: (No, n) uint8, v(c): 1 where the texel is seen.
     """
@@ -59,8 +59,8 @@ def texture_map(
     """Project one photograph into the atlas.
 
     Args:
-        atlas: of the mesh that is seen.
-        camera: of the photograph.
+        atlas: Of the mesh that is seen.
+        camera: Of the photograph.
         pixels: (H, W, C) float32.
         mask: (H, W) 0..1; what it hides is not seen.
         resampling: "bilinear", "bicubic" (Catmull-Rom) or "lanczos", stretched where the photograph is denser than the
@@ -72,13 +72,13 @@ def texture_map(
     """
     depth = rasterise_view(atlas.mesh, camera).inverse_depth
     covered = depth[depth > 0]
-    bias = DEPTH_BIAS * float(np.ptp(covered)) + 1e-6 * float(covered.max()) if len(covered) else 0.0
+    bias = DEPTH_BIAS_RATIO * float(np.ptp(covered)) + 1e-6 * float(covered.max()) if len(covered) else 0.0
     values = np.empty((atlas.count, pixels.shape[2]), np.float32)
     seen = np.empty(atlas.count, np.uint8)
     kernels.project_texels(
         0, atlas.count, atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
         np.ascontiguousarray(pixels), np.ones((1, 1), np.float32) if mask is None else np.ascontiguousarray(mask),
-        mask is not None, depth, bias, GRAZING, FILTERS[resampling], values, seen,
+        mask is not None, depth, bias, GRAZING_COSINE, RESAMPLING_FILTERS[resampling], values, seen,
     )  # fmt: skip
     return values, seen
 
@@ -99,13 +99,13 @@ def texture_maps(
     Memory does not grow with their number: as many photographs and maps as there are threads are held.
 
     Args:
-        atlas: of the mesh that is seen at all times.
-        cameras: of the observations.
-        observations: each is decoded once, from several threads.
-        channels: of a photograph.
-        resampling: as `texture_map`.
-        work: folder for the scratch file.
-        progress: reports the maps that are made.
+        atlas: Of the mesh that is seen at all times.
+        cameras: Of the observations.
+        observations: Each is decoded once, from several threads.
+        channels: Of a photograph.
+        resampling: As `texture_map`.
+        work: Folder for the scratch file.
+        progress: Reports the maps that are made.
     """
     total = len(observations)
     with (

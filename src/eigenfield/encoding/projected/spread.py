@@ -12,7 +12,7 @@ from scipy import ndimage
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.imaging.sampling import halved
 
-GUTTER = 4.0  # texels round each chart that repeat the nearest chart texel: bicubic taps reach 2
+GUTTER_TEXELS = 4.0  # round each chart that repeat the nearest chart texel: bicubic taps reach 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,8 +20,12 @@ class Spreader:
     """Fills an atlas from the texels that are seen. The filling is linear, the same for mean and textures, so
     a sum of filled pictures is the filled sum.
 
-    known: (H, W) bool, texels with a value of their own.
-    gutter, nearest: flat indices of gutter texels, and of the chart texel that each repeats.
+    Attributes:
+        atlas: The atlas of n chart texels.
+        seen: (n,) bool, chart texels that at least one observation shows.
+        known: (H, W) bool, texels with a value of their own.
+        gutter: Flat indices of gutter texels.
+        nearest: Flat indices of the chart texel that each of these repeats.
     """
 
     atlas: Atlas
@@ -40,14 +44,19 @@ class Spreader:
 
 
 def make_spreader(atlas: Atlas, seen: NDArray[np.bool_]) -> Spreader:
-    """seen: (n,) bool, chart texels that at least one observation shows."""
+    """The spreader of an atlas.
+
+    Args:
+        atlas: The atlas of n chart texels.
+        seen: (n,) bool, chart texels that at least one observation shows.
+    """
     shape = (atlas.height, atlas.width)
     chart = np.zeros(shape, bool)
     chart.reshape(-1)[atlas.texel] = True
     known = np.zeros(shape, bool)
     known.reshape(-1)[atlas.texel[seen]] = True
     distance, (rows, columns) = ndimage.distance_transform_edt(~chart, return_indices=True)
-    gutter = np.flatnonzero((distance > 0) & (distance <= GUTTER))
+    gutter = np.flatnonzero((distance > 0) & (distance <= GUTTER_TEXELS))
     nearest = (rows.astype(np.int64) * atlas.width + columns).reshape(-1)[gutter]
     return Spreader(atlas, seen, known, gutter, nearest)
 
@@ -55,8 +64,12 @@ def make_spreader(atlas: Atlas, seen: NDArray[np.bool_]) -> Spreader:
 def push_pull(picture: NDArray[np.float32], weight: NDArray[np.float32]) -> NDArray[np.float32]:
     """Fill the texels of weight 0 from those of weight 1, smoothly (Gortler et al., "The Lumigraph", 1996).
 
-    picture: (H, W, C), zero where the weight is. Pull: halve until one texel is left, averaging what is known. Push:
-    on the way back, unknown texels take the bilinear enlargement of the coarser level.
+    Pull: halve until one texel is left, averaging what is known. Push: on the way back, unknown texels take the
+    bilinear enlargement of the coarser level.
+
+    Args:
+        picture: (H, W, C), zero where the weight is.
+        weight: (H, W), 0 or 1.
     """
     height, width = picture.shape[:2]
     if min(height, width) == 1 or (weight >= 1).all():

@@ -20,7 +20,7 @@ from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.basis")
 
-SAMPLE = 24  # observations that narrow the number down before all of them decide
+UV_SAMPLE_OBSERVATIONS = 24  # observations that narrow the number down before all of them decide
 
 
 def measure_map(
@@ -35,7 +35,7 @@ def measure_map(
     Args:
         pictures: (H, W, C), put together with more and more textures.
         mean: (H, W, C), which fills what is not seen (equation 2), in both pictures.
-        atlas: whose n chart texels the map has.
+        atlas: The atlas of n chart texels.
         values: (n, C) of the map.
         seen: (n,) where the map has values.
 
@@ -69,16 +69,18 @@ def smallest_count(
     all decide.
 
     Args:
-        maps: of No observations.
-        mean: of the maps.
+        maps: Of No observations.
+        mean: Of the maps.
         average: (H, W, C), the mean without holes, as the file will keep it.
-        decomposition: of the maps.
-        target: the SSIM to reach.
-        work: folder for a scratch file.
-        progress: reports each pass.
+        decomposition: Of the maps.
+        target: The SSIM to reach.
+        work: Folder for a scratch file.
+        progress: Reports each pass.
     """
     most = maps.count - 1
-    sample = np.unique(np.linspace(0, maps.count - 1, min(SAMPLE, maps.count)).round().astype(int)).tolist()
+    sample = np.unique(
+        np.linspace(0, maps.count - 1, min(UV_SAMPLE_OBSERVATIONS, maps.count)).round().astype(int)
+    ).tolist()
     everyone = list(range(maps.count))
     limit = min(8, most)
     while True:

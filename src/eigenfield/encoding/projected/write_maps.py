@@ -28,12 +28,12 @@ def write_maps(
     `mean.png`. Existing files of these names are replaced; each is whole or absent.
 
     Args:
-        maps: of No observations.
+        maps: Of No observations.
         mean: (n, C) at the chart texels.
-        spreader: of the maps' atlas.
-        names: of the observations, each once.
-        folder: is made.
-        progress: reports the maps that are written.
+        spreader: Of the maps' atlas.
+        names: Of the observations, each once.
+        folder: Is made if it does not exist.
+        progress: Reports the maps that are written.
     """
     with mended(folder):
         folder.mkdir(parents=True, exist_ok=True)

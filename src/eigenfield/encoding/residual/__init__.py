@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-from eigenfield.encoding.residual.make import DEFAULT_QUALITY, check_residual, with_residual
+from eigenfield.encoding.residual.make import RESIDUAL_DEFAULT_QUALITY, check_residual, with_residual
 from eigenfield.encoding.residual.views import (
     captured_pixels,
     captured_samples,
-    corrected,
+    corrected_picture,
     difference_of,
     differences,
     with_differences,
 )
 
 __all__ = [
-    "DEFAULT_QUALITY",
+    "RESIDUAL_DEFAULT_QUALITY",
     "captured_pixels",
     "captured_samples",
     "check_residual",
-    "corrected",
+    "corrected_picture",
     "difference_of",
     "differences",
     "with_differences",

@@ -1,35 +1,35 @@
-"""The residual of a scene: every encoded camera drawn, taken from its photograph, and coded as a film."""
+"""The residual of a scene: every encoded camera drawn, taken from its photograph, and coded as a video."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
 
-from eigenfield.coding.pictures.pictures_10bit import SMALLEST
-from eigenfield.coding.video.av1 import Planes, encode_film
+from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS
+from eigenfield.coding.video.av1 import Planes, encode_video
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import EncodedScene, Residual
 from eigenfield.encoding.residual.colour import to_planes
-from eigenfield.encoding.residual.orders import film_order
+from eigenfield.encoding.residual.orders import video_order
 from eigenfield.encoding.residual.views import surface_colours
 from eigenfield.rendering import Renderer, camera_colour, camera_weights
 from eigenfield.runtime.parallel import parallel_stream
 
-DEFAULT_QUALITY = 40
-CODE = 1 / 510  # what a code of luma stands for: every difference of photographs has one
-CHROMA_GAIN = 1.6  # codes of chroma are as much finer
-FULL_FROM = 90  # the quality from which chroma is as fine as luma: half as fine it alone holds Tarot below 43.5 dB
-LARGEST = 16_384, 8_704  # columns and rows that SVT-AV1 takes
-PRESET = 2  # SVT-AV1's: 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
+RESIDUAL_DEFAULT_QUALITY = 40
+RESIDUAL_CODE_UNIT = 1 / 510  # what a code of luma stands for: every difference of photographs has one
+RESIDUAL_CHROMA_GAIN = 1.6  # codes of chroma are as much finer
+RESIDUAL_FULL_CHROMA_QUALITY = 90  # from which chroma is as fine as luma: half as fine it limits Tarot to 43.5 dB
+RESIDUAL_MAX_COLUMNS_PX, RESIDUAL_MAX_ROWS_PX = 16_384, 8_704  # that SVT-AV1 takes
+RESIDUAL_SVT_PRESET = 2  # 4 loses 0.1 dB at equal bytes, 1 gains 0.04 (Tarot)
 
 
 def with_residual(
     scene: EncodedScene,
     capture: CalibratedObservations,
-    quality: int = DEFAULT_QUALITY,
+    quality: int = RESIDUAL_DEFAULT_QUALITY,
     progress: Progress | None = None,
 ) -> EncodedScene:
     """The scene with a residual.
@@ -37,7 +37,7 @@ def with_residual(
     Args:
         scene: As its file gives it back (`gltf.read_scene`), since the residual holds what coding has lost too.
         capture: What it was encoded from.
-        quality: Of the film, 0 to 100 (`crf_of`).
+        quality: Of the video, 0 to 100 (`crf_of`).
         progress: Reports each photograph.
 
     Raises:
@@ -53,8 +53,8 @@ def with_residual(
     encoded = scene.rig.encoded
     cameras = [scene.rig.cameras[index] for index in encoded]
     rows, columns = check_residual(cameras, quality)
-    scale = CODE, CODE / CHROMA_GAIN
-    renderer, full = Renderer(scene), quality >= FULL_FROM
+    scale = RESIDUAL_CODE_UNIT, RESIDUAL_CODE_UNIT / RESIDUAL_CHROMA_GAIN
+    renderer, full = Renderer(scene), quality >= RESIDUAL_FULL_CHROMA_QUALITY
 
     def planes(row: int) -> Planes:
         index = int(encoded[row])
@@ -65,16 +65,16 @@ def with_residual(
         counted = drawn.coverage > 0 if shown.mask is None else (drawn.coverage > 0) & (shown.mask > 0.5)
         return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full)
 
-    way = film_order(cameras)
-    frames = track(parallel_stream(planes, way.tolist()), "residual", len(way), progress)
-    made = Residual(b"", (rows, columns), way, scale, full, smooth=True)
-    film = encode_film(frames, made.frame, crf_of(quality), PRESET)
+    order = video_order(cameras)
+    frames = track(parallel_stream(planes, order.tolist()), "residual", len(order), progress)
+    made = Residual(b"", (rows, columns), order, scale, full, smooth=True)
+    video = encode_video(frames, made.frame, crf_of(quality), RESIDUAL_SVT_PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
-    return replace(scene, residual=replace(made, film=film), settings=settings)
+    return replace(scene, residual=replace(made, video=video), settings=settings)
 
 
 def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
-    """Rows and columns of the pictures in a film of these cameras.
+    """Rows and columns of the pictures in a video of these cameras.
 
     Raises:
         OptionError: `residual-quality` outside 0 to 100, `residual` where the encoder does not take frames so large.
@@ -82,12 +82,14 @@ def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
     if not 0 <= quality <= 100:
         raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
     rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
-    high = 3 * rows if quality >= FULL_FROM else rows
-    if columns > LARGEST[0] or high > LARGEST[1]:
+    high = 3 * rows if quality >= RESIDUAL_FULL_CHROMA_QUALITY else rows
+    if columns > RESIDUAL_MAX_COLUMNS_PX or high > RESIDUAL_MAX_ROWS_PX:
         raise OptionError(
             "residual",
-            f"frames of {columns}x{high}, the film's encoder takes {LARGEST[0]}x{LARGEST[1]}",
-            remedy=f"ask for less than {FULL_FROM}" if rows <= LARGEST[1] else "scale the photographs down",
+            f"frames of {columns}x{high}, the film's encoder takes {RESIDUAL_MAX_COLUMNS_PX}x{RESIDUAL_MAX_ROWS_PX}",
+            remedy=f"ask for less than {RESIDUAL_FULL_CHROMA_QUALITY}"
+            if rows <= RESIDUAL_MAX_ROWS_PX
+            else "scale the photographs down",
         )
     return rows, columns
 
@@ -98,4 +100,4 @@ def crf_of(quality: int) -> int:
 
 
 def _even(side: int) -> int:
-    return max(SMALLEST, side + side % 2)
+    return max(MIN_SIDE_TEXELS, side + side % 2)

@@ -16,9 +16,11 @@ from eigenfield.rendering import Picture, RenderJob, camera_colour, camera_weigh
 
 
 def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
-    """Camera, counted among all, and its (H, W, 3) residual, one after the other in the film's order.
+    """Camera, counted among all, and its (H, W, 3) residual, one after the other in the video's order.
 
-    Raises OptionError `residual` where the scene has none, FormatError `residual-damaged`.
+    Raises:
+        OptionError: `residual`, the scene has none.
+        FormatError: `residual-damaged`.
     """
     residual = _residual(scene)
     for row, planes in zip(residual.order, residual_frames(residual), strict=True):
@@ -30,8 +32,16 @@ def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
 def with_differences(
     scene: Scene, cameras: Iterable[int], wanted: bool = True
 ) -> Iterator[tuple[int, NDArray[np.float32] | None]]:
-    """Each of these cameras once: those that have a residual with it, in the film's order, then the others, or all
-    unless it is wanted. Errors as `differences`."""
+    """Each of these cameras once: those that have a residual with it, in the video's order, then the others.
+
+    Args:
+        scene: With a residual, if one is wanted.
+        cameras: Counted among all.
+        wanted: False: all cameras without a residual.
+
+    Raises:
+        OptionError, FormatError: As `differences`.
+    """
     left = dict.fromkeys(cameras)
     if wanted:
         for index, difference in differences(scene):
@@ -44,7 +54,9 @@ def with_differences(
 def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     """(H, W, 3): the residual of an encoded camera, counted among all. Every frame before it is decoded.
 
-    Raises OptionError `residual` where the camera has none; as `differences`.
+    Raises:
+        OptionError: `residual`, the camera has none.
+        FormatError: As `differences`.
     """
     residual = _residual(scene)
     if scene.rig.held_out[index]:
@@ -59,9 +71,17 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     raise AssertionError("a film ends with an error")
 
 
-def corrected(picture: Picture, difference: NDArray[np.float32], background: Sequence[float] = (0.0,)) -> Picture:
-    """The picture of a captured camera, drawn with this background, with its residual: on the surface's own colours,
-    cut to 0..1 before and after."""
+def corrected_picture(
+    picture: Picture, difference: NDArray[np.float32], background: Sequence[float] = (0.0,)
+) -> Picture:
+    """The picture of a captured camera with its residual, which is added to the surface's own colours, clipped to 0..1
+    before and after.
+
+    Args:
+        picture: As drawn.
+        difference: (H, W, 3) of `difference_of`.
+        background: That it was drawn with.
+    """
     part = picture.coverage[..., None]
     behind = (1 - part) * np.asarray(background, np.float32)
     own = surface_colours(picture, background)
@@ -75,8 +95,16 @@ def captured_samples(scene: Scene, index: int) -> int | None:
 
 
 def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """`RenderJob.pixels` of a captured camera with its residual. Raises OptionError `residual` where the job is not
-    drawn as those that it was taken from."""
+    """`RenderJob.pixels` of a captured camera with its residual.
+
+    Args:
+        job: How pictures are drawn.
+        index: Of the camera, counted among all.
+        difference: (H, W, 3) of `difference_of`.
+
+    Raises:
+        OptionError: `residual`, the job does not draw as the residual needs it.
+    """
     scene = job.scene
     changed = {
         "resolution": job.resolution is not None,
@@ -94,11 +122,11 @@ def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32])
             )
     job = replace(job, samples=captured_samples(scene, index))
     picture = job.picture(scene.rig.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
-    return job.pixels_of(corrected(picture, difference, job.background or (0.0,)))
+    return job.pixels_of(corrected_picture(picture, difference, job.background or (0.0,)))
 
 
 def surface_colours(picture: Picture, background: Sequence[float] = (0.0,)) -> NDArray[np.float32]:
-    """(H, W, 3): what the proxy shows in each pixel without the background, cut to 0..1; 0 where it shows nothing."""
+    """(H, W, 3): colours of the proxy in each pixel without the background, clipped to 0..1; 0 where it is not seen."""
     part = picture.coverage[..., None]
     surface = picture.image - (1 - part) * np.asarray(background, np.float32)
     return np.clip(np.divide(surface, part, out=np.zeros_like(surface), where=part > 0), 0, 1)

@@ -14,6 +14,7 @@ from eigenfield.core.errors import FormatError
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.rendering.weight_map import component_rows, weight_map
+from eigenfield.rendering.weights import ViewWeights
 
 WHOLE = (0.0, 0.0, 1.0, 1.0)  # rectangle
 LAYERS = 64  # that the shader sums in one draw
@@ -110,17 +111,17 @@ class Composer:
             made.release()
         self._made.clear()
 
-    def compose(self, count: int, weights: ArrayLike | None, eye: NDArray[np.float64]) -> None:
+    def compose(self, count: int, weights: ViewWeights | None, eye: NDArray[np.float64]) -> None:
         """Fill `texture` with the mean and the first `count` textures of each basis, unless it holds that already.
 
-        weights: view weights (Ne,) over the encoded cameras; None: each texel takes those of the place where its ray
+        weights: of the whole view; None: each texel takes those of the place where its ray
         to `eye` (3,) meets the view plane.
         """
-        mix = None if weights is None else np.asarray(weights, np.float64)
-        wanted = (count, (eye if mix is None else mix).tobytes(), mix is None)
+        place = eye.tobytes() if weights is None else weights.rows.tobytes() + weights.values.tobytes()
+        wanted = (count, place, weights is None)
         if wanted == self._composed:
             return
-        omega = None if mix is None else mix @ self._rows
+        omega = None if weights is None else weights.blend(self._rows)
         if omega is None:
             self._make_rays()
             set_uniforms(self._sum, eye=_on_plane(self._scene.rig.view_plane, eye))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
@@ -16,6 +16,7 @@ from eigenfield.rendering.opengl.composer import HEAD, Composer, set_uniforms, s
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.drawing import ONE_SAMPLE, make_surface, median_footprint
 from eigenfield.rendering.software.renderer import BLACK, background_of
+from eigenfield.rendering.weights import ViewWeights
 
 VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
 
@@ -100,7 +101,7 @@ class OpenGLRenderer:
     def draw(
         self,
         camera: Camera,
-        weights: ArrayLike | None = None,
+        weights: ViewWeights | None = None,
         *,
         background: Sequence[float] = BLACK,
         textures: int | None = None,
@@ -108,7 +109,7 @@ class OpenGLRenderer:
     ) -> Picture:
         """The view of `camera`, values exact to 1 / 255.
 
-        weights: view weights (Ne,) over the encoded cameras, as for the software renderer. None: each point of the
+        weights: as for the software renderer. None: each point of the
         surface takes those of the place where its ray to the camera meets the view plane, which is right for a camera
         anywhere; on the plane it is the same. The rest as `Renderer.draw`.
         """
@@ -120,7 +121,7 @@ class OpenGLRenderer:
     def draw_rgba(
         self,
         camera: Camera,
-        weights: ArrayLike | None = None,
+        weights: ViewWeights | None = None,
         *,
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,
@@ -133,7 +134,7 @@ class OpenGLRenderer:
     def paint(
         self,
         camera: Camera,
-        weights: ArrayLike | None = None,
+        weights: ViewWeights | None = None,
         *,
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,

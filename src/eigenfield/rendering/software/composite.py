@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis
 from eigenfield.core.scene import Scene
@@ -29,6 +29,7 @@ from eigenfield.rendering.software.tiles import (
     tile,
     tile_shape,
 )
+from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 
@@ -36,7 +37,7 @@ from eigenfield.runtime.parallel import parallel_map, pieces
 class Part:
     """Bases of one plane with one grid and corner.
 
-    first, channels: which of the K channels. weights: for each basis (Ne, n) float64. number: (tile rows, tile columns)
+    first, channels: which of the K channels. weights: for each basis (No, n) float64. number: (tile rows, tile columns)
     of the grid, each tile's index in `tiled`, -1 for tiles that are not kept. taps: how it is made finer, along rows
     and columns; None where it has the atlas's size. rectangle: [top, bottom) x [left, right) outside which it is zero;
     None: nowhere.
@@ -51,9 +52,9 @@ class Part:
     taps: tuple[Taps, Taps] | None
     rectangle: tuple[int, int, int, int] | None
 
-    def omega(self, mix: NDArray[np.float64], count: int | None) -> NDArray[np.float64]:
+    def omega(self, view: ViewWeights, count: int | None) -> NDArray[np.float64]:
         """(N,) weights of the components; zero from `count` on in each basis."""
-        each = [mix @ weights for weights in self.weights]
+        each = [view.blend(weights) for weights in self.weights]
         return np.concatenate([np.where(np.arange(len(w)) < (len(w) if count is None else count), w, 0) for w in each])
 
 
@@ -111,16 +112,15 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
 
 def compose_scene(
     composite: Composite,
-    mix: ArrayLike,
+    view: ViewWeights,
     count: int | None,
     needed: NDArray[np.bool_],
     buffers: Sequence[NDArray[np.float32]],
     layers: NDArray[np.float32],
 ) -> None:
-    """The texture for view weights mix (Ne,) and `count` eigen textures of each basis (None: all), for the `needed`
+    """The texture for view weights and `count` eigen textures of each basis (None: all), for the `needed`
     tiles (those not kept are left out), into layers (L, tiles, AREA, 4). buffers: of `make_buffers`."""
     kept = needed & (composite.number >= 0)
-    view = np.asarray(mix, np.float64)
     if composite.plain:
         (part,) = composite.parts
         omega = part.omega(view, count) if part.weights else np.zeros(0)

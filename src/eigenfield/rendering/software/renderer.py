@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
@@ -32,7 +32,7 @@ from eigenfield.rendering.software.drawing import (
     shade,
 )
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
-from eigenfield.rendering.weights import camera_weights, view_weights
+from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
 BLACK = (0.0, 0.0, 0.0)
 SPARE_FRAMES = 4  # sets of buffers kept for the next picture
@@ -60,7 +60,7 @@ class Renderer:
     def draw(
         self,
         camera: Camera,
-        weights: ArrayLike,
+        weights: ViewWeights,
         *,
         filter: str = "bicubic",
         background: Sequence[float] = BLACK,
@@ -68,7 +68,7 @@ class Renderer:
         samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Picture:
-        """The view of `camera` with view weights (No,) over the observations.
+        """The view of `camera`, blended of observations by `weights`.
 
         filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
         textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel; None: one, but four at
@@ -85,7 +85,7 @@ class Renderer:
     def draw_uint8(
         self,
         camera: Camera,
-        weights: ArrayLike,
+        weights: ViewWeights,
         *,
         filter: str = "bicubic",
         background: Sequence[float] = BLACK,
@@ -104,7 +104,7 @@ class Renderer:
         """k of the k x k samples a pixel that a picture takes by itself, 1 for smooth edges."""
         return grid_side(self._surface, camera, self._detail)
 
-    def texture(self, weights: ArrayLike, textures: int | None = None) -> NDArray[np.float32]:
+    def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
         """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
         layers = empty_layers(*self._surface.size, self.channels)
         compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
@@ -113,7 +113,7 @@ class Renderer:
     def _draw(
         self,
         camera: Camera,
-        weights: ArrayLike,
+        weights: ViewWeights,
         filter: str,
         background: Sequence[float] | float,
         textures: int | None,
@@ -228,8 +228,8 @@ def viewpoint(
     camera: str | None = None,
     weights: str = "delaunay",
     time: int = 0,
-) -> tuple[Camera, NDArray[np.float64]]:
-    """The camera and the view weights (No,) of `at`, of a capture camera by name, or of the reference camera."""
+) -> tuple[Camera, ViewWeights]:
+    """The camera and the view weights of `at`, of a capture camera by name, or of the reference camera."""
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
     if not 0 <= time < len(scene.times):

@@ -20,7 +20,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual import captured_pixels, with_differences
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import RenderJob, at_resolution, camera_colour, camera_weights, viewpoint
+from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_colour, camera_weights, viewpoint
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
@@ -39,7 +39,7 @@ class RedrawnView:
 
     name: str
     camera: Camera
-    mix: NDArray[np.float64]
+    weights: ViewWeights
     colour: NDArray[np.float32] | None
 
 
@@ -75,7 +75,7 @@ def write_colmap(
         number, difference = view
         shot = todo[number]
         if difference is None:
-            return number, plain.png(shot.camera, shot.mix, shot.colour)
+            return number, plain.png(shot.camera, shot.weights, shot.colour)
         exact.append(files[number])
         return number, png(captured_pixels(job, number, difference))
 
@@ -111,8 +111,8 @@ def _captured(job: RenderJob) -> list[RedrawnView]:
 def _along(job: RenderJob, points: NDArray[np.float64]) -> list[RedrawnView]:
     made = []
     for number, (x, y) in enumerate(points.tolist()):
-        camera, mix = viewpoint(job.scene, at=(x, y), weights=job.weights)
-        made.append(RedrawnView(f"path_{number:04d}", _pinhole(camera, job.resolution), mix, None))
+        camera, weights = viewpoint(job.scene, at=(x, y), weights=job.weights)
+        made.append(RedrawnView(f"path_{number:04d}", _pinhole(camera, job.resolution), weights, None))
     return made
 
 

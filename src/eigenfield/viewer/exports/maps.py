@@ -17,6 +17,7 @@ from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
+from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
 from eigenfield.viewer.exports.names import file_names
@@ -51,13 +52,13 @@ def write_maps(
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
     """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
     compose = _composer(scene)
-    unit = np.eye(scene.observations)[scene.rows()]
-    return lambda row, textures: compose(unit[row], textures)
+    rows = scene.rows()
+    return lambda row, textures: compose(ViewWeights.one(int(rows[row])), textures)
 
 
 def mean_map(scene: Scene) -> NDArray[np.float32]:
     """(H, W, C): the means of all planes, drawn at the atlas's size; not cut."""
-    return _composer(scene)(np.zeros(scene.observations), 0)
+    return _composer(scene)(ViewWeights(), 0)
 
 
 def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
@@ -77,18 +78,18 @@ def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDAr
     compose = _composer(replace(scene, appearance=replace(scene.appearance, planes=tuple(planes))))
     weights = [row for bases in kept for basis in bases for row in basis.weights.T]
     for number, row in enumerate(weights):
-        yield compose(np.eye(total)[number], None), row
+        yield compose(ViewWeights.one(number), None), row
 
 
-def _composer(scene: Scene) -> Callable[[NDArray[np.float64], int | None], NDArray[np.float32]]:
-    """A function of what rows of weights are multiplied by, and a number of eigen textures: the (H, W, C) sum."""
+def _composer(scene: Scene) -> Callable[[ViewWeights, int | None], NDArray[np.float32]]:
+    """A function of view weights and a number of eigen textures: the (H, W, C) sum."""
     refuse_attributes(scene.appearance.channels)
     every = np.ones(tile_shape(scene.appearance.atlas), np.bool_)
     composite = make_composite(scene, every)
 
-    def compose(mix: NDArray[np.float64], textures: int | None) -> NDArray[np.float32]:
+    def compose(weights: ViewWeights, textures: int | None) -> NDArray[np.float32]:
         layers = empty_layers(*scene.appearance.atlas, scene.appearance.channels)
-        compose_scene(composite, mix, textures, every, make_buffers(composite), layers)
+        compose_scene(composite, weights, textures, every, make_buffers(composite), layers)
         return read_layers(layers, *scene.appearance.atlas, scene.appearance.channels)
 
     return compose

@@ -18,7 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.rendering import RenderJob, at_resolution, novel_camera, view_weights
+from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, novel_camera, view_weights
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
 
@@ -111,7 +111,7 @@ def write_quilt(
     return path
 
 
-def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, NDArray[np.float64]]]:
+def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, ViewWeights]]:
     """The quilt's cameras and their view weights, from left to right along the middle of the array.
 
     All look the same way, with their x axis along the array's X; principal points are shifted so that what lies in the

@@ -1,4 +1,4 @@
-"""Which parts of a scene keep the streams that it came with, and what coding the others anew costs."""
+"""The payloads of a scene's parts that have not changed since they were coded, and the bytes of the others."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from eigenfield.runtime.parallel import parallel_map
 
 
 @dataclass(frozen=True, eq=False)
-class Kept:
-    """Parts are named by where they stand in a scene: `mesh`, `cameras`, `planes[0].mean`,
+class CachedPayloads:
+    """Payloads by part, named by its place in a scene: `mesh`, `cameras`, `planes[0].mean`,
     `planes[0].bases[1].weights`. One more is `preview`, the picture for other viewers, which is made of the means.
 
     Attributes:
-        payloads: What each part that has not changed was coded to.
-        lost: The bytes that each part that has changed was coded to.
+        payloads: Of each part that has not changed.
+        lost: Bytes of the payload of each part that has changed.
     """
 
     payloads: Mapping[str, tuple[Payload, ...]]
@@ -45,11 +45,11 @@ class Kept:
         return tuple(one for one in self.payloads.get(part, ()) if isinstance(one, PicturePayload))
 
 
-def kept_payloads(scene: Scene) -> Kept:
-    """What a scene's parts were coded to, found by their content. A part that has changed is taken to have been coded
-    to what is left over, in the order of the scene."""
+def cached_payloads(scene: Scene) -> CachedPayloads:
+    """The payloads of a scene's parts, found by their content. Those that are left over are taken to be of the parts
+    that have changed, in the order of the scene."""
     if not isinstance(scene, EncodedScene) or not scene.payloads:
-        return Kept({}, {})
+        return CachedPayloads({}, {})
     parts = _parts(scene)
     keys = dict(zip(parts, parallel_map(lambda key: key(), parts.values()), strict=True))
     used = set(keys.values())
@@ -65,7 +65,7 @@ def kept_payloads(scene: Scene) -> Kept:
             lost[part] = size_of(scene.payloads[left[key[0]].popleft()])
     means = [keys[f"planes[{p}].mean"] for p in range(len(scene.appearance.planes))]
     preview = scene.payloads.get(preview_key(means, scene.appearance.to_rgb, scene.appearance.colours is not None))
-    return Kept(found if preview is None else {**found, "preview": preview}, lost)
+    return CachedPayloads(found if preview is None else {**found, "preview": preview}, lost)
 
 
 def _parts(scene: Scene) -> dict[str, Callable[[], Key]]:
