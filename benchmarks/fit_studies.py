@@ -113,7 +113,7 @@ def _equal_steps(block: Any, scales: Any) -> NDArray[np.float32]:
 
 _weight_steps = fit._weight_steps
 _code_plane = fit.code_plane
-_one_sample = _replaced(drawing, "STANDARD", drawing.CENTRE)
+_one_sample = _replaced(drawing, "MULTISAMPLE_OFFSETS_PX", drawing.CENTRE_OFFSETS_PX)
 
 CODING = {
     "loop": Part(

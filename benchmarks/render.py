@@ -29,7 +29,7 @@ from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
-from eigenfield.rendering.software.kernels import TILE
+from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.tiles import compose, empty_layers, tile
 from eigenfield.runtime.jit import kernel
 from eigenfield.runtime.parallel import parallel_map, pieces, threads
@@ -97,7 +97,7 @@ def frames(scene: Scene, way: str, count: int = FRAMES) -> dict[str, Any]:
         angle = 2 * np.pi * number / count
         at = (0.7 * np.cos(angle), 0.7 * np.sin(angle))
         started = time.perf_counter()
-        camera = novel_camera(scene, at).resized(WIDTH, HEIGHT)
+        camera = novel_camera(scene, at).resize(WIDTH, HEIGHT)
         renderer.draw_uint8(camera, view_weights(scene, at), filter=filter, samples=samples)
         if number >= 0:
             taken.append(time.perf_counter() - started)
@@ -141,7 +141,7 @@ def composition(scene: Scene) -> dict[str, Any]:
     plane = scene.appearance.planes[0]
     basis = plane.bases[0]
     omega = view_weights(scene, (0.31, -0.17)).blend(basis.weights)
-    tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE, SIDE // TILE), bool), 3)
+    tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE_TEXELS, SIDE // TILE_TEXELS), bool), 3)
     layers, tiles = empty_layers(SIDE, SIDE, 3), np.arange(len(tiled.places))
     ours = best(lambda: compose(tiled, omega, tiles, layers))
     values = basis.values().reshape(basis.count, -1)

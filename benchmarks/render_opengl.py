@@ -21,7 +21,7 @@ import measure
 from eigenfield.core.camera import Camera
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import OpenGLRenderer, novel_camera, view_weights
-from eigenfield.rendering.checks import FILTERS
+from eigenfield.rendering.checks import TEXTURE_FILTERS
 from eigenfield.rendering.opengl.renderer import make_context
 from render import COUNTS, SIDE, array, relief, scene_of
 
@@ -33,11 +33,11 @@ HALF_BASELINE = 0.02  # of the view plane's unit: the array is 0.8 wide
 
 def mono(scene: Scene, renderer: OpenGLRenderer, turn: float) -> None:
     at = (0.7 * np.cos(turn), 0.7 * np.sin(turn))
-    renderer.paint(novel_camera(scene, at).resized(*MONO), view_weights(scene, at))
+    renderer.paint(novel_camera(scene, at).resize(*MONO), view_weights(scene, at))
 
 
 def stereo(scene: Scene, renderer: OpenGLRenderer, turn: float) -> None:
-    camera = novel_camera(scene, (0.5 * np.cos(turn), 0.5 * np.sin(turn))).resized(*EYE)
+    camera = novel_camera(scene, (0.5 * np.cos(turn), 0.5 * np.sin(turn))).resize(*EYE)
     for side in (-HALF_BASELINE, HALF_BASELINE):
         eye = camera.centre + np.array([side, 0.0, 0.1 * np.sin(3 * turn)])
         renderer.paint(Camera(camera.K, camera.R, -camera.R @ eye, *EYE))
@@ -69,7 +69,7 @@ def main() -> None:
     for count in (0, *COUNTS):
         scene = scene_of(mesh, cameras, count)
         row: dict[str, Any] = {}
-        for filter in FILTERS:
+        for filter in TEXTURE_FILTERS:
             with OpenGLRenderer(scene, filter=filter, context=context) as renderer:
                 for name, frame in (("mono", mono), ("stereo", stereo)):
                     key = f"{name}_{filter}"

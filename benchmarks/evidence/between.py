@@ -22,7 +22,7 @@ from eigenfield.evaluation import ExcludedCircle, match_photographs
 from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr, to_codes
-from eigenfield.rendering import MODES, Renderer, ViewWeights, camera_weights, view_weights
+from eigenfield.rendering import WEIGHT_MODES, Renderer, ViewWeights, camera_weights, view_weights
 from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
 from evidence.spread import spread_over_array
 
@@ -31,7 +31,7 @@ TITLES = {
     "nearest": "photograph of the nearest encoded camera",
     "blend": "photographs of the neighbours, blended without geometry",
     "lumigraph": f"unstructured lumigraph, {BLENDED} photographs on the proxy",
-    **{mode: f"our scene, {mode} view weights" for mode in MODES},
+    **{mode: f"our scene, {mode} view weights" for mode in WEIGHT_MODES},
 }
 WORDS = (
     "Held-out views; mean over views, the worst beside it. All ways are measured over the same pixels, those that the "
@@ -96,10 +96,10 @@ def weights_study(
     sample: int | None = None,
     circles: Mapping[str, ExcludedCircle] | None = None,
 ) -> dict[str, Any]:
-    """The view weights of our scene on held-out views: a row for each of `rendering.MODES`, as `between` has them."""
+    """The view weights of our scene on held-out views: a row for each of `WEIGHT_MODES`, as `between` has them."""
     stage = Stage(scene, light_field, match_photographs(scene, light_field), Renderer(scene))
     chosen = _chosen(stage, sample)
-    rows, notes = _measured(stage, chosen, {mode: partial(_ours, stage, mode) for mode in MODES}, circles)
+    rows, notes = _measured(stage, chosen, {mode: partial(_ours, stage, mode) for mode in WEIGHT_MODES}, circles)
     return {"cameras": len(chosen), "methods": rows, "words": " ".join(notes)}
 
 
@@ -123,7 +123,7 @@ def ways_of(stage: Stage, peers: Peers) -> dict[str, Way]:
         "blend": partial(_blend, stage, peers),
         "lumigraph": lambda index: draw_lumigraph(peers.lumigraph, stage.scene.rig.cameras[index])[0],
     }
-    return ways | {mode: partial(_ours, stage, mode) for mode in MODES}
+    return ways | {mode: partial(_ours, stage, mode) for mode in WEIGHT_MODES}
 
 
 def covered_by_proxy(stage: Stage, index: int, mask: NDArray[np.float32] | None) -> NDArray[np.bool_]:

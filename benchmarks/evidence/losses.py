@@ -23,7 +23,7 @@ from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.gltf import save
-from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, to_codes
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, to_codes
 from eigenfield.rendering import camera_colour, draw_texture
 from eigenfield.rendering.exposure import undo_colour
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
@@ -77,7 +77,7 @@ class Views:
         return {
             "psnr": float(np.mean(np.array(decibels, float))),
             "psnr_luma": float(np.mean(np.array(luma, float))),
-            "psnr_of_mse": PSNR_CAP if mse == 0 else float(10 * np.log10(255**2 / mse)),
+            "psnr_of_mse": PSNR_MAX_DECIBELS if mse == 0 else float(10 * np.log10(255**2 / mse)),
             "mse": mse,
         }
 

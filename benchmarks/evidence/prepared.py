@@ -120,8 +120,7 @@ def drawn(renderer: Renderer, scene: Scene, index: int) -> tuple[NDArray[np.uint
 def first_textures(scene: Scene, count: int) -> Scene:
     """The scene with its first `count` eigen textures alone, as if it had been encoded so."""
     planes = tuple(
-        replace(plane, bases=tuple(basis.truncated(count) for basis in plane.bases))
-        for plane in scene.appearance.planes
+        replace(plane, bases=tuple(basis.truncate(count) for basis in plane.bases)) for plane in scene.appearance.planes
     )
     return replace(
         scene, appearance=replace(scene.appearance, planes=planes), settings={**scene.settings, "textures": count}

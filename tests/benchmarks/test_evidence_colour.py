@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.imaging.metrics import PSNR_CAP, psnr
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr
 from evidence.colour import ceiling, even, pad, to_planes, to_rgb
 
 
@@ -71,7 +71,7 @@ def test_odd_sizes_are_padded_by_their_edge_and_cut_again(chroma, height, width)
 
 def test_smooth_pictures_lose_next_to_nothing_in_420():
     picture = smooth(96, 120)
-    assert 50 < psnr(ceiling(picture, "420"), picture) < PSNR_CAP
+    assert 50 < psnr(ceiling(picture, "420"), picture) < PSNR_MAX_DECIBELS
 
 
 def test_halving_and_doubling_do_not_shift_chroma():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, ssim
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, ssim
 from evidence.rates import bd_quality, bd_rate, bytes_at, common_range, point
 
 # kbit/s and dB of two coders, of the usual shape
@@ -95,8 +95,8 @@ def test_a_point_is_the_mean_over_views_with_the_worst_by_name():
     covered[1][:11] = False
     figures = point(iter(decoded), photographs, covered, ["a", "b", "c"])
     at = [20 * np.log10(255 / offset) for offset in (10, 20)]
-    assert figures["psnr"] == pytest.approx((PSNR_CAP + sum(at)) / 3)
-    assert figures["psnr_luma"] == pytest.approx((PSNR_CAP + sum(at)) / 3, abs=1e-4)
+    assert figures["psnr"] == pytest.approx((PSNR_MAX_DECIBELS + sum(at)) / 3)
+    assert figures["psnr_luma"] == pytest.approx((PSNR_MAX_DECIBELS + sum(at)) / 3, abs=1e-4)
     assert figures["worst"]["psnr"] == {"value": pytest.approx(at[1]), "camera": "c"}
     assert figures["worst"]["psnr_full"]["camera"] == "b"
     assert figures["coverage"] == pytest.approx((1 + 0.5 + 1) / 3)

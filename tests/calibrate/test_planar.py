@@ -180,12 +180,12 @@ def test_photographs_of_other_things_are_refused(names):
 
 def test_exchanged_rows_and_columns_are_noticed(even, names, caplog):
     pictures, places = even
-    start = start_planar(pictures, layout().exchanged(), names)
+    start = start_planar(pictures, layout().transpose(), names)
     assert start.exchanged and "column first" in caplog.text
     found = start.parameters[:, :2]
     assert min(same_array(found, places)[0], same_array(-found, places)[0]) < 0.02
     with pytest.raises(CaptureError) as error:  # measured positions are not reinterpreted
-        start_planar(pictures, layout(measured=True).exchanged(), names)
+        start_planar(pictures, layout(measured=True).transpose(), names)
     assert error.value.code in ("grid-swapped", "grid-motion")
 
 

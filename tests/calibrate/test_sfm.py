@@ -348,10 +348,10 @@ def strecha(folder: Path) -> tuple[PhotoSet, LightField]:
     for path in sorted((folder / "images").glob("*.jpg")):
         v = np.array((folder / "gt_dense_cameras" / f"{path.name}.camera").read_text().split(), float)
         R = v[12:21].reshape(3, 3).T
-        true.append(Camera.checked(v[:9].reshape(3, 3), R, -R @ v[21:24], 1536, 1024, path.name))
+        true.append(Camera.from_matrices(v[:9].reshape(3, 3), R, -R @ v[21:24], 1536, 1024, path.name))
         shots.append(Shot(path.name, path, 1536, 1024))
     photos = PhotoSet(folder / "images", tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(true)
+    return photos, photos.with_cameras(true)
 
 
 def middlebury(folder: Path) -> tuple[PhotoSet, LightField]:
@@ -359,10 +359,10 @@ def middlebury(folder: Path) -> tuple[PhotoSet, LightField]:
     for line in (folder / "templeSR_par.txt").read_text().splitlines()[1:]:
         name, *rest = line.split()
         v = np.array(rest, float)
-        true.append(Camera.checked(v[:9].reshape(3, 3), v[9:18].reshape(3, 3), v[18:], 640, 480, name))
+        true.append(Camera.from_matrices(v[:9].reshape(3, 3), v[9:18].reshape(3, 3), v[18:], 640, 480, name))
         shots.append(Shot(name, folder / "images" / name, 640, 480))
     photos = PhotoSet(folder / "images", tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(true)
+    return photos, photos.with_cameras(true)
 
 
 @pytest.mark.slow

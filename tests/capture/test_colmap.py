@@ -14,7 +14,7 @@ from PIL import Image
 
 from eigenfield.capture import open_capture
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.colmap import MODELS, read_colmap
+from eigenfield.capture.readers.colmap import COLMAP_MODELS, read_colmap
 from eigenfield.core.errors import CaptureError
 
 WIDTH, HEIGHT = 32, 24
@@ -45,7 +45,9 @@ def pose(index: int) -> tuple[np.ndarray, np.ndarray]:
 
 def cameras_bin(model: str = "PINHOLE", number: int | None = None, width: int = WIDTH) -> bytes:
     p = PARAMETERS[model]
-    head = struct.pack("<Q", 1) + struct.pack("<IiQQ", 7, MODELS[model][0] if number is None else number, width, HEIGHT)
+    head = struct.pack("<Q", 1) + struct.pack(
+        "<IiQQ", 7, COLMAP_MODELS[model][0] if number is None else number, width, HEIGHT
+    )
     return head + struct.pack(f"<{len(p)}d", *p)
 
 

@@ -25,9 +25,9 @@ from eigenfield.capture import (
     open_photographs,
     read_header,
 )
-from eigenfield.capture.photographs.exif import focal_of
+from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.core.errors import CaptureError, EigenfieldError
-from eigenfield.core.observations import of_cameras
+from eigenfield.core.observations import select_cameras
 from support.captures import frame_of
 from support.named import CFG, hci, refused, write, write_video
 from support.scenes import row_grid
@@ -173,7 +173,7 @@ def test_damaged_photographs_are_errors_or_named(tmp_path):
     error = refused("image-kind", folder)
     assert "v_1_1.png" in str(error)
     photo_set = open_any(folder, strict=False)
-    assert len(photo_set) == 7 and photo_set.layout.missing == [(1, 1), (2, 0)]
+    assert len(photo_set) == 7 and photo_set.layout.missing_nodes == [(1, 1), (2, 0)]
     assert ["v_1_1.png" in p for p in photo_set.problems].count(True) == 1
     assert photo_set.layout.rows.tolist() == [int(name[2]) for name in photo_set.names]
 
@@ -248,7 +248,7 @@ def test_a_photograph_that_changed_since_is_said(tmp_path):
 
 def test_cameras_join_photographs(tmp_path):
     photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
-    light_field = photo_set.calibrated(row_grid(9), problems=["estimated"])
+    light_field = photo_set.with_cameras(row_grid(9), problems=["estimated"])
     assert isinstance(light_field, LightField) and light_field.layout is photo_set.layout
     assert light_field.names == photo_set.names and light_field.problems[-1] == "estimated"
     assert np.array_equal(light_field.photograph(4).pixels, photo_set.photograph(4).pixels)
@@ -261,9 +261,9 @@ def test_cameras_join_photographs(tmp_path):
 
 def test_each_photograph_is_an_observation_at_one_time(tmp_path):
     photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
-    for capture in (photo_set, photo_set.calibrated(row_grid(9))):
+    for capture in (photo_set, photo_set.with_cameras(row_grid(9))):
         assert [(capture.camera_of(i), capture.time_of(i)) for i in range(len(capture))] == [(i, 0) for i in range(9)]
-        some, part = of_cameras(capture, [7, 2]), capture.subset([7, 2])
+        some, part = select_cameras(capture, [7, 2]), capture.subset([7, 2])
         assert len(some) == len(part) == 2
         for index in range(2):
             assert (some.camera_of(index), some.time_of(index)) == (index, 0)
@@ -273,11 +273,11 @@ def test_each_photograph_is_an_observation_at_one_time(tmp_path):
 def test_other_cameras_for_a_light_field(tmp_path):
     cameras, lens = row_grid(9), Lens("brown", (0.1, 0.0, 0.0, 0.0, 0.0))
     photo_set = open_any(write(tmp_path, GRID, width=48, height=40))
-    given = photo_set.calibrated(cameras, [lens] * 9)
-    turned = given.calibrated(cameras[::-1], problems=["turned"])
+    given = photo_set.with_cameras(cameras, [lens] * 9)
+    turned = given.with_cameras(cameras[::-1], problems=["turned"])
     assert turned.cameras == cameras[::-1] and turned.problems[-1] == "turned"
     assert [view.lens for view in turned.views] == [lens] * 9 and turned.names == given.names
-    assert [view.lens for view in given.calibrated(cameras, [None] * 9).views] == [None] * 9
+    assert [view.lens for view in given.with_cameras(cameras, [None] * 9).views] == [None] * 9
 
 
 # EXIF
@@ -310,7 +310,7 @@ FOCAL, FOCAL_35MM, PLANE_X, PLANE_UNIT, PIXELS_X = 0x920A, 0xA405, 0xA20E, 0xA21
 def test_focal_lengths_from_exif(tmp_path, tags, expected):
     for suffix in (".jpg", ".webp"):
         path = photograph(tmp_path / f"a1{suffix}", tags)
-        focal = focal_of(path, read_header(path))
+        focal = read_focal_length(path, read_header(path))
         assert focal == (None if expected is None else pytest.approx(expected, rel=1e-4)), suffix
 
 
@@ -346,7 +346,7 @@ def test_damaged_exif_is_no_focal_length_or_one(tmp_path_factory, at, change):
         header = read_header(path)
     except CaptureError:
         return
-    focal = focal_of(path, header)
+    focal = read_focal_length(path, header)
     assert focal is None or (math.isfinite(focal) and focal > 0)
 
 

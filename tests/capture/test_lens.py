@@ -23,13 +23,13 @@ from eigenfield.capture.photographs.lens import Lens, remove_lens, resample, sou
     ],
 )  # fmt: skip
 def test_where_a_lens_folds_back(lens, expected):
-    assert lens.limit() == pytest.approx(expected)
+    assert lens.valid_radius() == pytest.approx(expected)
 
 
 def test_a_skew_alone_is_a_lens():
-    assert not Lens("metashape", (*(0.0,) * 8, 0.01)).does_nothing
-    assert Lens("metashape", (0.0,) * 9).does_nothing
-    assert not Lens("metashape-equisolid", (0.0,) * 9).does_nothing
+    assert not Lens("metashape", (*(0.0,) * 8, 0.01)).is_identity
+    assert Lens("metashape", (0.0,) * 9).is_identity
+    assert not Lens("metashape-equisolid", (0.0,) * 9).is_identity
 
 
 BROWN = Lens("brown", (-0.12, 0.03, 0.004, -0.003, 0.01))
@@ -89,9 +89,9 @@ def test_cubic_sampling_keeps_planes_and_values():
 def test_nothing_is_shown_where_the_lens_polynomial_folds_back():
     wide = np.array([[60.0, 0, 80], [0, 60, 60], [0, 0, 1]])
     lens = Lens("brown", (-0.3, 0, 0, 0, 0))
-    assert np.isclose(lens.limit(), np.sqrt(1 / 0.9))
+    assert np.isclose(lens.valid_radius(), np.sqrt(1 / 0.9))
     _, mask = remove_lens(np.ones((120, 160, 3), np.float32), None, wide, lens)
     v, u = np.mgrid[0:120, 0:160] + 0.5
-    assert mask[np.hypot((u - 80) / 60, (v - 60) / 60) > lens.limit()].max() == 0
+    assert mask[np.hypot((u - 80) / 60, (v - 60) / 60) > lens.valid_radius()].max() == 0
     assert mask[60, 80] == 1
-    assert Lens("brown", (0.1, 0.02, 0, 0, 0)).limit() == np.inf
+    assert Lens("brown", (0.1, 0.02, 0, 0, 0)).valid_radius() == np.inf

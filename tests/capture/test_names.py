@@ -36,7 +36,7 @@ def test_stanford_without_positions_and_with_gaps_in_the_numbers(tmp_path):
     names = [f"out_{r:02d}_{c:02d}.jpg" for r in (2, 6, 10) for c in (0, 4, 8, 12) if (r, c) != (6, 8)]
     photo_set = open_any(write(tmp_path / "images", names).parent)
     layout = photo_set.layout
-    assert layout.shape == (3, 4) and layout.missing == [(6, 8)] and not layout.measured and not layout.signs
+    assert layout.shape == (3, 4) and layout.missing_nodes == [(6, 8)] and not layout.measured and not layout.signs
     assert photo_set.problems == ("1 node of the grid has no photograph: row 6 column 8",)
     assert places(photo_set)["out_10_04.jpg"] == (4, -10)
     assert layout.subset([0]).shape == (1, 1)
@@ -223,7 +223,7 @@ def test_what_real_photographs_say_of_themselves(data, name):
     layout = photo_set.layout
     assert (layout is None) == (shape is None)
     if layout is not None:
-        assert (layout.shape, layout.measured, layout.signs, layout.missing) == (shape, is_measured, signs, [])
+        assert (layout.shape, layout.measured, layout.signs, layout.missing_nodes) == (shape, is_measured, signs, [])
         assert len(photo_set) == shape[0] * shape[1]
     if name == "tarot_5x4_1024":
         assert sorted(set(layout.rows)) == [2, 6, 10, 14] and sorted(set(layout.columns)) == [0, 4, 8, 12, 16]

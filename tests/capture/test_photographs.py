@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from PIL import Image, ImageCms
 
 from eigenfield.capture.photographs import read as photographs
-from eigenfield.capture.photographs.icc import SRGB, BrokenProfileError, encode_srgb, read_profile
+from eigenfield.capture.photographs.icc import ICC_SRGB_TO_XYZ, BrokenProfileError, encode_srgb, read_profile
 from eigenfield.capture.photographs.read import decode, decode_mask, read_header
 from eigenfield.core.errors import CaptureError
 
@@ -151,9 +151,9 @@ def test_orientation_is_applied_or_left(tmp_path, kind, orientation):
         stored, scale = SIXTEEN, 65535
         save(path, tiff(SIXTEEN, photometric="rgb", extratags=[(274, "H", 1, orientation, True)]))
     header = read_header(path)
-    assert header.stored == (stored.shape[1], stored.shape[0]) and header.orientation == orientation
+    assert header.stored_size == (stored.shape[1], stored.shape[0]) and header.orientation == orientation
     upright, _ = decode(path)
-    assert header.upright == (upright.shape[1], upright.shape[0])
+    assert header.upright_size == (upright.shape[1], upright.shape[0])
     assert np.abs(np.rint(upright * scale) - oriented(stored, orientation)).max() <= slack
     left, _ = decode(path, upright=False)
     assert np.abs(np.rint(left * scale) - stored).max() <= slack
@@ -242,7 +242,7 @@ def test_matrix_profile_agrees_with_littlecms(tmp_path):
 
 def test_matrix_profile_at_16_bit_keeps_neighbouring_values_apart(tmp_path):
     ramp = np.repeat((30000 + 8 * np.arange(64, dtype=np.uint16))[None, :, None], 3, axis=2).repeat(2, axis=0)
-    path = save(tmp_path / "a.png", png16(ramp, profile=profile_bytes(SRGB, GAMMA22)))
+    path = save(tmp_path / "a.png", png16(ramp, profile=profile_bytes(ICC_SRGB_TO_XYZ, GAMMA22)))
     pixels, _ = decode(path)
     assert len(np.unique(pixels[0, :, 0])) == 64
     linear = (ramp[0, :, 0] / 65535) ** 2.19921875
@@ -252,7 +252,7 @@ def test_matrix_profile_at_16_bit_keeps_neighbouring_values_apart(tmp_path):
 
 def test_srgb_profiles_change_nothing(tmp_path):
     for number, profile in enumerate(
-        (ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(), profile_bytes(SRGB, SRGB_PARA))
+        (ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes(), profile_bytes(ICC_SRGB_TO_XYZ, SRGB_PARA))
     ):
         assert read_profile(profile).kind == "none"
         path = save(tmp_path / f"{number}.png", Image.fromarray(EIGHT), icc_profile=profile)
@@ -260,7 +260,7 @@ def test_srgb_profiles_change_nothing(tmp_path):
 
 
 def test_grey_profile_is_a_curve(tmp_path):
-    profile = profile_bytes(SRGB, b"curv\0\0\0\0" + struct.pack(">I", 0), b"GRAY")
+    profile = profile_bytes(ICC_SRGB_TO_XYZ, b"curv\0\0\0\0" + struct.pack(">I", 0), b"GRAY")
     path = save(tmp_path / "a.png", Image.fromarray(EIGHT[..., 0]), icc_profile=profile)
     expected = encode_srgb(EIGHT[..., 0].astype(np.float32) / 255)
     assert np.allclose(decode(path)[0][..., 2], expected, atol=1e-6)
@@ -346,7 +346,7 @@ def test_a_bomb_is_refused_by_its_header(tmp_path, monkeypatch):
     data[16:24] = struct.pack(">II", 30000, 30000)
     data[29:33] = struct.pack(">I", zlib.crc32(bytes(data[12:29])))
     assert refused(save(tmp_path / "bomb.png", bytes(data))).code == "image-too-large"
-    monkeypatch.setattr(photographs, "PIXEL_LIMIT", 9 * 13 - 1)
+    monkeypatch.setattr(photographs, "PHOTOGRAPH_MAX_PIXELS", 9 * 13 - 1)
     assert refused(tmp_path / "a.png").code == "image-too-large"
 
 

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eigenfield.capture.readers.projections import decompose, find_projections, read_projections
+from eigenfield.capture.readers.projections import decompose_projection, find_projections, read_projections
 from support import calibrations as write
 from support.calibrations import stations
 from support.readers import check_cube, check_lens
@@ -66,7 +66,7 @@ def test_a_projection_comes_apart_as_it_was_made(turn, centre, focal, aspect, fa
     R = cv2.Rodrigues(np.array(turn))[0]
     K = np.array([[focal, 0.3, 320.5], [0, focal * aspect, 200.25], [0, 0, 1]])
     P = factor * K @ R @ np.hstack([np.eye(3), -np.array(centre)[:, None]])
-    K2, R2, centre2 = decompose(P, "x", Path("x"))
+    K2, R2, centre2 = decompose_projection(P, "x", Path("x"))
     assert np.allclose(K2, K, rtol=1e-8, atol=1e-6 * focal)
     assert np.allclose(R2, R, atol=1e-9)
     assert np.allclose(centre2, centre, atol=1e-7)

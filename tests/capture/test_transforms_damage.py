@@ -88,7 +88,7 @@ def test_broken_json(tmp_path, data):
 
 def test_a_huge_json_is_not_read(tmp_path, monkeypatch):
     write(tmp_path)
-    monkeypatch.setattr("eigenfield.capture.readers.transforms.SIZE_LIMIT", 100)
+    monkeypatch.setattr("eigenfield.capture.readers.transforms.TRANSFORMS_MAX_BYTES", 100)
     refused("calibration-too-large", tmp_path)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eigenfield.capture import open_any, open_photographs
-from eigenfield.capture.readers.video import frame_of, parse_frame
+from eigenfield.capture.readers.video import parse_frame, read_frame
 from eigenfield.core.errors import OptionError
 from support.named import refused, write_video
 
@@ -33,7 +33,7 @@ def test_one_frame_of_each_video(tmp_path):
 @pytest.mark.parametrize("frame", [0, 4, 11, 0.0, 0.349, 1.19])
 def test_frames_by_index_and_time(tmp_path, frame):
     truth = write_video(tmp_path / "a.mp4", 12)
-    found = frame_of(tmp_path / "a.mp4", frame).astype(float)
+    found = read_frame(tmp_path / "a.mp4", frame).astype(float)
     wanted = frame if isinstance(frame, int) else int(frame * 10)
     assert np.argmin([np.abs(found - t).mean() for t in truth]) == wanted
 
@@ -58,10 +58,10 @@ def test_frames_that_are_none(word):
 
 def test_a_video_is_turned_upright(tmp_path):
     write_video(tmp_path / "a.mp4", 3)
-    flat = frame_of(tmp_path / "a.mp4", 1)
+    flat = read_frame(tmp_path / "a.mp4", 1)
     data = bytearray((tmp_path / "a.mp4").read_bytes())
     at = data.index(b"tkhd") + 4 + 40  # the matrix of the track header, version 0
     turn = [0, 0x10000, 0, -0x10000, 0, 0, 0, 0, 0x40000000]  # a quarter turn clockwise
     data[at : at + 36] = b"".join(v.to_bytes(4, "big", signed=True) for v in turn)
     (tmp_path / "a.mp4").write_bytes(data)
-    assert np.array_equal(frame_of(tmp_path / "a.mp4", 1), np.rot90(flat, -1))
+    assert np.array_equal(read_frame(tmp_path / "a.mp4", 1), np.rot90(flat, -1))

@@ -116,5 +116,5 @@ def test_odd_needs_a_grid():
 def test_impossible_cameras_are_refused_by_name(change, code):
     arguments = {"K": K, "R": np.eye(3), "t": [0, 0, 0], "width": 10, "height": 10, "name": "left.png", **change}
     with pytest.raises(CaptureError, match=r"left\.png") as caught:
-        Camera.checked(**arguments)
+        Camera.from_matrices(**arguments)
     assert caught.value.code == code

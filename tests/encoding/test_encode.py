@@ -234,7 +234,7 @@ def test_a_world_far_from_its_origin_is_said(caplog):
     cameras = [Camera(c.K, c.R, c.t - c.R @ far, c.width, c.height) for c in row_grid(4)]
     mesh = ef.Mesh((np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]) + far).astype(np.float32), np.array([[0, 1, 2]]))
     with caplog.at_level(logging.WARNING):
-        _warn_of_rounding(cameras, [camera.rounded() for camera in cameras], mesh)
+        _warn_of_rounding(cameras, [camera.to_float32() for camera in cameras], mesh)
     assert "origin" in caplog.text
 
 
@@ -267,11 +267,11 @@ def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
      ("photographs", {"photographs", "fit luma", "fit chroma", "code luma", "code chroma"})],
 )  # fmt: skip
 def test_progress_is_told_from_start_to_end(folder, capture, fit, stages):
-    told = {}
+    reported = {}
     ef.encode(
         capture, proxy=folder / "proxy.ply", atlas=64, textures=2, fit=fit,
-        progress=lambda stage, done, total: told.setdefault(stage, []).append((done, total)),
+        progress=lambda stage, done, total: reported.setdefault(stage, []).append((done, total)),
     )  # fmt: skip
-    assert stages <= set(told)
-    for steps in told.values():
+    assert stages <= set(reported)
+    for steps in reported.values():
         assert steps[0][0] == 0 and steps[-1][0] == steps[-1][1]

@@ -1,4 +1,4 @@
-"""Regions with components of their own: found where the error is, none where it is even; and what they are worth."""
+"""Regions with components of their own: found where the error is, none where it is even; and what they save."""
 
 from __future__ import annotations
 

@@ -287,7 +287,7 @@ def test_shots_that_are_drawn_otherwise_have_none(exact):
 def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
     """Residuals of files before 1.5; of cameras half as fine as the reference, from 2 x 2."""
     smaller = replace(exact.proxy.mesh, vertices=exact.proxy.mesh.vertices * np.array([0.7, 0.7, 1], np.float32))
-    cameras = tuple(one.resized(32, 28) if index == 3 else one for index, one in enumerate(exact.rig.cameras))
+    cameras = tuple(one.resize(32, 28) if index == 3 else one for index, one in enumerate(exact.rig.cameras))
     older = replace(
         exact,
         proxy=Proxy(smaller),

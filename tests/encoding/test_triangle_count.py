@@ -20,7 +20,7 @@ from support.observations import greys, repeated
 from support.scenes import row_grid
 from support.surfaces import ball, nine_cameras, square
 
-CAMERAS = tuple(camera.resized(120, 100) for camera in row_grid(9))
+CAMERAS = tuple(camera.resize(120, 100) for camera in row_grid(9))
 
 
 def wavy(height: float, nodes: int = 42) -> Mesh:
@@ -101,7 +101,7 @@ def test_where_nothing_is_left_the_picture_is_black():
 
 def test_large_photographs_are_looked_at_smaller():
     wall = wavy(0.1)
-    camera = CAMERAS[4].resized(2400, 2000)
+    camera = CAMERAS[4].resize(2400, 2000)
     grey = np.kron(stripes(CAMERAS[4]), np.ones((20, 20), np.float32))
     view = _view(wall, camera, 0, grey)
     assert view.grey.size <= 1 << 20 and view.pixels == pytest.approx(2400 * 2000 / (1 << 20))

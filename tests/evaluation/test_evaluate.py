@@ -15,7 +15,7 @@ from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.encoding.projected import make_atlas, texture_map
-from eigenfield.evaluation import PSNR_CAP, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
+from eigenfield.evaluation import PSNR_MAX_DECIBELS, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save
 from eigenfield.rendering import Renderer, camera_weights
@@ -40,7 +40,7 @@ def test_a_scene_against_its_own_pictures_is_perfect(scene, tmp_path):
     for kind, count in (("encoded", 8), ("held_out", 1)):
         part = figures["image"][kind]
         assert part["cameras"] == count
-        assert part["psnr"] == part["psnr_full"] == part["psnr_luma"] == PSNR_CAP
+        assert part["psnr"] == part["psnr_full"] == part["psnr_luma"] == PSNR_MAX_DECIBELS
         assert part["ssim"] == part["ssim_full"] == 1
         assert 0.3 < part["coverage"] < 1
     assert figures["bytes"] is figures["ratio"] is None
@@ -78,9 +78,11 @@ def test_an_offset_of_ten_levels_is_found_where_it_is(scene, tmp_path, at, kind)
     part = figures["image"][kind]
     assert part["worst"]["psnr"] == {"value": pytest.approx(known, abs=1e-5), "camera": scene.rig.names[at]}
     assert part["worst"]["psnr_full"]["value"] == pytest.approx(known, abs=1e-5)
-    assert part["psnr"] == pytest.approx((PSNR_CAP * (part["cameras"] - 1) + known) / part["cameras"], abs=1e-5)
+    assert part["psnr"] == pytest.approx(
+        (PSNR_MAX_DECIBELS * (part["cameras"] - 1) + known) / part["cameras"], abs=1e-5
+    )
     other = {"encoded": "held_out", "held_out": "encoded"}[kind]
-    assert figures["image"][other]["psnr"] == PSNR_CAP
+    assert figures["image"][other]["psnr"] == PSNR_MAX_DECIBELS
     one = next(camera for camera in figures["cameras"] if camera["name"] == scene.rig.names[at])
     assert one["psnr"] == pytest.approx(known, abs=1e-5)
     assert one["held_out"] == (kind == "held_out")
@@ -92,7 +94,7 @@ def test_the_background_counts_in_the_full_figures_only(scene, tmp_path):
         return np.where(coverage[..., None] > 0, picture, 200).astype(np.uint8)
 
     part = evaluate(scene, write_capture(scene, tmp_path / "c", framed))["image"]["encoded"]
-    assert part["psnr"] == PSNR_CAP
+    assert part["psnr"] == PSNR_MAX_DECIBELS
     assert part["ssim"] == 1
     assert part["psnr_full"] < 20
     assert part["ssim_full"] < 0.95
@@ -108,7 +110,7 @@ def test_masks_bound_the_covered_pixels_and_the_coverage(scene, tmp_path):
 
     part = evaluate(scene, write_capture(scene, tmp_path / "c", spoilt, lambda index: mask))["image"]["encoded"]
     assert part["coverage"] == 1
-    assert part["psnr"] == PSNR_CAP
+    assert part["psnr"] == PSNR_MAX_DECIBELS
     assert part["ssim"] == 1
     assert part["psnr_full"] < 30
 
@@ -124,7 +126,7 @@ def test_circles_are_left_out_of_the_outside_figures(scene, tmp_path):
     for kind in ("encoded", "held_out"):
         assert figures["image"][kind]["psnr"] < 40
         outside = figures["image"][kind]["outside"]
-        assert outside["psnr"] == outside["psnr_luma"] == PSNR_CAP
+        assert outside["psnr"] == outside["psnr_luma"] == PSNR_MAX_DECIBELS
         assert outside["ssim"] == 1
         assert set(outside["worst"]) == {"psnr", "ssim", "psnr_luma"}
     some = evaluate(scene, capture, circles={scene.rig.names[0]: circle})["image"]["encoded"]["outside"]
@@ -196,7 +198,7 @@ def test_a_map_that_is_the_reconstruction_is_perfect_and_one_in_the_wrong_place_
     seen = np.ones(atlas.count, np.uint8)
     seen[::3] = 0
     perfect = measure_map(plane, 3, atlas, values, seen, [3])
-    assert perfect.psnr == (PSNR_CAP,)
+    assert perfect.psnr == (PSNR_MAX_DECIBELS,)
     assert perfect.ssim[0] == pytest.approx(1, abs=1e-6)
     assert perfect.png is None
     values[~seen.astype(bool)] = 7  # what is not seen does not count
@@ -276,7 +278,7 @@ def test_missing_photographs_are_named_and_left_out(scene, tmp_path):
     assert figures["image"]["encoded"]["cameras"] == 4
     held_only = evaluate(scene, write_capture(scene, tmp_path / "d", only=HELD))
     assert held_only["image"]["encoded"] is held_only["uv"] is None
-    assert held_only["image"]["held_out"]["psnr"] == PSNR_CAP
+    assert held_only["image"]["held_out"]["psnr"] == PSNR_MAX_DECIBELS
 
 
 def test_a_camera_that_sees_nothing_has_no_figures(scene, tmp_path):
@@ -287,7 +289,7 @@ def test_a_camera_that_sees_nothing_has_no_figures(scene, tmp_path):
     figures = evaluate(blind, write_capture(blind, tmp_path / "c"))
     assert figures["cameras"][0]["psnr"] is figures["cameras"][0]["uv_ssim"] is None
     assert figures["cameras"][0]["coverage"] == 0
-    assert figures["image"]["encoded"]["psnr"] == PSNR_CAP
+    assert figures["image"]["encoded"]["psnr"] == PSNR_MAX_DECIBELS
     assert figures["image"]["encoded"]["worst"]["coverage"] == {"value": 0, "camera": scene.rig.names[0]}
     json.dumps(figures, allow_nan=False)
 
@@ -303,7 +305,7 @@ def test_a_capture_of_something_else(scene, tmp_path):
 
 def test_photographs_of_another_size(scene, tmp_path):
     small = dataclasses.replace(
-        scene, rig=dataclasses.replace(scene.rig, cameras=tuple(camera.resized(24, 20) for camera in scene.rig.cameras))
+        scene, rig=dataclasses.replace(scene.rig, cameras=tuple(camera.resize(24, 20) for camera in scene.rig.cameras))
     )
     with pytest.raises(CaptureError) as caught:
         evaluate(scene, write_capture(small, tmp_path / "c"))

@@ -199,7 +199,7 @@ def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
             tiny_scene(cameras=4),
             appearance=replace(tiny_scene(cameras=4).appearance, planes=values, to_rgb=np.eye(3, dtype=np.float32)),
         )
-        save(encoded(scene, Payloads.joined(plane.payloads for plane in planes)), path, overwrite=True)
+        save(encoded(scene, Payloads.merge(plane.payloads for plane in planes)), path, overwrite=True)
         (mesh,) = trimesh.load(path).geometry.values()
         assert mesh.visual.material.baseColorTexture.size == (side, side)
 

@@ -188,7 +188,7 @@ def test_one_plane_of_two_is_replaced(tmp_path, caplog):
 def test_fewer_textures_are_coded_anew_and_the_rest_is_kept(scene):
     (plane,) = scene.appearance.planes
     fewer = replace(
-        scene, appearance=replace(scene.appearance, planes=(replace(plane, bases=(basis_of(scene).truncated(2),)),))
+        scene, appearance=replace(scene.appearance, planes=(replace(plane, bases=(basis_of(scene).truncate(2),)),))
     )
     kept = cached_payloads(fewer)
     assert kept.lost.keys() == {"planes[0].bases[0].textures", "planes[0].bases[0].weights"}

@@ -34,7 +34,7 @@ def files(good):
     """A file of each kind: plain ones of each codec, coded, with regions and a precision, with a residual."""
     made = dict(good)
     coded = coded_scene()
-    film = Residual(b"film", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full=True, smooth=True)
+    video = Residual(b"video", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full=True, smooth=True)
     made["coded"] = encode_scene(coded)
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
@@ -43,7 +43,7 @@ def files(good):
     twice = replace(plane.bases[0], weights=np.concatenate([plane.bases[0].weights] * 2))
     moving = replace(still.appearance, planes=(replace(plane, bases=(twice,)),))
     made["times"] = encode_scene(replace(still, times=(0.0, 0.5), appearance=moving))
-    made["residual"] = encode_scene(replace(coded, residual=film))
+    made["residual"] = encode_scene(replace(coded, residual=video))
     return made
 
 
@@ -175,7 +175,7 @@ WRONG = [
     ("png", ("settings",), []),
     ("png", ("scores",), 3),
     ("png", ("generator",), 7),
-    ("residual", ("residual",), "film"),
+    ("residual", ("residual",), "video"),
     ("residual", ("residual", "bufferView"), MISSING),
     ("residual", ("residual", "size"), [321, 240]),
     ("residual", ("residual", "size"), [62, 62]),

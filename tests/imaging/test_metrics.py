@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
-from eigenfield.evaluation import PSNR_CAP, psnr, psnr_luma, ssim
+from eigenfield.evaluation import PSNR_MAX_DECIBELS, psnr, psnr_luma, ssim
 from eigenfield.imaging.metrics import to_codes
 
 FLAT = 2e-5  # what float32 leaves of the variances of flat, bright pictures, as SSIM
@@ -38,7 +38,7 @@ def reference_map(drawn, photograph):
 
 def test_identical_pictures_reach_the_cap_and_one():
     picture, _ = noise(20, 30)
-    assert psnr(picture, picture) == psnr_luma(picture, picture) == PSNR_CAP
+    assert psnr(picture, picture) == psnr_luma(picture, picture) == PSNR_MAX_DECIBELS
     assert ssim(picture, picture) == pytest.approx(1, abs=1e-6)
 
 
@@ -121,9 +121,9 @@ def test_noise_of_known_variance():
 
 def test_values_are_rounded_and_clipped_before_they_are_compared():
     picture = np.full((4, 4, 3), 100 / 255, np.float32)
-    assert psnr(picture + np.float32(0.49 / 255), picture) == PSNR_CAP
-    assert psnr(np.full_like(picture, 1.7), np.ones_like(picture)) == PSNR_CAP
-    assert psnr(np.full_like(picture, -0.3), np.zeros_like(picture)) == PSNR_CAP
+    assert psnr(picture + np.float32(0.49 / 255), picture) == PSNR_MAX_DECIBELS
+    assert psnr(np.full_like(picture, 1.7), np.ones_like(picture)) == PSNR_MAX_DECIBELS
+    assert psnr(np.full_like(picture, -0.3), np.zeros_like(picture)) == PSNR_MAX_DECIBELS
     assert to_codes(np.array([[[0.5 / 255, 1.5 / 255, 2.0]]], np.float32)).tolist() == [[[0, 2, 255]]]  # half to even
 
 
@@ -136,7 +136,7 @@ def test_whole_frame_agrees_with_scikit_image(height, width, seed, spread):
         assert ssim(drawn, photograph) == pytest.approx(inner.mean(), abs=1e-6)
     if (drawn != photograph).any():
         assert psnr(drawn, photograph) == pytest.approx(
-            min(PSNR_CAP, peak_signal_noise_ratio(photograph, drawn, data_range=255)), abs=1e-9
+            min(PSNR_MAX_DECIBELS, peak_signal_noise_ratio(photograph, drawn, data_range=255)), abs=1e-9
         )
 
 
@@ -159,7 +159,7 @@ def test_masked_figures_agree_with_their_definition(seed, height, width, share):
     error = drawn.astype(float)[covered] - photograph[covered]
     for figure, deviations in ((psnr, error), (psnr_luma, error @ [0.2126, 0.7152, 0.0722])):
         mean = np.square(deviations).mean()
-        expected = PSNR_CAP if mean == 0 else min(PSNR_CAP, 10 * math.log10(255**2 / mean))
+        expected = PSNR_MAX_DECIBELS if mean == 0 else min(PSNR_MAX_DECIBELS, 10 * math.log10(255**2 / mean))
         assert figure(drawn, photograph, covered) == pytest.approx(expected, abs=1e-4)
 
 

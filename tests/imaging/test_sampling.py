@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eigenfield.imaging.sampling import distances_to, farthest_points, halved
+from eigenfield.imaging.sampling import distances_to, farthest_points, halve_picture
 
 
 def test_farthest_points_of_a_line():
@@ -26,6 +26,6 @@ def test_points_that_coincide_are_chosen_once_and_others_can_be_left_out():
 @pytest.mark.parametrize("channels", [(), (3,)])
 def test_halved_is_the_mean_of_four(channels):
     picture = np.arange(4 * 6 * max(1, *channels, 1), dtype=np.float32).reshape(4, 6, *channels)
-    made = halved(picture)
+    made = halve_picture(picture)
     assert made.shape == (2, 3, *channels) and made.dtype == np.float32
     np.testing.assert_array_equal(made[1, 2], picture[2:, 4:].mean(axis=(0, 1)))

@@ -187,7 +187,7 @@ def test_the_border_that_lens_removal_leaves_is_no_mask(scene, cameras):
 
 def test_resizing_keeps_what_a_camera_sees():
     camera = looking(np.array([0, 0, -5.0]), (0, 0, 0), width=160, height=121)
-    small = camera.resized(53, 40)
+    small = camera.resize(53, 40)
     x, y = np.meshgrid(np.arange(160) + 0.5, np.arange(121) + 0.5)
     picture = np.stack([x, y, np.zeros_like(x)], axis=-1).astype(np.float32)
     result = multiview._resample(picture, camera, small)

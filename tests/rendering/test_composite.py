@@ -70,7 +70,7 @@ def test_buffers_used_again_hold_nothing_of_the_last_picture():
 
 def test_a_count_limits_every_basis():
     scene = split_scene()
-    cut = tuple(replace(p, bases=tuple(basis.truncated(1) for basis in p.bases)) for p in scene.appearance.planes)
+    cut = tuple(replace(p, bases=tuple(basis.truncate(1) for basis in p.bases)) for p in scene.appearance.planes)
     weights = ViewWeights.one(2)
     np.testing.assert_allclose(
         Renderer(scene).texture(weights, 1),

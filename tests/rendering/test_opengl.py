@@ -71,7 +71,7 @@ def test_scenes_of_any_number_of_textures(context, textures, tmp_path):
     cut = textures // 2
     rest = Basis(basis.textures[cut:], basis.scale[cut:], basis.zero[cut:], basis.weights[:, cut:])
     split = replace(
-        coded, appearance=replace(coded.appearance, planes=(Plane(plane.mean, (basis.truncated(cut), rest)),))
+        coded, appearance=replace(coded.appearance, planes=(Plane(plane.mean, (basis.truncate(cut), rest)),))
     )
     expected = ef.render(coded, at=(0.4, 0.3), samples=1)
     camera, weights = viewpoint(coded, at=(0.4, 0.3))
@@ -99,7 +99,7 @@ def test_each_texture_has_its_own_weight(context, loaded):
 def test_fresh_scenes_of_one_and_three_channels(context, channels, textures):
     fresh = tiny_scene(channels=channels, textures=textures, cameras=9)
     camera, weights = viewpoint(fresh, at=(0.2, -0.6))
-    camera = camera.resized(192, 160)
+    camera = camera.resize(192, 160)
     drawn = OpenGLRenderer(fresh, context=context).draw(camera, weights)
     expected = ef.render(fresh, at=(0.2, -0.6), resolution=(192, 160), samples=1)
     same = replace(expected, image=np.broadcast_to(expected.image, (160, 192, 3)))
@@ -161,7 +161,7 @@ def test_pictures_of_several_sizes_one_after_the_other(context, loaded):
     renderer = OpenGLRenderer(loaded, context=context)
     for size in ((64, 48), (320, 240), (33, 21), (320, 240)):
         camera, weights = viewpoint(loaded, at=(0, 0))
-        drawn = renderer.draw(camera.resized(*size), weights)
+        drawn = renderer.draw(camera.resize(*size), weights)
         assert drawn.image.shape == (size[1], size[0], 3) and drawn.coverage.any()
 
 
@@ -169,7 +169,7 @@ def test_smaller_pictures_do_not_shimmer(context, loaded):
     """A picture of a quarter of the size is about the average of the large one's pixels."""
     camera, weights = viewpoint(loaded, at=(0, 0))
     renderer = OpenGLRenderer(loaded, context=context)
-    large, small = renderer.draw(camera, weights), renderer.draw(camera.resized(80, 60), weights)
+    large, small = renderer.draw(camera, weights), renderer.draw(camera.resize(80, 60), weights)
     average = large.image.reshape(60, 4, 80, 4, 3).mean(axis=(1, 3))
     whole = large.coverage.reshape(60, 4, 80, 4).min(axis=(1, 3)) == 1
     assert np.abs(small.image - average)[whole].mean() < 0.03

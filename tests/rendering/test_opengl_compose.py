@@ -119,7 +119,7 @@ def test_a_view_is_composed_once(context, monkeypatch):
         moved, others = viewpoint(made, at=(0.4, 0.2))
         seen = []
         for view, mix, textures in (
-            (camera, weights, None), (moved.resized(50, 40), weights, None), (camera, weights, 2), (camera, None, 2),
+            (camera, weights, None), (moved.resize(50, 40), weights, None), (camera, weights, 2), (camera, None, 2),
             (camera, None, 2), (moved, None, 2), (moved, others, 2),
         ):  # fmt: skip
             before = len(counted)

@@ -56,7 +56,7 @@ def pictures_of(scene, mode, pixels=32):
     """The picture that the moving camera sees; with 12 x 12 samples a pixel, so that edges move smoothly too."""
     return lambda at: (
         renderer_of(scene)
-        .draw(novel_camera(scene, at).resized(pixels, pixels), view_weights(scene, at, mode), samples=12)
+        .draw(novel_camera(scene, at).resize(pixels, pixels), view_weights(scene, at, mode), samples=12)
         .image
     )
 

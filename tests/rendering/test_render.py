@@ -19,12 +19,12 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import Renderer, ViewWeights, draw_texture, path_points, view_weights
 from eigenfield.rendering.software.drawing import (
-    STANDARD,
-    Frame,
+    MULTISAMPLE_OFFSETS_PX,
+    Framebuffer,
     choose_sampling,
-    cover,
     make_surface,
     median_footprint,
+    rasterise_surface,
     smooth_edges,
 )
 from eigenfield.runtime.parallel import set_threads
@@ -94,7 +94,7 @@ def test_composition_is_equation_8(stored, channels):
         )
     weights = view_weights(scene, (0.2, -0.4))
     for count in (None, 0, 3):
-        part = basis.truncated(basis.count if count is None else count)
+        part = basis.truncate(basis.count if count is None else count)
         expected = reference.texture(
             scene.appearance.planes[0].mean.astype(float), part.values(), weights.blend(part.weights)
         )
@@ -201,7 +201,7 @@ def test_bases_of_a_plane_are_summed_and_planes_are_joined():
     whole = Renderer(scene).draw(scene.rig.cameras[1], ViewWeights.one(1)).image
     rest = Basis(basis.textures[2:], basis.scale[2:], basis.zero[2:], basis.weights[:, 2:])
     halves = replace(
-        scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncated(2), rest)),))
+        scene, appearance=replace(scene.appearance, planes=(Plane(plane.mean, (basis.truncate(2), rest)),))
     )
     np.testing.assert_allclose(Renderer(halves).draw(scene.rig.cameras[1], ViewWeights.one(1)).image, whole, atol=1e-6)
 
@@ -226,8 +226,8 @@ def test_tiles_out_of_sight_are_not_needed():
         camera, K=np.diag([6.0, 6, 1]) @ camera.K - np.array([[0, 0, 5.0 * 24], [0, 0, 5.0 * 20], [0, 0, 0]])
     )
     sampling = choose_sampling(renderer._surface, near)
-    frame = Frame(renderer._surface, near.height, near.width, sampling)
-    cover(renderer._surface, near, sampling, frame)
+    frame = Framebuffer(renderer._surface, near.height, near.width, sampling)
+    rasterise_surface(renderer._surface, near, sampling, frame)
     assert 0 < frame.needed.sum() < 0.4 * frame.needed.size
     whole = draw_texture(scene.proxy.mesh, renderer.texture(weights), near, samples=1)
     np.testing.assert_allclose(renderer.draw(near, weights, samples=1).image, whole.image, atol=1e-6)
@@ -251,7 +251,7 @@ def test_edges_are_the_mean_of_four_samples_and_the_rest_is_drawn_once(filter):
     smooth = draw_texture(mesh, texture, camera, filter=filter, background=behind)
     middle = draw_texture(mesh, texture, camera, filter=filter, background=behind, samples=1)
     four = []
-    for right, down in STANDARD:
+    for right, down in MULTISAMPLE_OFFSETS_PX:
         shifted = replace(camera, K=camera.K - np.array([[0, 0, right], [0, 0, down], [0, 0, 0]]))
         four.append(draw_texture(mesh, texture, shifted, filter=filter, background=behind, samples=1))
     np.testing.assert_array_equal(smooth.coverage, np.mean([picture.coverage for picture in four], axis=0))
@@ -292,12 +292,12 @@ def test_a_slanted_floor_is_no_edge(behind):
     camera = Camera(np.array([[100.0, 0, 64], [0, 100, 8], [0, 0, 1]]), np.eye(3), np.zeros(3), 128, 96)
     surface = make_surface(mesh, 512, 512)
     sampling = smooth_edges(2.0)
-    frame = Frame(surface, camera.height, camera.width, sampling)
-    cover(surface, camera, sampling, frame)
+    frame = Framebuffer(surface, camera.height, camera.width, sampling)
+    rasterise_surface(surface, camera, sampling, frame)
     shown = frame.inverse_depth[:, : camera.width] > 0
     parted = np.zeros_like(shown)
     for row, (first, last) in enumerate(frame.spans):
-        parted[row, frame.parted[first:last]] = True
+        parted[row, frame.multisampled[first:last]] = True
     assert shown.mean() > 0.5
     # below the far end's line, and inside the sides
     near = np.zeros_like(shown)
@@ -322,9 +322,9 @@ def test_a_close_up_of_large_triangles_has_a_footprint():
 def test_room_for_edges_takes_memory_only_where_they_are():
     surface = make_surface(SQUARE, SIZE, SIZE)
     before = resident()
-    frame = Frame(surface, 4096, 4096, smooth_edges(1.0))
-    assert frame.finer.nbytes > 7e8 and frame.parted.nbytes > 6e7
-    frame.finer[:, ::1000000] = 1
+    frame = Framebuffer(surface, 4096, 4096, smooth_edges(1.0))
+    assert frame.subsamples.nbytes > 7e8 and frame.multisampled.nbytes > 6e7
+    frame.subsamples[:, ::1000000] = 1
     assert resident() - before < 1e8
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS, encode_10bit
 from eigenfield.coding.video.av1 import encode_video
-from eigenfield.runtime.parallel import TASKS, ordinary_scheduling, parallel_map
+from eigenfield.runtime.parallel import TASKS_FOLDER, ordinary_scheduling, parallel_map
 
 pytestmark = pytest.mark.skipif(
     not hasattr(os, "sched_setscheduler") or os.geteuid() != 0, reason="only root's threads become real-time"
@@ -18,7 +18,7 @@ pytestmark = pytest.mark.skipif(
 
 
 def policies() -> set[int]:
-    return {os.sched_getscheduler(int(task.name)) for task in TASKS.iterdir()}
+    return {os.sched_getscheduler(int(task.name)) for task in TASKS_FOLDER.iterdir()}
 
 
 def make_real_time() -> None:

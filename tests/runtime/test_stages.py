@@ -11,7 +11,7 @@ import time
 import pytest
 
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.stages import PACKAGE, STAGE_ROOMS, Stages, code_version, file_digest, stage_key
+from eigenfield.runtime.stages import PACKAGE_FOLDER, STAGE_ROOMS, Stages, code_version, file_digest, stage_key
 
 
 def test_a_finished_stage_is_taken_up(tmp_path):
@@ -78,7 +78,7 @@ def test_the_fingerprint_is_that_of_the_rooms_that_make_stages(tmp_path):
 
 
 def test_the_rooms_that_make_stages_are_there():
-    assert all((PACKAGE / room / "__init__.py").is_file() for room in STAGE_ROOMS)
+    assert all((PACKAGE_FOLDER / room / "__init__.py").is_file() for room in STAGE_ROOMS)
     assert "calibrate" in STAGE_ROOMS and "encoding" not in STAGE_ROOMS
 
 

@@ -72,7 +72,7 @@ def precise_scene() -> EncodedScene:
     )
     return encoded(
         replace(layered, appearance=replace(layered.appearance, planes=planes)),
-        Payloads.joined(mean.payloads for mean in means),
+        Payloads.merge(mean.payloads for mean in means),
     )
 
 

@@ -72,7 +72,7 @@ def photographed(folder: Path) -> tuple[PhotoSet, LightField]:
         write_bytes(path, png_bytes(draw_texture(mesh, texture, camera, samples=1).image))
         shots.append(Shot(path.name, path, WIDTH, HEIGHT))
     photos = PhotoSet(folder, tuple(shots), None, (), "folder")
-    return photos, photos.calibrated(views)
+    return photos, photos.with_cameras(views)
 
 
 def picture(folder: Path, name: str, pixels: np.ndarray) -> Shot:

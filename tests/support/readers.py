@@ -18,7 +18,7 @@ from eigenfield.capture.readers.strecha import read_strecha
 from support import calibrations as write
 from support.calibrations import CUBE, HEIGHT, WIDTH, stations
 
-FINDERS = {row.name: row.find for row in formats.FORMATS if row.rank == formats.CAMERAS}
+FINDERS = {row.name: row.find for row in formats.FORMATS if row.rank == formats.RANK_CAMERAS}
 
 
 def write_llff(folder):

@@ -29,7 +29,7 @@ def scene(capture, tmp_path_factory):
 @pytest.fixture(scope="module", autouse=True)
 def build(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(page, "STATIC", write_build(tmp_path_factory.mktemp("build") / "static"))
+        patch.setattr(page, "STATIC_FOLDER", write_build(tmp_path_factory.mktemp("build") / "static"))
         yield
 
 

@@ -56,7 +56,7 @@ def test_photographs_are_kept_and_forgotten_by_size(scene, capture, monkeypatch)
     made = Photographs(loaded, opened, match_photographs(loaded, opened))
     first = made.png(0)
     assert made.png(0) is first
-    monkeypatch.setattr(photographs, "KEPT", len(first) + 10)
+    monkeypatch.setattr(photographs, "PHOTOGRAPH_CACHE_BYTES", len(first) + 10)
     assert made.png(1) is made.png(1)
     again = made.png(0)
     assert again is not first and again == first
@@ -90,7 +90,8 @@ def command(*arguments):
     code = (
         "import signal, sys; from pathlib import Path; from eigenfield.viewer import page\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-        f"page.STATIC = Path({str(page.STATIC)!r}); sys.argv = ['eigenfield', 'view', *{list(map(str, arguments))!r}]\n"
+        f"page.STATIC_FOLDER = Path({str(page.STATIC_FOLDER)!r})\n"
+        f"sys.argv = ['eigenfield', 'view', *{list(map(str, arguments))!r}]\n"
         "from eigenfield.cli import main; main()"
     )
     process = subprocess.Popen(

@@ -159,7 +159,7 @@ def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):
         exports.write_maps(scene, folder, textures=count)
         listing = json.loads((folder / "eigenfield.json").read_text(encoding="utf-8"))["maps"]
         assert list(listing) == [scene.rig.names[i] for i in scene.rig.encoded]
-        basis = scene.appearance.planes[0].bases[0].truncated(scene.appearance.textures if count is None else count)
+        basis = scene.appearance.planes[0].bases[0].truncate(scene.appearance.textures if count is None else count)
         for row, file in enumerate(listing.values()):
             expected = scene.appearance.planes[0].mean + np.tensordot(basis.weights[row], basis.values(), 1)
             np.testing.assert_allclose(pixels(folder / file), expected.clip(0, 1), atol=0.51 / 255)
@@ -200,7 +200,7 @@ def test_a_quilt_converges_on_the_scene_and_moves_sideways_only(scene):
 
 def test_quilts_fit_players_and_say_what_cannot_be(scene):
     large = replace(
-        scene, rig=replace(scene.rig, cameras=tuple(camera.resized(4000, 3000) for camera in scene.rig.cameras))
+        scene, rig=replace(scene.rig, cameras=tuple(camera.resize(4000, 3000) for camera in scene.rig.cameras))
     )
     quilt = exports.quilt_of(large)
     assert (quilt.columns, quilt.rows) == (8, 6) and 8 * quilt.width == 4096 and 6 * quilt.height <= 4096

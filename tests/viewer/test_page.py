@@ -38,7 +38,7 @@ GLB = bytes(range(256)) * 5
 
 @pytest.fixture(autouse=True)
 def build(tmp_path, monkeypatch):
-    monkeypatch.setattr(page, "STATIC", write_build(tmp_path / "static"))
+    monkeypatch.setattr(page, "STATIC_FOLDER", write_build(tmp_path / "static"))
 
 
 class Elements(HTMLParser):
@@ -173,7 +173,7 @@ def test_numbers_that_json_lacks_are_a_bug():
     ],
 )
 def test_a_page_that_was_not_built_is_said_in_one_line(damage):
-    damage(page.STATIC)
+    damage(page.STATIC_FOLDER)
     with pytest.raises(OutputError) as caught:
         single_file(GLB, title="t")
     assert caught.value.code == "viewer-build" and "npm run build" in str(caught.value)
@@ -225,9 +225,9 @@ def test_a_scene_from_elsewhere_is_coded_once(monkeypatch):
 def test_what_cannot_be_shown_says_so(monkeypatch):
     scene = tiny_scene()
     with monkeypatch.context() as patch:
-        patch.setattr(notebook, "MOST", 100)
+        patch.setattr(notebook, "NOTEBOOK_MAX_BYTES", 100)
         assert scene_html(scene).startswith("<pre>") and "eigenfield view" in scene_html(scene)
-    monkeypatch.setattr(page, "STATIC", page.STATIC / "<none>")
+    monkeypatch.setattr(page, "STATIC_FOLDER", page.STATIC_FOLDER / "<none>")
     assert "npm run build" in scene_html(scene) and "<none>" not in scene_html(scene)
 
 

@@ -190,7 +190,7 @@ def test_a_kept_connection_that_says_nothing_is_closed(running, impatient):
 
 
 def test_too_many_connections(running, monkeypatch):
-    monkeypatch.setattr(server, "MOST", 4)
+    monkeypatch.setattr(server, "SERVER_MAX_CONNECTIONS", 4)
     with contextlib.ExitStack() as stack:
         first = [stack.enter_context(Client(running.port)) for _ in range(4)]
         for client in first:

@@ -8,10 +8,10 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from eigenfield.calibrate.lenses import KnownLens
-from eigenfield.capture.arrangement import Wanted
-from eigenfield.capture.calibration import Intrinsics, printable
-from eigenfield.capture.formats import FORMATS, claim_of_file, detect
-from eigenfield.capture.pairing import is_same_picture, scaled_camera
+from eigenfield.capture.arrangement import OpenOptions
+from eigenfield.capture.calibration import Intrinsics, escape_name
+from eigenfield.capture.formats import FORMATS, claim_of_file, detect_format
+from eigenfield.capture.pairing import is_same_picture, scale_camera
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.readers.filestorage import is_storage
@@ -50,7 +50,7 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
         if entry is None:
             raise CaptureError(
                 "intrinsics-missing",
-                f"has {len(distinct)} cameras, none of them named {printable(shot.name)}",
+                f"has {len(distinct)} cameras, none of them named {escape_name(shot.name)}",
                 path=path,
                 remedy="name its cameras as the photographs, or give a file of one camera",
             )
@@ -77,7 +77,7 @@ def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
     if len(values) != 9:
         return None
     K = values.reshape(3, 3)
-    Camera.checked(K, np.eye(3), np.zeros(3), 1, 1, path.name)
+    Camera.from_matrices(K, np.eye(3), np.zeros(3), 1, 1, path.name)
     return {"": (Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2])), None)}
 
 
@@ -85,7 +85,7 @@ def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:
     if path.is_file() and is_storage(path):
         return {name.casefold(): entry for name, entry in read_opencv_intrinsics(path).items()}
     formats = tuple(row for row in FORMATS if row.read_cameras is not None)
-    claim = claim_of_file(path, formats) if path.is_file() else detect(path, formats, Wanted(None, None))
+    claim = claim_of_file(path, formats) if path.is_file() else detect_format(path, formats, OpenOptions(None, None))
     if claim is None or claim.format.read_cameras is None:
         raise CaptureError(
             "calibration-missing",
@@ -110,7 +110,7 @@ def _scale_to_photograph(entry: LensEntry, shot: Shot, path: Path) -> KnownLens:
             path=shot.path,
             remedy="give the intrinsics of these photographs",
         )
-    camera = Camera.checked(intrinsics.matrix(*size), np.eye(3), np.zeros(3), *size, shot.name)
+    camera = Camera.from_matrices(intrinsics.matrix(*size), np.eye(3), np.zeros(3), *size, shot.name)
     if size != (shot.width, shot.height):
-        camera = scaled_camera(camera, shot.width, shot.height)
+        camera = scale_camera(camera, shot.width, shot.height)
     return KnownLens(camera.K, lens)

@@ -34,7 +34,7 @@ class KnownLens:
 def undistort_pixels(points: F64, known: KnownLens) -> F64:
     """Where the pinhole camera K sees what the lens shows.
 
-    Newton's method inverts `distort_to_pixels`. Directions beyond `Lens.limit` are rejected.
+    Newton's method inverts `distort_to_pixels`. Directions beyond `Lens.valid_radius` are rejected.
 
     Args:
         points: (n, 2) pixels of the photograph.
@@ -70,7 +70,7 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
             np.abs(apply_distortion(normalised, known.lens) - target).max(axis=1)
             < UNDISTORT_MAX_ERROR_PIXELS / focal.max()
         )
-        wrong |= ~((normalised**2).sum(axis=1) < known.lens.limit() ** 2)
+        wrong |= ~((normalised**2).sum(axis=1) < known.lens.valid_radius() ** 2)
     normalised[wrong] = np.nan
     return normalised * focal + principal
 

@@ -2,10 +2,10 @@
 
     light_field = open_capture("capture/")   # a calibration of any format in `formats.FORMATS`
     photograph = light_field.photograph(0)   # decoded now, lens removed, mask beside it
-    photo_set = open_photographs("photos/")  # no cameras; what names tell of the array in `photo_set.layout`
+    photo_set = open_photographs("photos/")  # no cameras; the grid that the names state is `photo_set.layout`
     either = open_any("folder/")
 
-`docs/captures.md` says what is read, under which conventions, and what trips people.
+`docs/captures.md` describes the formats, their conventions and common pitfalls.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the names of photographs say of how the cameras stood, before any of the files is opened."""
+"""Where the cameras stand according to the names of the photographs, before any of the files is opened."""
 
 from __future__ import annotations
 
@@ -9,24 +9,24 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, printable
+from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.locate import photographs_in
-from eigenfield.capture.messages import count, natural, some
+from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
+from eigenfield.capture.messages import count_phrase, list_names, natural_key
 from eigenfield.core.errors import CaptureError
 
-FEWEST_NAMED = 3  # photographs that must bear a format's names
-SHARE = 0.5  # of a folder's photographs, likewise
-IMAGES = "images"
+NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
+NAMES_MIN_FRACTION = 0.5  # of a folder's photographs, likewise
 
 
 @dataclass(frozen=True)
-class Wanted:
-    """What the caller says of a capture beside its path.
+class OpenOptions:
+    """Options with which photographs without a calibration are opened.
 
-    grid: (rows, columns) of photographs in row-major order.
-    frame: which frame of each video: an index from 0, or seconds ("2.5s").
-    work: a folder that keeps the frames taken from videos; None for a temporary one.
+    Attributes:
+        grid: (rows, columns) of photographs in row-major order.
+        frame: Frame of each video: an index from 0, or seconds ("2.5s").
+        work: Folder that keeps the frames taken from videos; None for a temporary one.
     """
 
     grid: tuple[int, int] | None = None
@@ -38,9 +38,13 @@ class Wanted:
 class Arrangement:
     """Photographs of one scene as their names place them.
 
-    files: the photographs. layout: their nodes, in the order of `files`; None where names say nothing.
-    others: photographs beside them that bear other names.
-    calibration: whole cameras, where names (or a file beside them) say so much.
+    Attributes:
+        format: The reader's name.
+        files: The photographs.
+        layout: Their nodes, in the order of `files`; None if the names state none.
+        problems: Lines for people.
+        others: Photographs beside them that have other names.
+        calibration: Whole cameras, where the names or a file beside them state them.
     """
 
     format: str
@@ -56,18 +60,18 @@ def photographs_of(folder: Path) -> list[Path]:
 
     Raises CaptureError `photographs-twice` where both hold some, and neither few.
     """
-    here, inner = photographs_in(folder), photographs_in(folder / IMAGES)
-    if len(here) >= FEWEST_NAMED and len(inner) >= FEWEST_NAMED:
+    here, inner = photographs_in(folder), photographs_in(folder / IMAGES_FOLDER)
+    if len(here) >= NAMES_MIN_PHOTOGRAPHS and len(inner) >= NAMES_MIN_PHOTOGRAPHS:
         raise CaptureError(
             "photographs-twice",
-            f"holds {len(here)} photographs itself and {len(inner)} in {IMAGES}/",
+            f"holds {len(here)} photographs itself and {len(inner)} in {IMAGES_FOLDER}/",
             path=folder,
-            remedy=f"name {folder / IMAGES}, or move the others away",
+            remedy=f"name {folder / IMAGES_FOLDER}, or move the others away",
         )
-    return sorted(here if len(here) >= len(inner) else inner, key=lambda path: (natural(path.name), path.name))
+    return sorted(here if len(here) >= len(inner) else inner, key=lambda path: (natural_key(path.name), path.name))
 
 
-def named_like(folder: Path, pattern: re.Pattern[str]) -> tuple[list[tuple[Path, re.Match[str]]], list[Path]]:
+def match_names(folder: Path, pattern: re.Pattern[str]) -> tuple[list[tuple[Path, re.Match[str]]], list[Path]]:
     """The photographs whose names without extension match, with their matches; and the others."""
     fitting, others = [], []
     for path in photographs_of(folder):
@@ -79,18 +83,19 @@ def named_like(folder: Path, pattern: re.Pattern[str]) -> tuple[list[tuple[Path,
     return fitting, others
 
 
-def is_named_like(folder: Path, pattern: re.Pattern[str]) -> bool:
+def has_matching_names(folder: Path, pattern: re.Pattern[str]) -> bool:
     """Whether the photographs of a folder, at least most of them, bear such names."""
-    fitting, others = named_like(folder, pattern)
-    return len(fitting) >= FEWEST_NAMED and len(fitting) >= SHARE * (len(fitting) + len(others))
+    fitting, others = match_names(folder, pattern)
+    return len(fitting) >= NAMES_MIN_PHOTOGRAPHS and len(fitting) >= NAMES_MIN_FRACTION * (len(fitting) + len(others))
 
 
-def told_by(pattern: re.Pattern[str]) -> Callable[[Path], Path | None]:
-    """The `find` of a format that is told by its names alone."""
-    return lambda folder: folder if is_named_like(folder, pattern) else None
+def find_by_names(pattern: re.Pattern[str]) -> Callable[[Path], Path | None]:
+    """The `find` of a format that is recognised by its names alone."""
+    return lambda folder: folder if has_matching_names(folder, pattern) else None
 
 
-def refuse_nothing(fitting: Sequence[object], folder: Path, what: str) -> None:
+def require_photographs(fitting: Sequence[object], folder: Path, what: str) -> None:
+    """Raise CaptureError `names-unknown` where no photograph of the folder is named as `what` describes."""
     if not fitting:
         raise CaptureError(
             "names-unknown",
@@ -100,43 +105,57 @@ def refuse_nothing(fitting: Sequence[object], folder: Path, what: str) -> None:
         )
 
 
-def nodes(
-    files: Sequence[Path], rows: Sequence[int], columns: Sequence[int], wanted: Wanted, folder: Path
+def make_grid_layout(
+    files: Sequence[Path], rows: Sequence[int], columns: Sequence[int], options: OpenOptions, folder: Path
 ) -> tuple[GridLayout, list[str]]:
-    """The layout of photographs on nodes: X is the column, Y minus the row; and a line that names missing nodes.
+    """The layout of photographs on nodes: X is the column, Y minus the row.
 
-    Raises CaptureError: `node-twice` (two photographs on one node), `grid-size` (not as `wanted.grid` says).
+    Args:
+        files: The photographs.
+        rows: Of each photograph's node.
+        columns: Of each photograph's node.
+        options: The caller's.
+        folder: Named in errors.
+
+    Returns:
+        The layout, and a line that names missing nodes.
+
+    Raises:
+        CaptureError: `node-twice` (two photographs on one node), `grid-size` (not as `options.grid` says).
     """
     owner: dict[tuple[int, int], Path] = {}
     for path, node in zip(files, zip(rows, columns, strict=True), strict=True):
         if node in owner:
+            one, other = escape_name(owner[node].name), escape_name(path.name)
             raise CaptureError(
                 "node-twice",
-                f"{printable(owner[node].name)} and {printable(path.name)} are both row {node[0]}, column {node[1]}",
+                f"{one} and {other} are both row {node[0]}, column {node[1]}",
                 path=folder,
                 remedy="take one of them out",
             )
         owner[node] = path
     r, c = np.array(rows, np.int64), np.array(columns, np.int64)
     layout = GridLayout(r, c, np.stack([c, -r], axis=1).astype(np.float64))
-    if wanted.grid is not None and layout.shape != wanted.grid:
+    if options.grid is not None and layout.shape != options.grid:
+        (named_rows, named_columns), (asked_rows, asked_columns) = layout.shape, options.grid
         raise CaptureError(
             "grid-size",
-            f"the names say {layout.shape[0]} rows x {layout.shape[1]} columns, not {wanted.grid[0]}x{wanted.grid[1]}",
+            f"the names say {named_rows} rows x {named_columns} columns, not {asked_rows}x{asked_columns}",
             path=folder,
             remedy="leave --grid out, or add the photographs that are missing",
         )
-    return layout, missing_line(layout)
+    return layout, describe_missing_nodes(layout)
 
 
-def missing_line(layout: GridLayout) -> list[str]:
-    missing = layout.missing
+def describe_missing_nodes(layout: GridLayout) -> list[str]:
+    """A line that names nodes without a photograph, if there are any."""
+    missing = layout.missing_nodes
     if not missing:
         return []
-    places = some([f"row {row} column {column}" for row, column in missing])
-    return [f"{count(missing, 'node of the grid has', 'nodes of the grid have')} no photograph: {places}"]
+    places = list_names([f"row {row} column {column}" for row, column in missing])
+    return [f"{count_phrase(missing, 'node of the grid has', 'nodes of the grid have')} no photograph: {places}"]
 
 
-def measured(layout: GridLayout, x: Sequence[float], y: Sequence[float]) -> GridLayout:
+def with_measured_positions(layout: GridLayout, x: Sequence[float], y: Sequence[float]) -> GridLayout:
     """The layout with measured positions, X to the right and Y up."""
     return replace(layout, positions=np.stack([x, y], axis=1).astype(np.float64), measured=True)

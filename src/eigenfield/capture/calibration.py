@@ -1,4 +1,4 @@
-"""What the readers hand on: one entry for each camera that a calibration lists, before any photograph is looked for."""
+"""What readers of calibrations return: an entry for each camera, before any photograph is searched."""
 
 from __future__ import annotations
 
@@ -18,10 +18,11 @@ from eigenfield.core.errors import CaptureError
 
 T = TypeVar("T")
 
-LARGEST = 1e30  # of focal lengths and positions: products of two of them stay finite, and a file keeps float32
+# of focal lengths in pixels and positions in world units: products of two of them stay finite, and a file keeps float32
+CALIBRATION_MAX_MAGNITUDE = 1e30
 
 
-def printable(text: str) -> str:
+def escape_name(text: str) -> str:
     """A name from a file as one line that every terminal and JSON can hold: control characters and lone surrogates
     (bytes that are no UTF-8) are written as escapes."""
     return "".join(c.encode("unicode_escape").decode() if unicodedata.category(c) in ("Cc", "Cs") else c for c in text)
@@ -29,12 +30,14 @@ def printable(text: str) -> str:
 
 @dataclass(frozen=True)
 class Intrinsics:
-    """Intrinsics as far as a calibration says them.
+    """Intrinsics as far as a calibration states them.
 
-    width, height: the size they are for; None where only the photograph knows.
-    focal: (fx, fy) pixels, or None when `angle` says it.
-    angle: (horizontal, vertical or None) full field of view, radians.
-    principal: (cx, cy) pixels, each None for the middle.
+    Attributes:
+        width: Of the photograph they are for, pixels; None where the calibration does not state it.
+        height: Likewise.
+        focal: (fx, fy) pixels, or None where `angle` gives it.
+        angle: (horizontal, vertical or None) full field of view, radians.
+        principal: (cx, cy) pixels, each None for the middle.
     """
 
     width: int | None
@@ -58,13 +61,17 @@ class Intrinsics:
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """One camera of a calibration.
+    """One camera of a calibration, not yet checked.
 
-    file: the photograph's path as the calibration writes it, with forward slashes.
-    label: what names the entry in messages.
-    R, centre: (3, 3) world-to-camera rotation with OpenCV axes, (3,) the camera's centre in the world; not yet checked.
-    mask: the mask's path as the calibration writes it.
-    bounds: the nearest and farthest depth of the scene from this camera, where the calibration says them.
+    Attributes:
+        file: The photograph's path as the calibration writes it, with forward slashes.
+        label: Names the entry in messages.
+        intrinsics: As the calibration states them.
+        R: (3, 3) world-to-camera rotation, OpenCV axes.
+        centre: (3,) the camera's centre in the world.
+        lens: The photograph's distortion; None if there is none.
+        mask: The mask's path as the calibration writes it.
+        bounds: Nearest and farthest depth of the scene from this camera, where the calibration states them.
     """
 
     file: str
@@ -79,16 +86,18 @@ class Entry:
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
         K = self.intrinsics.matrix(width, height)
-        if max(np.abs(K).max(), np.abs(self.centre).max()) > LARGEST:  # False for NaN: `checked` finds those
+        if (
+            max(np.abs(K).max(), np.abs(self.centre).max()) > CALIBRATION_MAX_MAGNITUDE
+        ):  # False for NaN: `from_matrices` finds those
             raise CaptureError(
                 "camera-not-finite",
-                f"camera {self.label} has entries beyond {LARGEST:g}",
+                f"camera {self.label} has entries beyond {CALIBRATION_MAX_MAGNITUDE:g}",
                 path=path,
                 remedy="mend or remove its entry",
             )
         try:
-            with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `checked` looks for
-                camera = Camera.checked(K, self.R, -(self.R @ self.centre), width, height, self.label)
+            with np.errstate(all="ignore"):  # NaN, infinities and singular matrices are what `from_matrices` looks for
+                camera = Camera.from_matrices(K, self.R, -(self.R @ self.centre), width, height, self.label)
         except CaptureError as error:
             raise CaptureError(error.code, error.message, path=path, remedy=error.remedy) from None
         # the centre is what a calibration knows well: keep it where checking snapped a rotation of few digits
@@ -99,9 +108,12 @@ class Entry:
 class Calibration:
     """All entries of one calibration.
 
-    path: the file or folder it was read from.
-    errors: entries that cannot be used, each an error of its own.
-    problems: lines for people.
+    Attributes:
+        path: The file or folder it was read from.
+        format: The reader's name.
+        entries: One for each camera that can be used.
+        errors: One for each entry that cannot be used.
+        problems: Lines for people.
     """
 
     path: Path

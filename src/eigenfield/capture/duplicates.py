@@ -1,4 +1,4 @@
-"""Photographs that are the same file twice or more."""
+"""Photographs that are copies of the same file."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from collections import defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from eigenfield.capture.messages import some
+from eigenfield.capture.messages import list_names
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import file_digest
 
 
-def same_files(paths: Sequence[Path]) -> list[list[str]]:
+def find_duplicates(paths: Sequence[Path]) -> list[list[str]]:
     """The names of each group of files with the same bytes; only files of the same length are read."""
     by_length: dict[int, list[Path]] = defaultdict(list)
     for path in paths:
@@ -24,12 +24,12 @@ def same_files(paths: Sequence[Path]) -> list[list[str]]:
     return [names for names in by_bytes.values() if len(names) > 1]
 
 
-def told_copies(groups: Sequence[Sequence[str]]) -> list[str]:
-    """A line for each group."""
-    return [f"{len(names)} photographs are the same file, byte for byte: {some(names)}" for names in groups]
+def describe_duplicates(groups: Sequence[Sequence[str]]) -> list[str]:
+    """A line for people for each group of the same photograph."""
+    return [f"{len(names)} photographs are the same file, byte for byte: {list_names(names)}" for names in groups]
 
 
-def refuse_copies(groups: Sequence[Sequence[str]], photographs: int, fewest: int, root: Path) -> None:
+def refuse_duplicates(groups: Sequence[Sequence[str]], photographs: int, fewest: int, root: Path) -> None:
     """Raise CaptureError `photographs-same` where fewer than `fewest` of the photographs differ."""
     different = photographs - sum(len(names) - 1 for names in groups)
     if groups and different < fewest:

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from eigenfield.capture.arrangement import Arrangement, Wanted
-from eigenfield.capture.calibration import Calibration, printable
-from eigenfield.capture.messages import some
+from eigenfield.capture.arrangement import Arrangement, OpenOptions
+from eigenfield.capture.calibration import Calibration, escape_name
+from eigenfield.capture.messages import list_names
 from eigenfield.capture.readers import colmap, transforms
 from eigenfield.capture.readers.bundler import find_bundler, read_bundler
 from eigenfield.capture.readers.folder import find_photographs, read_photographs
@@ -26,20 +26,24 @@ from eigenfield.capture.readers.strecha import find_strecha, read_strecha
 from eigenfield.capture.readers.video import find_videos, read_videos
 from eigenfield.core.errors import CaptureError, OptionError
 
-# the order of claims: of those that claim a folder, the lowest rank wins; two of one rank are a question
-FIRST, SECOND, CAMERAS, NAMES, ASKED, ANY = range(6)
+# of the formats that claim a folder, the one of lowest rank is read; two of one rank are ambiguous
+RANK_FIRST, RANK_SECOND, RANK_CAMERAS, RANK_NAMES, RANK_ON_REQUEST, RANK_ANY = range(6)
 
 
 @dataclass(frozen=True)
 class Format:
-    """One row.
+    """One row of the table.
 
-    name: for --format. title: one phrase for people. rank: whose claim goes first.
-    find: a folder -> what is to be read in it, or None. It looks at names and first bytes only.
-    read: what `find` found, and the folder of the photographs (`read_cameras`) or what the caller wants
-        (`read_names`) -> the calibration, or the arrangement that names tell.
-    endings: of file names that may be named directly as a calibration of this format.
-    uses: which of --grid and --frame mean something. cameras: whether it may yield cameras at all.
+    Attributes:
+        name: For --format.
+        title: One phrase for people.
+        rank: The claim of the lowest rank is taken.
+        find: From a folder to what is to be read in it, or None. It looks at names and first bytes only.
+        read_cameras: From what `find` returned and the folder of the photographs to the calibration.
+        read_names: From what `find` returned and the caller's options to the arrangement.
+        endings: Of file names that may be named directly as a calibration of this format.
+        uses: Those of "grid" and "frame" that the reader uses.
+        cameras: Whether it may yield cameras at all.
     """
 
     name: str
@@ -47,100 +51,109 @@ class Format:
     rank: int
     find: Callable[[Path], Path | None]
     read_cameras: Callable[[Path, Path], Calibration] | None = None
-    read_names: Callable[[Path, Wanted], Arrangement] | None = None
+    read_names: Callable[[Path, OpenOptions], Arrangement] | None = None
     endings: tuple[str, ...] = ()
     uses: tuple[str, ...] = ()
     cameras: bool = True
 
 
-def _alone(read: Callable[[Path], Calibration]) -> Callable[[Path, Path], Calibration]:
+def _ignore_root(read: Callable[[Path], Calibration]) -> Callable[[Path, Path], Calibration]:
     """A reader of calibrations that name their photographs."""
     return lambda found, root: read(found)
 
 
-def _never(folder: Path) -> Path | None:
+def _find_nothing(folder: Path) -> Path | None:
     """`find` of a format that must be asked for."""
     return None
 
 
-def _cameras(
+def _camera_format(
     name: str,
     title: str,
     find: Callable[[Path], Path | None],
     read: Callable[[Path, Path], Calibration],
     *endings: str,
-    rank: int = CAMERAS,
+    rank: int = RANK_CAMERAS,
 ) -> Format:
     return Format(name, title, rank, find, read_cameras=read, endings=endings)
 
 
-def _names(
+def _name_format(
     name: str,
     title: str,
     find: Callable[[Path], Path | None],
-    read: Callable[[Path, Wanted], Arrangement],
+    read: Callable[[Path, OpenOptions], Arrangement],
     *uses: str,
-    rank: int = NAMES,
+    rank: int = RANK_NAMES,
     cameras: bool = False,
 ) -> Format:
     return Format(name, title, rank, find, read_names=read, uses=uses, cameras=cameras)
 
 
 FORMATS = (
-    _cameras("transforms", "nerfstudio or instant-ngp transforms.json", transforms.find_transforms,
-             _alone(transforms.read_transforms), ".json", rank=FIRST),
-    _cameras("colmap", "COLMAP model", colmap.find_colmap, _alone(colmap.read_colmap), rank=SECOND),
-    _cameras("llff", "LLFF poses_bounds.npy", find_llff, read_llff, ".npy"),
-    _cameras("middlebury", "Middlebury *_par.txt", find_middlebury, _alone(read_middlebury), "_par.txt"),
-    _cameras("strecha", "Strecha *.camera", find_strecha, _alone(read_strecha), ".camera"),
-    _cameras("bundler", "Bundler bundle.out", find_bundler, _alone(read_bundler), ".out"),
-    _cameras("metashape", "Agisoft Metashape XML", find_metashape, _alone(read_metashape), ".xml"),
-    _cameras("opencv", "OpenCV YAML, XML or JSON", find_opencv, read_opencv, ".yml", ".yaml", ".xml"),
-    _cameras("projections", "3x4 projection matrices", find_projections, _alone(read_projections), "_p.txt", ".p"),
-    _names("positions", "parallel cameras in names (_RR_CC_A_B_LENS_SENSOR)", find_positions, read_positions, "grid",
-           cameras=True),
-    _names("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
-    _names("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
-    _names("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
-    _names("numbered", "numbered frames with --grid", _never, read_numbered, "grid", rank=ASKED),
-    _names("video", "one video a camera", find_videos, read_videos, "frame", rank=ANY),
-    _names("folder", "plain folder of photographs", find_photographs, read_photographs, rank=ANY),
+    _camera_format("transforms", "nerfstudio or instant-ngp transforms.json", transforms.find_transforms,
+                   _ignore_root(transforms.read_transforms), ".json", rank=RANK_FIRST),
+    _camera_format("colmap", "COLMAP model", colmap.find_colmap, _ignore_root(colmap.read_colmap), rank=RANK_SECOND),
+    _camera_format("llff", "LLFF poses_bounds.npy", find_llff, read_llff, ".npy"),
+    _camera_format("middlebury", "Middlebury *_par.txt", find_middlebury, _ignore_root(read_middlebury), "_par.txt"),
+    _camera_format("strecha", "Strecha *.camera", find_strecha, _ignore_root(read_strecha), ".camera"),
+    _camera_format("bundler", "Bundler bundle.out", find_bundler, _ignore_root(read_bundler), ".out"),
+    _camera_format("metashape", "Agisoft Metashape XML", find_metashape, _ignore_root(read_metashape), ".xml"),
+    _camera_format("opencv", "OpenCV YAML, XML or JSON", find_opencv, read_opencv, ".yml", ".yaml", ".xml"),
+    _camera_format("projections", "3x4 projection matrices", find_projections, _ignore_root(read_projections), "_p.txt",
+                   ".p"),
+    _name_format("positions", "parallel cameras in names (_RR_CC_A_B_LENS_SENSOR)", find_positions, read_positions,
+                 "grid", cameras=True),
+    _name_format("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
+    _name_format("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
+    _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
+    _name_format("numbered", "numbered frames with --grid", _find_nothing, read_numbered, "grid", rank=RANK_ON_REQUEST),
+    _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
+    _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
-# what a folder does not hold by chance; where no reader takes one of these up, it is damaged or incomplete
-TELLING = (
+# files that a folder does not hold by chance: if no reader claims one of these, it is damaged or incomplete
+CALIBRATION_PATTERNS = (
     "transforms.json", "poses_bounds.npy", "*_par.txt", "*.camera", "bundle.out", "bundle/bundle.out", "cameras.xml",
     "sparse/0/images.*", "sparse/0/cameras.*", "sparse/images.*", "sparse/cameras.*", "*_P.txt",
 )  # fmt: skip
-BY_NAME = {row.name: row for row in FORMATS}
+FORMATS_BY_NAME = {row.name: row for row in FORMATS}
 
 
 @dataclass(frozen=True)
 class Claim:
-    """A format that a folder has, what is to be read, and what else was there (lines for people)."""
+    """A format that a folder has.
+
+    Attributes:
+        format: The row.
+        found: The file or folder to read.
+        problems: Lines for people about what else was there.
+    """
 
     format: Format
     found: Path
     problems: tuple[str, ...] = ()
 
 
-def named_format(name: str) -> Format:
+def format_by_name(name: str) -> Format:
     """The row of a name; OptionError `format-unknown`."""
-    if name not in BY_NAME:
-        raise OptionError("format-unknown", f"--format {name} is none", remedy=f"say one of {', '.join(BY_NAME)}")
-    return BY_NAME[name]
+    if name not in FORMATS_BY_NAME:
+        raise OptionError(
+            "format-unknown", f"--format {name} is none", remedy=f"say one of {', '.join(FORMATS_BY_NAME)}"
+        )
+    return FORMATS_BY_NAME[name]
 
 
-def detect(folder: Path, formats: tuple[Format, ...], wanted: Wanted) -> Claim | None:
+def detect_format(folder: Path, formats: tuple[Format, ...], options: OpenOptions) -> Claim | None:
     """The format of a folder among `formats`: every row is asked, cameras go before names, and names before nothing.
 
     None where nothing claims it. Raises CaptureError `format-ambiguous` where two claims weigh the same.
     """
-    if wanted.grid is not None and BY_NAME["numbered"] in formats:
-        claims = _claims(folder, tuple(row for row in formats if row.rank < ASKED))
+    if options.grid is not None and FORMATS_BY_NAME["numbered"] in formats:
+        claims = _find_claims(folder, tuple(row for row in formats if row.rank < RANK_ON_REQUEST))
         if not claims and find_photographs(folder):
-            claims = [Claim(BY_NAME["numbered"], folder)]
+            claims = [Claim(FORMATS_BY_NAME["numbered"], folder)]
     else:
-        claims = _claims(folder, formats)
+        claims = _find_claims(folder, formats)
     if not claims:
         return None
     rank = min(claim.format.rank for claim in claims)
@@ -154,22 +167,24 @@ def detect(folder: Path, formats: tuple[Format, ...], wanted: Wanted) -> Claim |
             path=folder,
             remedy="say " + " or ".join(f"--format {name}" for name in names),
         )
-    also = [claim for claim in claims if rank < claim.format.rank < NAMES]
-    lines = tuple(f"{_shown(c.found, folder)} is there too, not read; --format {c.format.name} reads it" for c in also)
-    if rank >= NAMES and any(row.read_cameras for row in formats):
-        lines += tuple(_not_taken_up(folder))
+    also = [claim for claim in claims if rank < claim.format.rank < RANK_NAMES]
+    lines = tuple(
+        f"{_relative_name(c.found, folder)} is there too, not read; --format {c.format.name} reads it" for c in also
+    )
+    if rank >= RANK_NAMES and any(row.read_cameras for row in formats):
+        lines += tuple(_describe_unread(folder))
     return Claim(best[0].format, best[0].found, lines)
 
 
-def _not_taken_up(folder: Path) -> list[str]:
-    found = [_shown(path, folder) for pattern in TELLING for path in sorted(folder.glob(pattern))]
-    return [f"{some(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
+def _describe_unread(folder: Path) -> list[str]:
+    found = [_relative_name(path, folder) for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern))]
+    return [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
 
 
-def _claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
+def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
     """Each row's claim; where cameras claim the folder, names are not asked, and where names do, nothing else is."""
     claims: list[Claim] = []
-    for ranks in ((FIRST, SECOND, CAMERAS), (NAMES,), (ASKED,), (ANY,)):
+    for ranks in ((RANK_FIRST, RANK_SECOND, RANK_CAMERAS), (RANK_NAMES,), (RANK_ON_REQUEST,), (RANK_ANY,)):
         found = [(row, row.find(folder)) for row in formats if row.rank in ranks]
         claims = [Claim(row, place) for row, place in found if place is not None]
         if claims:
@@ -177,16 +192,16 @@ def _claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
     return claims
 
 
-def _shown(found: Path, folder: Path) -> str:
-    return printable(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
+def _relative_name(found: Path, folder: Path) -> str:
+    return escape_name(found.relative_to(folder).as_posix() if found.is_relative_to(folder) else str(found))
 
 
 def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     """The format of a calibration that is named as a file; CaptureError `calibration-unknown`, `format-ambiguous`."""
     if len(formats) > 1 and path.suffix.lower() == ".json":
-        return Claim(BY_NAME["transforms"], path)
-    if BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):
-        return Claim(BY_NAME["colmap"], path.parent)
+        return Claim(FORMATS_BY_NAME["transforms"], path)
+    if FORMATS_BY_NAME["colmap"] in formats and path.stem in ("cameras", "images") and colmap.is_model(path.parent):
+        return Claim(FORMATS_BY_NAME["colmap"], path.parent)
     if len(formats) == 1:
         return Claim(formats[0], path)
     fitting = [row for row in formats if path.name.lower().endswith(row.endings)]

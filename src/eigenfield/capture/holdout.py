@@ -10,15 +10,20 @@ from numpy.typing import NDArray
 from eigenfield.core.errors import OptionError
 from eigenfield.core.viewplane import find_grid
 
-LEAST_ENCODED = 3
+HOLDOUT_MIN_ENCODED_CAMERAS = 3
 
 
 def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(Nc,) bool. coordinates: (Nc, 2) on the view plane.
+    """The held-out cameras, (Nc,) bool.
 
-    `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's order, from
-    number K // 2 on, so that the first is not among them. Otherwise names, separated by commas. Raises OptionError when
-    there is no grid, a name is unknown, or fewer than 3 cameras would remain.
+    Args:
+        rule: `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's
+            order, from number K // 2 on, so that the first is not among them. Otherwise names, separated by commas.
+        names: Of all cameras.
+        coordinates: (Nc, 2) on the view plane.
+
+    Raises:
+        OptionError: `hold-out`: there is no grid, a name is unknown, or fewer than 3 cameras would remain.
     """
     held = np.zeros(len(names), bool)
     if rule is None or rule == "":
@@ -44,8 +49,10 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
                 "hold-out", f"no camera is called {unknown[0]}", remedy="eigenfield inspect lists the names"
             )
         held[[list(names).index(name) for name in wanted]] = True
-    if (~held).sum() < LEAST_ENCODED:
+    if (~held).sum() < HOLDOUT_MIN_ENCODED_CAMERAS:
         raise OptionError(
-            "hold-out", f"{(~held).sum()} cameras would remain to encode", remedy=f"leave at least {LEAST_ENCODED}"
+            "hold-out",
+            f"{(~held).sum()} cameras would remain to encode",
+            remedy=f"leave at least {HOLDOUT_MIN_ENCODED_CAMERAS}",
         )
     return held

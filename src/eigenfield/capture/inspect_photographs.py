@@ -11,51 +11,63 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.arrangement import Arrangement
-from eigenfield.capture.calibration import printable
-from eigenfield.capture.duplicates import refuse_copies, same_files, told_copies
-from eigenfield.capture.locate import refuse_black, with_masks
-from eigenfield.capture.messages import count, natural, some
-from eigenfield.capture.photographs.exif import focal_of
+from eigenfield.capture.calibration import escape_name
+from eigenfield.capture.duplicates import describe_duplicates, find_duplicates, refuse_duplicates
+from eigenfield.capture.locate import refuse_black_masks, with_masks
+from eigenfield.capture.messages import count_phrase, list_names, natural_key
+from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map
 
-FEWEST = 3  # photographs that a scene can be made from
-ONE_LENS = 0.01  # relative spread of focal lengths below which they are one
+PHOTO_SET_MIN_PHOTOGRAPHS = 3  # photographs that a scene can be made from
+FOCAL_MAX_SPREAD_RATIO = 0.01  # of focal lengths to their median, up to which they count as the same
 
 log = logging.getLogger(__name__)
 
 
-def gather(arrangement: Arrangement, root: Path, *, masks: Path | None, strict: bool) -> PhotoSet:
+def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, strict: bool) -> PhotoSet:
     """The set of photographs of an arrangement; headers are read, nothing is decoded.
 
-    Raises CaptureError as `open_photographs` says.
+    Args:
+        arrangement: The photographs by their names.
+        root: Their folder.
+        masks: A folder of masks; None for none.
+        strict: As for `open_photographs`.
+
+    Raises:
+        CaptureError: As `open_photographs` does.
     """
     files = arrangement.files
-    order = sorted(range(len(files)), key=lambda i: (natural(files[i].name), files[i].name))
+    order = sorted(range(len(files)), key=lambda i: (natural_key(files[i].name), files[i].name))
     outcomes = parallel_map(_shot_or_error, [files[i] for i in order])
     found = [(i, outcome) for i, outcome in zip(order, outcomes, strict=True) if isinstance(outcome, Shot)]
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
     if arrangement.layout is not None:
-        found, odd = _one_size(found)
+        found, odd = _split_by_size(found)
         errors += odd
     if strict and errors:
         raise errors[0]
-    shots = _focal_lengths([shot for _, shot in found], arrangement)
-    copies = same_files([shot.path for shot in shots])
+    shots = _with_focal_lengths([shot for _, shot in found], arrangement)
+    copies = find_duplicates([shot.path for shot in shots])
     if strict:
-        refuse_copies(copies, len(shots), FEWEST, root)
-    problems = [*_left_out(arrangement.others), *arrangement.problems, *told_copies(copies), *map(str, errors)]
+        refuse_duplicates(copies, len(shots), PHOTO_SET_MIN_PHOTOGRAPHS, root)
+    problems = [
+        *_describe_left_out(arrangement.others),
+        *arrangement.problems,
+        *describe_duplicates(copies),
+        *map(str, errors),
+    ]
     if masks is not None:
         shots, missing = with_masks(shots, masks, root)
         if strict:
-            refuse_black([shot.mask for shot in shots], masks)
+            refuse_black_masks([shot.mask for shot in shots], masks)
         problems += missing
-    if strict and len(shots) < FEWEST:
+    if strict and len(shots) < PHOTO_SET_MIN_PHOTOGRAPHS:
         raise CaptureError(
             "too-few",
-            f"holds {count(shots, 'photograph', 'photographs')}; {FEWEST} are needed",
+            f"holds {count_phrase(shots, 'photograph', 'photographs')}; {PHOTO_SET_MIN_PHOTOGRAPHS} are needed",
             path=root,
             remedy="add photographs of the scene from other places, or name the folder that holds them all",
         )
@@ -64,15 +76,15 @@ def gather(arrangement: Arrangement, root: Path, *, masks: Path | None, strict: 
     layout = None
     if arrangement.layout is not None:
         layout = arrangement.layout.subset([i for i, _ in found])
-        layout = replace(layout, focal=common_focal([shot.focal for shot in shots]))
+        layout = replace(layout, focal=common_focal_length([shot.focal for shot in shots]))
     return PhotoSet(root, tuple(shots), layout, tuple(problems), arrangement.format)
 
 
-def _left_out(others: Sequence[Path]) -> list[str]:
+def _describe_left_out(others: Sequence[Path]) -> list[str]:
     if not others:
         return []
-    names = some([path.name for path in others])
-    return [f"{count(others, 'photograph is', 'photographs are')} not named like the rest and left out: {names}"]
+    names = list_names([path.name for path in others])
+    return [f"{count_phrase(others, 'photograph is', 'photographs are')} not named like the rest and left out: {names}"]
 
 
 def _shot_or_error(path: Path) -> Shot | CaptureError:
@@ -80,10 +92,10 @@ def _shot_or_error(path: Path) -> Shot | CaptureError:
         header = read_header(path)
     except CaptureError as error:
         return error
-    return Shot(printable(path.name), path, *header.upright, focal_of(path, header))
+    return Shot(escape_name(path.name), path, *header.upright_size, read_focal_length(path, header))
 
 
-def _one_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]], list[CaptureError]]:
+def _split_by_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]], list[CaptureError]]:
     """The photographs of a grid that have the most frequent size, and an error for each of the others."""
     sizes = Counter((shot.width, shot.height) for _, shot in found)
     if len(sizes) < 2:
@@ -102,8 +114,8 @@ def _one_size(found: Sequence[tuple[int, Shot]]) -> tuple[list[tuple[int, Shot]]
     return [(i, shot) for i, shot in found if (shot.width, shot.height) == (width, height)], errors
 
 
-def _focal_lengths(shots: Sequence[Shot], arrangement: Arrangement) -> list[Shot]:
-    """Shots with the focal lengths that names tell, where they do; they go before EXIF's."""
+def _with_focal_lengths(shots: Sequence[Shot], arrangement: Arrangement) -> list[Shot]:
+    """Shots with the focal lengths that the names state, if they do: those have precedence over EXIF's."""
     if arrangement.calibration is None:
         return list(shots)
     entries = {entry.file: entry for entry in arrangement.calibration.entries}
@@ -115,10 +127,10 @@ def _focal_lengths(shots: Sequence[Shot], arrangement: Arrangement) -> list[Shot
     return result
 
 
-def common_focal(focals: Sequence[float | None]) -> float | None:
+def common_focal_length(focals: Sequence[float | None]) -> float | None:
     """The focal length of all shots, where all have one and it is the same."""
     known = [focal for focal in focals if focal is not None]
     if not known or len(known) < len(focals):
         return None
     middle = float(np.median(known))
-    return middle if max(known) - min(known) <= ONE_LENS * middle else None
+    return middle if max(known) - min(known) <= FOCAL_MAX_SPREAD_RATIO * middle else None

@@ -1,4 +1,4 @@
-"""Where the cameras of a planar array stand, as far as names and metadata tell."""
+"""Where the cameras of a planar array stand according to names and metadata."""
 
 from __future__ import annotations
 
@@ -11,17 +11,19 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class GridLayout:
-    """Where the cameras of a planar array stand, as far as names and metadata tell; nothing here is estimated.
+    """Where the cameras of a planar array stand according to names and metadata; nothing here is estimated.
 
-    rows, columns: (n,) int64, each shot's node of the grid, as named.
-    positions: (n, 2) float64, X to the right and Y up as the cameras see it, in any unit: measured ones where the names
-        hold them, else the node numbers with the signs below applied.
-    measured: positions were measured; otherwise rows and columns may be spaced differently.
-    signs: whether +X is right and +Y up for certain; False: only the photographs can tell whether both are reversed.
-    rectified: the pictures share a plane without parallax (two-plane parameterisation), True, or were taken by parallel
-        cameras without shift, False; None where nothing says.
-    exact: rendered: positions need no refinement.
-    focal: pixels, None where nothing says (the frame is then projective).
+    Attributes:
+        rows: (n,) int64, the row of each shot's node, as named.
+        columns: (n,) int64, likewise.
+        positions: (n, 2) float64, X to the right and Y up as the cameras see it, in any unit: measured ones where the
+            names contain them, otherwise the node numbers.
+        measured: Positions were measured; otherwise rows and columns may be spaced differently.
+        signs: +X is right and +Y is up. If False, both may be reversed, which only the photographs can show.
+        rectified: True: the pictures share a plane without parallax (two-plane parameterisation). False: parallel
+            cameras without shift. None: unknown.
+        exact: The photographs are rendered: positions need no refinement.
+        focal: Focal length in pixels; None if it is unknown (the frame is then projective).
     """
 
     rows: NDArray[np.int64]
@@ -38,7 +40,7 @@ class GridLayout:
         chosen = np.asarray(indices, np.int64)
         return replace(self, rows=self.rows[chosen], columns=self.columns[chosen], positions=self.positions[chosen])
 
-    def exchanged(self) -> GridLayout:
+    def transpose(self) -> GridLayout:
         """The same grid with rows for columns."""
         return replace(self, rows=self.columns, columns=self.rows, positions=self.positions[:, ::-1].copy())
 
@@ -48,8 +50,8 @@ class GridLayout:
         return len(np.unique(self.rows)), len(np.unique(self.columns))
 
     @property
-    def missing(self) -> list[tuple[int, int]]:
-        """Nodes (row, column) where a row and a column in use cross and no photograph is."""
+    def missing_nodes(self) -> list[tuple[int, int]]:
+        """Nodes (row, column) at which a row and a column in use cross, but which have no photograph."""
         taken = set(zip(self.rows.tolist(), self.columns.tolist(), strict=True))
         rows, columns = np.unique(self.rows).tolist(), np.unique(self.columns).tolist()
         return [(r, c) for r in rows for c in columns if (r, c) not in taken]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Protocol
 
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
+from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
 from eigenfield.capture.photographs.lens import Lens, remove_lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
@@ -19,11 +19,11 @@ class PhotographSource(Protocol):
     """What a photograph is read from, whether or not its camera is known: a `View` or a `Shot`.
 
     Attributes:
-        name: unique in the capture: the file's name, or its relative path where file names alone are not unique.
-        path: the picture's file.
-        lens: the distortion that is removed on reading; None where there is none.
-        mask: a mask's file, white where the photograph counts.
-        upright: whether the photograph's EXIF orientation is applied on reading.
+        name: Unique in the capture: the file's name, or its relative path where file names alone are not unique.
+        path: The picture's file.
+        lens: The distortion that is removed on reading; None where there is none.
+        mask: A mask's file, white where the photograph counts.
+        upright: Whether the photograph's EXIF orientation is applied on reading.
     """
 
     @property
@@ -43,10 +43,14 @@ class View:
     """One photograph and its camera.
 
     Attributes:
-        name, path, lens, mask, upright: as `PhotographSource`.
-        camera: the pinhole camera of the photograph after lens removal, at the photograph's own size.
-        bounds: the nearest and farthest depth of the scene along z, world units, where the calibration states them; a
-            hint.
+        name: As of `PhotographSource`.
+        path: Likewise.
+        camera: The pinhole camera of the photograph after lens removal, at the photograph's own size.
+        lens: As of `PhotographSource`.
+        mask: Likewise.
+        upright: Likewise.
+        bounds: Nearest and farthest depth of the scene along z in world units, a hint, where the calibration states
+            them.
     """
 
     name: str
@@ -63,11 +67,11 @@ class LightField:
     """A capture: photographs with one camera each. Each view is an observation, all of them of one instant.
 
     Attributes:
-        root: the folder that the photographs were looked for in.
-        views: in the natural order of their names.
-        problems: one line each, for people: what was left out or corrected on reading.
-        format: the reader's name ("transforms", "colmap", "hci", ...).
-        layout: how the array stood, where the photographs' names say so too; None otherwise.
+        root: The folder in which the photographs were searched.
+        views: In the natural order of their names.
+        problems: Lines for people: what was left out or corrected on reading.
+        format: The reader's name ("transforms", "colmap", "hci", ...).
+        layout: The array's grid, where the photographs' names state it too; None otherwise.
     """
 
     root: Path
@@ -123,7 +127,7 @@ class LightField:
 
     @property
     def metres_per_unit(self) -> float | None:
-        """1 where the capture's parameters were in metres; None where nothing says."""
+        """1 where the capture's parameters were in metres; None if the scale is unknown."""
         return 1.0 if self.format == "hci" and self.layout is not None and self.layout.measured else None
 
     def photograph(self, index: int) -> Photograph:
@@ -134,7 +138,7 @@ class LightField:
         """
         view = self.views[index]
         camera = view.camera
-        pixels, mask = decode_masked(view.path, view.upright, camera.width, camera.height, view.mask)
+        pixels, mask = decode_with_mask(view.path, view.upright, camera.width, camera.height, view.mask)
         if view.lens is not None:
             try:
                 pixels, mask = remove_lens(pixels, mask, camera.K, view.lens)
@@ -148,15 +152,15 @@ class LightField:
         layout = None if self.layout is None else self.layout.subset(chosen)
         return replace(self, views=tuple(self.views[i] for i in chosen), layout=layout)
 
-    def calibrated(
+    def with_cameras(
         self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()
     ) -> LightField:
         """The same photographs with other cameras.
 
         Args:
-            cameras: one each, in order.
-            lenses: the distortion to remove from each photograph; None: the views' own.
-            problems: lines added to the capture's own.
+            cameras: One for each photograph, in order.
+            lenses: Distortion to remove from each photograph; None: the views' own.
+            problems: Lines added to the capture's own.
         """
         lenses = [view.lens for view in self.views] if lenses is None else lenses
         views = tuple(

@@ -11,18 +11,18 @@ from pathlib import Path
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
-from eigenfield.capture.messages import count, some
-from eigenfield.capture.photographs.read import EXTENSIONS, decode_mask
+from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS, decode_mask
 from eigenfield.capture.photoset import Shot
 from eigenfield.core.errors import CaptureError
 
 T = TypeVar("T", View, Shot)
 
-IMAGES = "images"
-FILES_LIMIT = 1_000_000  # files looked at below images/
+IMAGES_FOLDER = "images"
+SEARCH_MAX_FILES = 1_000_000  # files looked at below images/
 
 
-def root_of(path: Path, found: Path) -> Path:
+def photograph_root(path: Path, found: Path) -> Path:
     """The folder of the photographs, for a `path` that may be the calibration itself."""
     if path.is_file():
         path = path.parent
@@ -39,10 +39,10 @@ def root_of(path: Path, found: Path) -> Path:
 
 
 def _holds_photographs(folder: Path) -> bool:
-    return bool(photographs_in(folder) or photographs_in(folder / IMAGES))
+    return bool(photographs_in(folder) or photographs_in(folder / IMAGES_FOLDER))
 
 
-def _key(name: str) -> str:
+def _name_key(name: str) -> str:
     """A file name as file systems compare them that know neither case nor one way to write an accent."""
     return unicodedata.normalize("NFC", name).casefold()
 
@@ -53,25 +53,28 @@ def is_file(path: Path) -> bool:
 
 
 def has_known_extension(name: str) -> bool:
-    return name.lower().endswith(EXTENSIONS)
+    return name.lower().endswith(PHOTOGRAPH_EXTENSIONS)
 
 
 def _with_extensions(path: Path) -> Iterator[Path]:
     """The path, and with each extension if it has none: original NeRF sets leave it out."""
     yield path
     if not has_known_extension(path.name):
-        for extension in (*EXTENSIONS, *(e.upper() for e in EXTENSIONS)):
+        for extension in (*PHOTOGRAPH_EXTENSIONS, *(e.upper() for e in PHOTOGRAPH_EXTENSIONS)):
             yield path.with_name(path.name + extension)
 
 
 class PhotographFinder:
-    """Finds the photographs of calibration entries below `root`.
-
-    base: the folder that paths in the calibration are relative to, tried beside `root` (always where the calibration
-        lies in the capture; only as far as it leads back into `root` where it was named apart).
-    """
+    """Finds the photographs of calibration entries below `root`."""
 
     def __init__(self, root: Path, base: Path, apart: bool) -> None:
+        """Nothing is read yet.
+
+        Args:
+            root: Folder of the photographs.
+            base: Folder that paths in the calibration are relative to, tried beside `root`.
+            apart: The calibration was named apart from the photographs: `base` counts only for files below `root`.
+        """
         self.root, self.base, self.apart = root, base, apart
         self._resolved = root.resolve()
         self._by_name: dict[str, list[Path]] | None = None
@@ -84,7 +87,7 @@ class PhotographFinder:
         """By relative path only: for masks, which often have the names of their photographs."""
         if not file.strip("./"):
             return None
-        for folder in (self.root, self.base, self.root / IMAGES):
+        for folder in (self.root, self.base, self.root / IMAGES_FOLDER):
             for candidate in _with_extensions(folder / file):
                 if is_file(candidate) and (not self.apart or self._is_below(candidate)):
                     return Path(os.path.normpath(candidate))
@@ -97,24 +100,24 @@ class PhotographFinder:
     def _by_file_name(self, file: str) -> Path | None:
         if self._by_name is None:
             self._by_name = defaultdict(list)
-            for path in _files(self.root):
-                for key in {_key(path.name), _key(path.stem)}:
+            for path in _candidate_files(self.root):
+                for key in {_name_key(path.name), _name_key(path.stem)}:
                     self._by_name[key].append(path)
         name = file.rsplit("/", 1)[-1]
-        matches = self._by_name.get(_key(name), []) if name else []
+        matches = self._by_name.get(_name_key(name), []) if name else []
         return matches[0] if len(matches) == 1 else None
 
 
-def _files(root: Path) -> Iterator[Path]:
+def _candidate_files(root: Path) -> Iterator[Path]:
     """Photographs directly in root and anywhere below root/images, in a fixed order."""
     yield from photographs_in(root)
     count = 0
-    for folder, inner, _ in os.walk(root / IMAGES):
+    for folder, inner, _ in os.walk(root / IMAGES_FOLDER):
         inner.sort()
         for path in photographs_in(Path(folder)):
             yield path
             count += 1
-            if count > FILES_LIMIT:
+            if count > SEARCH_MAX_FILES:
                 return
 
 
@@ -140,13 +143,13 @@ class MaskFinder:
             inner.sort()
             relative = Path(inside).relative_to(folder).as_posix()
             for path in photographs_in(Path(inside)):
-                self._stems[_key(relative), _key(path.stem)].append(path)
+                self._stems[_name_key(relative), _name_key(path.stem)].append(path)
 
     def find(self, photograph: Path, folders: Iterable[str]) -> Path | None:
         """The mask of a photograph, looked for in `folders` below the masks' own, "." among them or not."""
         for folder in folders:
             for stem in (photograph.name, photograph.stem):  # a.jpg.png before a.png
-                matches = self._stems.get((_key(folder), _key(stem)), [])
+                matches = self._stems.get((_name_key(folder), _name_key(stem)), [])
                 if len(matches) == 1:
                     return matches[0]
                 if matches:
@@ -162,13 +165,18 @@ class MaskFinder:
 def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], list[str]]:
     """Views or shots with the masks of a folder, and a line that names those without one.
 
-    root: the folder of the photographs, below which the masks' own folder may be laid out alike.
-    Raises CaptureError `masks-missing` where no mask fits, `mask-twice`.
+    Args:
+        views: Views or shots.
+        folder: Folder of the masks.
+        root: Folder of the photographs, whose subfolders the masks' folder may have too.
+
+    Raises:
+        CaptureError: `masks-missing` where no mask fits, `mask-twice`.
     """
     finder = MaskFinder(folder)
     masked, missing = [], []
     for view in views:
-        mask = finder.find(view.path, _folders(view.path, root))
+        mask = finder.find(view.path, _mask_folders(view.path, root))
         if mask is None:
             missing.append(view.path.name)
         masked.append(replace(view, mask=mask) if mask is not None else view)
@@ -180,14 +188,14 @@ def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], l
             remedy="name masks as their photographs",
         )
     problems = (
-        [f"{count(missing, 'photograph has', 'photographs have')} no mask in {folder}: {some(missing)}"]
+        [f"{count_phrase(missing, 'photograph has', 'photographs have')} no mask in {folder}: {list_names(missing)}"]
         if missing
         else []
     )
     return masked, problems
 
 
-def refuse_black(masks: Sequence[Path | None], folder: Path) -> None:
+def refuse_black_masks(masks: Sequence[Path | None], folder: Path) -> None:
     """Raise CaptureError `masks-black` where every photograph has a mask and all hide everything; the first mask that
     shows something ends the search."""
     paths = [mask for mask in masks if mask is not None]
@@ -200,7 +208,7 @@ def refuse_black(masks: Sequence[Path | None], folder: Path) -> None:
         )
 
 
-def _folders(path: Path, root: Path) -> list[str]:
+def _mask_folders(path: Path, root: Path) -> list[str]:
     """Where below a folder of masks a photograph's mask may lie: its own relative folder, shortened from the front."""
     try:
         parts = path.parent.resolve().relative_to(root.resolve()).parts

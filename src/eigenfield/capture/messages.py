@@ -1,26 +1,26 @@
-"""Lists of files in words, and in the order that people expect."""
+"""Lists of files for people: in words, and in natural order."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
 
-from eigenfield.capture.calibration import printable
+from eigenfield.capture.calibration import escape_name
 
-NAMED = 5  # names that a problem line lists
+MESSAGE_MAX_NAMES = 5  # names that a problem line lists
 
 
-def count(items: Sequence[object], one: str, many: str) -> str:
+def count_phrase(items: Sequence[object], one: str, many: str) -> str:
     """ "1 photograph has" or "3 photographs have"."""
     return f"{len(items)} {one if len(items) == 1 else many}"
 
 
-def some(names: Sequence[str]) -> str:
+def list_names(names: Sequence[str]) -> str:
     """The first few names, and how many more there are."""
-    shown = ", ".join(printable(name) for name in names[:NAMED])
-    return shown if len(names) <= NAMED else f"{shown} and {len(names) - NAMED} more"
+    shown = ", ".join(escape_name(name) for name in names[:MESSAGE_MAX_NAMES])
+    return shown if len(names) <= MESSAGE_MAX_NAMES else f"{shown} and {len(names) - MESSAGE_MAX_NAMES} more"
 
 
-def natural(name: str) -> list[tuple[int, str]]:
+def natural_key(name: str) -> list[tuple[int, str]]:
     """A key that sorts view_2 before view_10."""
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"([0-9]+)", name.casefold())]

@@ -1,4 +1,4 @@
-"""Entries of a calibration with their photographs: each found, and its size held against its camera's."""
+"""Entries of a calibration with their photographs: each is found, and its size compared with its camera's."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, printable
-from eigenfield.capture.duplicates import same_files, told_copies
+from eigenfield.capture.calibration import Calibration, Entry, escape_name
+from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.locate import PhotographFinder, photographs_in, refuse_black, with_masks
-from eigenfield.capture.messages import count, natural, some
+from eigenfield.capture.locate import PhotographFinder, photographs_in, refuse_black_masks, with_masks
+from eigenfield.capture.messages import count_phrase, list_names, natural_key
 from eigenfield.capture.photographs.read import Header, read_header
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
@@ -23,46 +23,54 @@ from eigenfield.runtime.parallel import parallel_map
 
 log = logging.getLogger(__name__)
 
-FEWEST = 3  # photographs that make a light field
+LIGHT_FIELD_MIN_VIEWS = 3  # photographs that make a light field
 
 
-def pair(read: Calibration, root: Path, *, apart: bool, masks: Path | None, strict: bool) -> LightField:
+def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path | None, strict: bool) -> LightField:
     """The light field of a calibration with the photographs below `root`.
 
-    apart: the calibration was named apart from the photographs (`PhotographFinder`). masks, strict: as `open_capture`.
-    Raises CaptureError as `open_capture` says.
+    Args:
+        read: The calibration.
+        root: Folder of the photographs.
+        apart: The calibration was named apart from the photographs (`PhotographFinder`).
+        masks: A folder of masks; None for none.
+        strict: As for `open_capture`.
+
+    Raises:
+        CaptureError: As `open_capture` does.
     """
     base = read.path if read.path.is_dir() else read.path.parent
     finder = PhotographFinder(root, base, apart)
     log.info("%s: %d calibration entries", read.path, len(read.entries))
     errors = list(read.errors)
-    pairs, lost, twice = _pair(read, finder)
+    pairs, lost, twice = _match_entries(read, finder)
     errors += twice
-    views, bad, problems = _views(pairs, finder, read.path)
+    views, bad, problems = _make_views(pairs, finder, read.path)
     errors += bad
     if masks is not None:
         views, missing = with_masks(views, masks, root)
         if strict:
-            refuse_black([view.mask for view in views], masks)
+            refuse_black_masks([view.mask for view in views], masks)
         problems += missing
     if strict and errors:
         raise errors[0]
-    copies = same_files([view.path for view in views])
+    copies = find_duplicates([view.path for view in views])
     problems = [
-        *read.problems, *_lost(lost, read.path), *_unused(pairs, views), *told_copies(copies), *problems,
-        *map(str, errors),
+        *read.problems, *_describe_missing(lost, read.path), *_describe_unused(pairs, views),
+        *describe_duplicates(copies), *problems, *map(str, errors),
     ]  # fmt: skip
-    if strict and len(views) < FEWEST:
+    if strict and len(views) < LIGHT_FIELD_MIN_VIEWS:
         raise CaptureError(
             "too-few",
-            f"{len(views)} photographs with a camera, of {len(read.entries)} calibration entries; {FEWEST} are needed",
+            f"{len(views)} photographs with a camera, of {len(read.entries)} calibration entries; "
+            f"{LIGHT_FIELD_MIN_VIEWS} are needed",
             path=root,
             remedy="check that the photographs lie where the calibration says, or name it with --calibration",
         )
-    return LightField(root, _named(views), tuple(problems), read.format)
+    return LightField(root, _with_unique_names(views), tuple(problems), read.format)
 
 
-def _pair(
+def _match_entries(
     read: Calibration, finder: PhotographFinder
 ) -> tuple[list[tuple[Entry, Path]], list[str], list[CaptureError]]:
     """Entries with their photographs, names of those without, and errors for those that share one."""
@@ -96,7 +104,7 @@ def _header_or_error(path: Path) -> Header | CaptureError:
         return error
 
 
-def _views(
+def _make_views(
     pairs: Sequence[tuple[Entry, Path]], finder: PhotographFinder, calibration: Path
 ) -> tuple[list[View], list[CaptureError], list[str]]:
     headers = parallel_map(_header_or_error, [path for _, path in pairs])
@@ -106,7 +114,7 @@ def _views(
             errors.append(header)
             continue
         try:
-            view, scaled = _view(entry, path, header, finder, calibration)
+            view, scaled = _make_view(entry, path, header, finder, calibration)
         except CaptureError as error:
             errors.append(error)
             continue
@@ -118,30 +126,32 @@ def _views(
         camera = views[[view.path.name for view in views].index(rescaled[0])].camera
         problems.append(
             f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
-            f"(to {camera.width}x{camera.height} for {printable(rescaled[0])})"
+            f"(to {camera.width}x{camera.height} for {escape_name(rescaled[0])})"
         )
     return views, errors, problems
 
 
-def _view(entry: Entry, path: Path, header: Header, finder: PhotographFinder, calibration: Path) -> tuple[View, bool]:
+def _make_view(
+    entry: Entry, path: Path, header: Header, finder: PhotographFinder, calibration: Path
+) -> tuple[View, bool]:
     """The view, and whether its camera was scaled to the photograph's size."""
     claimed = entry.intrinsics.width, entry.intrinsics.height
     fitting = [
         (upright, size)
-        for upright, size in ((True, header.upright), (False, header.stored))
+        for upright, size in ((True, header.upright_size), (False, header.stored_size))
         if all(c is None or c == s for c, s in zip(claimed, size, strict=True))
     ]
     scaled = not fitting
     if scaled and None not in claimed:
         fitting = [
             (upright, size)
-            for upright, size in ((True, header.upright), (False, header.stored))
+            for upright, size in ((True, header.upright_size), (False, header.stored_size))
             if is_same_picture(claimed[0] or 0, claimed[1] or 0, *size)
         ]
     if not fitting:
         raise CaptureError(
             "image-size",
-            f"is {_size(header.upright)}, but its camera is for {_size(claimed)}: "
+            f"is {_format_size(header.upright_size)}, but its camera is for {_format_size(claimed)}: "
             "not the same picture at another scale",
             path=path,
             remedy=f"use the photographs that {calibration.name} was made from, undistorted and cropped alike",
@@ -149,12 +159,12 @@ def _view(entry: Entry, path: Path, header: Header, finder: PhotographFinder, ca
     upright, (width, height) = fitting[0]
     camera = entry.camera(claimed[0] or width, claimed[1] or height, calibration)
     if scaled:
-        camera = scaled_camera(camera, width, height)
-    mask = _own_mask(entry, finder, calibration)
+        camera = scale_camera(camera, width, height)
+    mask = _find_own_mask(entry, finder, calibration)
     return View(path.name, path, camera, entry.lens, mask, upright, entry.bounds), scaled
 
 
-def _size(size: tuple[int | None, int | None]) -> str:
+def _format_size(size: tuple[int | None, int | None]) -> str:
     return "x".join("?" if side is None else str(side) for side in size)
 
 
@@ -165,13 +175,13 @@ def is_same_picture(width: int, height: int, other_width: int, other_height: int
     return low < high
 
 
-def scaled_camera(camera: Camera, width: int, height: int) -> Camera:
+def scale_camera(camera: Camera, width: int, height: int) -> Camera:
     """The camera of the same picture at another size: pixel edges map to pixel edges."""
     scale = np.diag([width / camera.width, height / camera.height, 1.0])
     return replace(camera, K=scale @ camera.K, width=width, height=height)
 
 
-def _own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path | None:
+def _find_own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path | None:
     """The mask that the calibration names."""
     if entry.mask is None:
         return None
@@ -179,31 +189,31 @@ def _own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) -> Path
     if mask is None:
         raise CaptureError(
             "mask-missing",
-            f"{entry.label}: its mask {printable(entry.mask)} does not exist",
+            f"{entry.label}: its mask {escape_name(entry.mask)} does not exist",
             path=calibration,
             remedy="put it there, or remove its mask_path",
         )
     return mask
 
 
-def _lost(lost: Sequence[str], calibration: Path) -> list[str]:
+def _describe_missing(lost: Sequence[str], calibration: Path) -> list[str]:
     if not lost:
         return []
-    number = count(lost, "calibration entry has", "calibration entries have")
-    return [f"{number} no photograph ({calibration.name}): {some(lost)}"]
+    number = count_phrase(lost, "calibration entry has", "calibration entries have")
+    return [f"{number} no photograph ({calibration.name}): {list_names(lost)}"]
 
 
-def _unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[str]:
+def _describe_unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[str]:
     """Photographs that lie beside those in use, but that no entry names."""
     used = {path for _, path in pairs} | {view.mask for view in views}
     folders = sorted({path.parent for _, path in pairs})
     unused = [path.name for folder in folders for path in photographs_in(folder) if path not in used]
     if not unused:
         return []
-    return [f"{count(unused, 'photograph has', 'photographs have')} no calibration entry: {some(unused)}"]
+    return [f"{count_phrase(unused, 'photograph has', 'photographs have')} no calibration entry: {list_names(unused)}"]
 
 
-def _named(views: Sequence[View]) -> tuple[View, ...]:
+def _with_unique_names(views: Sequence[View]) -> tuple[View, ...]:
     """Views with unique names, in natural order: view_2 before view_10."""
     times = Counter(view.path.name for view in views)
     shared = [view.path for view in views if times[view.path.name] > 1]
@@ -211,8 +221,10 @@ def _named(views: Sequence[View]) -> tuple[View, ...]:
     named = [
         replace(
             view,
-            name=printable(view.path.name if times[view.path.name] == 1 else view.path.relative_to(common).as_posix()),
+            name=escape_name(
+                view.path.name if times[view.path.name] == 1 else view.path.relative_to(common).as_posix()
+            ),
         )
         for view in views
     ]
-    return tuple(sorted(named, key=lambda view: (natural(view.name), view.name)))
+    return tuple(sorted(named, key=lambda view: (natural_key(view.name), view.name)))

@@ -1,4 +1,4 @@
-"""Photographs whose cameras are not known yet, with what their names and metadata tell of how the array stood."""
+"""Photographs whose cameras are not known yet, with the array's grid according to names and metadata."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, PhotographSource, View
-from eigenfield.capture.photographs.decoded import decode_masked, size_on_disk
+from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
@@ -19,9 +19,13 @@ class Shot:
     """One photograph without a camera.
 
     Attributes:
-        name, path, mask, upright: as `PhotographSource`.
-        width, height: of the picture as it is decoded, upright.
-        focal: pixels, where EXIF or the format states it; None otherwise.
+        name: As of `PhotographSource`.
+        path: Likewise.
+        width: Of the picture as it is decoded, pixels.
+        height: Likewise.
+        focal: Focal length in pixels, where EXIF or the format states it; None otherwise.
+        mask: As of `PhotographSource`.
+        upright: Likewise.
     """
 
     name: str
@@ -43,11 +47,11 @@ class PhotoSet:
     """Photographs of one scene without cameras. Each is an observation, all of them of one instant.
 
     Attributes:
-        root: the folder they were found in.
-        shots: in the natural order of their names.
-        layout: how the array stood; None for a folder of photographs of which nothing is known.
-        problems: one line each, for people.
-        format: the reader's name ("stanford", "grid", "folder", ...).
+        root: The folder they were found in.
+        shots: In the natural order of their names.
+        layout: The array's grid; None for a folder of photographs of which nothing is known.
+        problems: Lines for people.
+        format: The reader's name ("stanford", "grid", "folder", ...).
     """
 
     root: Path
@@ -92,7 +96,7 @@ class PhotoSet:
         Raises CaptureError as `LightField.photograph` does.
         """
         shot = self.shots[index]
-        return Photograph.of(*decode_masked(shot.path, shot.upright, shot.width, shot.height, shot.mask))
+        return Photograph.of(*decode_with_mask(shot.path, shot.upright, shot.width, shot.height, shot.mask))
 
     def bytes(self, index: int) -> int:
         """The size of the photograph's file on disk."""
@@ -104,15 +108,15 @@ class PhotoSet:
         layout = None if self.layout is None else self.layout.subset(chosen)
         return replace(self, shots=tuple(self.shots[i] for i in chosen), layout=layout)
 
-    def calibrated(
+    def with_cameras(
         self, cameras: Sequence[Camera], lenses: Sequence[Lens | None] | None = None, problems: Sequence[str] = ()
     ) -> LightField:
         """The light field of these photographs.
 
         Args:
-            cameras: one each, in order.
-            lenses: the distortion to remove from each photograph; None: none from any.
-            problems: lines added to the set's own.
+            cameras: One for each photograph, in order.
+            lenses: Distortion to remove from each photograph; None: none from any.
+            problems: Lines added to the set's own.
         """
         lenses = [None] * len(self.shots) if lenses is None else lenses
         views = tuple(

@@ -1,4 +1,4 @@
-"""Sparse points of a scene, and where the photographs show them."""
+"""Sparse points of a scene, and their observations in the photographs."""
 
 from __future__ import annotations
 
@@ -10,11 +10,15 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class SparsePoints:
-    """Points with what was seen of them.
+    """Points with their observations.
 
-    positions: (n, 3) float64, world. colours: (n, 3) uint8. errors: (n,) float64, mean reprojection error in pixels.
-    point, view: (m,) int64, which point is seen in which view of the light field; sorted by point, then view.
-    pixels: (m, 2) float64, where in the photograph (its lens not removed), centres at +0.5.
+    Attributes:
+        positions: (n, 3) float64, world.
+        colours: (n, 3) uint8.
+        errors: (n,) float64, mean reprojection error in pixels.
+        point: (m,) int64, the point of each observation; sorted by point, then view.
+        view: (m,) int64, the view of the light field that observes it.
+        pixels: (m, 2) float64, place in the photograph (its lens not removed), pixels with centres at +0.5.
     """
 
     positions: NDArray[np.float64]
@@ -29,10 +33,10 @@ class SparsePoints:
 
     @property
     def track_lengths(self) -> NDArray[np.int64]:
-        """(n,) in how many views each point was seen."""
+        """(n,) how many views observe each point."""
         return np.bincount(self.point, minlength=len(self.positions)).astype(np.int64)
 
-    def moved(self, scale: float, R: NDArray[np.float64], t: NDArray[np.float64]) -> SparsePoints:
+    def transform(self, scale: float, R: NDArray[np.float64], t: NDArray[np.float64]) -> SparsePoints:
         """The points in the world x' = scale R x + t."""
         return replace(self, positions=scale * self.positions @ R.T + t)
 

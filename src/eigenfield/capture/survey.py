@@ -1,4 +1,4 @@
-"""What a capture is, in figures: sizes, files, the array, the cone of its viewing directions."""
+"""A capture in figures: sizes, files, the array, the cone of its viewing directions."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.core.viewplane import Grid, ViewPlane, find_grid, fit_view_plane
 from eigenfield.runtime.parallel import parallel_stream
 
-PARALLEL = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
+FOCUS_MIN_EIGENVALUE = 1e-7  # rays whose normal matrix has a smaller eigenvalue than this meet nowhere
 
 
 @dataclass(frozen=True, eq=False)
-class Array:
-    """The cameras' arrangement.
+class CameraArray:
+    """The geometry of the cameras' array.
 
-    plane: the view plane; width and height of the array are twice its extent, in world units.
-    thickness: the greatest distance of a camera from the plane, world units.
-    spacing: the median distance from a camera to its nearest neighbour, world units.
-    grid: the regular grid, if there is one.
-    focus: (3,) the point nearest to all rays through the pictures' middles, or None where they are parallel.
-    distance: the mean distance of the cameras from the focus, world units.
-    cone: the greatest angle between two cameras seen from the focus, degrees.
+    Attributes:
+        plane: The view plane; width and height of the array are twice its extent, in world units.
+        thickness: Greatest distance of a camera from the plane, world units.
+        spacing: Median distance from a camera to its nearest neighbour, world units.
+        grid: The regular grid, if there is one.
+        focus: (3,) the point nearest to all rays through the pictures' middles, or None where they are parallel.
+        distance: Mean distance of the cameras from the focus, world units.
+        cone: Greatest angle between two cameras seen from the focus, degrees.
     """
 
     plane: ViewPlane
@@ -42,7 +43,7 @@ class Array:
     cone: float | None
 
 
-def measure_array(cameras: Sequence[Camera]) -> Array:
+def measure_array(cameras: Sequence[Camera]) -> CameraArray:
     """The arrangement of at least two cameras."""
     from scipy.spatial import KDTree
 
@@ -60,7 +61,7 @@ def measure_array(cameras: Sequence[Camera]) -> Array:
         distance = float(lengths.mean())
         unit = rays / np.maximum(lengths, 1e-300)[:, None]
         cone = float(np.degrees(np.arccos(np.clip(min((unit @ u).min() for u in unit), -1, 1))))
-    return Array(
+    return CameraArray(
         plane,
         float(np.abs((centres - plane.origin) @ normal).max()),
         float(np.median(nearest)),
@@ -83,7 +84,7 @@ def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:
         normal += across
         right += across @ camera.centre
         directions.append(ray)
-    if np.linalg.eigvalsh(normal)[0] < PARALLEL * len(cameras):
+    if np.linalg.eigvalsh(normal)[0] < FOCUS_MIN_EIGENVALUE * len(cameras):
         return None
     focus = np.asarray(np.linalg.solve(normal, right), dtype=np.float64)
     ahead = [(focus - camera.centre) @ ray for camera, ray in zip(cameras, directions, strict=True)]

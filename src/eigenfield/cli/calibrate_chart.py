@@ -64,7 +64,7 @@ def chart_options(function: F) -> F:
     ]  # fmt: skip
 
     @functools.wraps(function)
-    def collected(
+    def collect(
         *args: Any,
         chart: str | None,
         board: str | None,
@@ -85,7 +85,7 @@ def chart_options(function: F) -> F:
         chosen = None if chart is None else ChartOptions(chart, **described)  # type: ignore[arg-type]
         return function(*args, chart=chosen, **kwargs)
 
-    decorated: Any = collected
+    decorated: Any = collect
     for option in reversed(options):
         decorated = option(decorated)
     return decorated

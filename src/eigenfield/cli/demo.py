@@ -44,10 +44,10 @@ def command(output: Path, quiet: bool) -> None:
     from eigenfield.capture import open_capture
     from eigenfield.encoding import encode
     from eigenfield.gltf import save
-    from eigenfield.runtime.files import mended
+    from eigenfield.runtime.files import output_errors
 
     started = time.monotonic()
-    with mended(output):
+    with output_errors(output):
         output.mkdir(parents=True, exist_ok=True)
     folder, path = output / "capture", output / "scene.glb"
     with progress_bars(quiet) as progress:

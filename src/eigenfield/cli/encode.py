@@ -147,10 +147,10 @@ def command(
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
-    from eigenfield.runtime.files import mended
+    from eigenfield.runtime.files import output_errors
 
     light_field = open_capture(capture, **place)
-    with mended(scratch):
+    with output_errors(scratch):
         scratch.mkdir(parents=True, exist_ok=True)
     note_all(light_field.problems, quiet)
     return light_field

@@ -14,7 +14,7 @@ from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
     from eigenfield.capture import GridLayout, LightField, PhotoSet
-    from eigenfield.capture.survey import Array
+    from eigenfield.capture.survey import CameraArray
     from eigenfield.core.errors import CaptureError
     from eigenfield.core.mesh import Mesh
 
@@ -140,7 +140,7 @@ def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, 
 
 def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report of photographs without cameras: the same keys, `views` 0, `photographs` in place of `cameras`."""
-    from eigenfield.capture.messages import count
+    from eigenfield.capture.messages import count_phrase
     from eigenfield.capture.survey import file_kinds
 
     sizes = Counter((shot.width, shot.height) for shot in photo_set.shots)
@@ -148,7 +148,9 @@ def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> di
     if len(sizes) > 1:
         problems.append(f"the photographs have {len(sizes)} different sizes")
     if len(photo_set) < 3:
-        problems.append(f"{count(photo_set.shots, 'photograph is', 'photographs are')} too few, at least 3 are needed")
+        problems.append(
+            f"{count_phrase(photo_set.shots, 'photograph is', 'photographs are')} too few, at least 3 are needed"
+        )
     return {
         "schema": SCHEMA,
         "root": str(photo_set.root),
@@ -175,7 +177,7 @@ def _layout(layout: GridLayout) -> dict[str, Any]:
     return {
         "rows": rows,
         "columns": columns,
-        "missing": [list(node) for node in layout.missing],
+        "missing": [list(node) for node in layout.missing_nodes],
         "measured": layout.measured,
         "signs": layout.signs,
         "rectified": layout.rectified,
@@ -208,7 +210,7 @@ def _next_commands(report: dict[str, Any], capture: Path, options: dict[str, Any
     return [encode] if report["views"] else [encode, f"eigenfield calibrate {words}"]
 
 
-def _array(array: Array) -> dict[str, Any]:
+def _array(array: CameraArray) -> dict[str, Any]:
     width, height = (2 * array.plane.extent).tolist()
     return {
         "width": width,

@@ -1,4 +1,4 @@
-"""What a scene looks like from each of its observations: means, eigen textures, weights (equations 3 to 8)."""
+"""The appearance of a scene in each of its observations: means, eigen textures, weights (equations 3 to 8)."""
 
 from __future__ import annotations
 
@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """N eigen textures and what each observation takes of them.
+    """N eigen textures and the weights of each observation.
 
     Attributes:
         textures: (N, H, W, C), float32 values as `encode` makes them, or uint8 or uint16 codes as a file keeps them.
-        scale, zero: (N, C) float32: value = (stored - zero) * scale; ones and zeros for float textures.
-        weights: (No, N) float32, the paper's ω(c, j), a row for each observation (`Scene.rows` says which).
+        scale: (N, C) float32: value = (stored - zero) * scale; ones for float textures.
+        zero: (N, C) float32; zeros for float textures.
+        weights: (No, N) float32, the paper's ω(c, j), a row for each observation, in the order of `Scene.rows`.
         grid: (rows, columns) of the whole atlas at this basis's density; None: the textures are all of it.
         corner: Row and column of the grid at which the textures begin; they are zero elsewhere.
     """
@@ -30,6 +31,7 @@ class Basis:
 
     @property
     def count(self) -> int:
+        """Number of eigen textures."""
         return int(self.textures.shape[0])
 
     @property
@@ -44,7 +46,7 @@ class Basis:
         stored = self.textures[part].astype(np.float32)
         return (stored - self.zero[part, None, None]) * self.scale[part, None, None]
 
-    def truncated(self, count: int) -> Basis:
+    def truncate(self, count: int) -> Basis:
         """The first `count` components."""
         parts = (self.textures[:count], self.scale[:count], self.zero[:count], self.weights[:, :count])
         return Basis(*parts, self.grid, self.corner)
@@ -74,8 +76,8 @@ class Appearance:
 
     Attributes:
         planes: One plane of three channels (R, G, B), or planes that `to_rgb` joins; any channels of other attributes.
-        to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: they are what
-            is drawn.
+        to_rgb: (3, K) float32, R, G and B from the K channels of all planes one after the other; None: the channels
+            are drawn as they are.
         colours: (Nc, 2, 3) float32 gains and offsets of R, G, B, or None: each camera's map became gain * map + offset,
             so its own view is (drawn - offset) / gain. Gain 1 and offset 0 for held-out cameras.
     """

@@ -9,17 +9,19 @@ from numpy.typing import ArrayLike, NDArray
 
 from eigenfield.core.errors import CaptureError
 
-ROTATION_TOLERANCE = 1e-4  # calibrations are often printed with six digits
+CAMERA_ROTATION_TOLERANCE = 1e-4  # of singular values; calibrations are often printed with six digits
 
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """One calibrated pinhole.
+    """One calibrated pinhole camera.
 
-    K: (3, 3) float64, pixels, upper triangular, last row 0 0 1.
-    R: (3, 3) float64, rotation from world to camera axes.
-    t: (3,) float64, x_camera = R x_world + t.
-    width, height: the photograph's size in pixels; the top-left pixel's centre is (0.5, 0.5).
+    Attributes:
+        K: (3, 3) float64, pixels, upper triangular, last row 0 0 1.
+        R: (3, 3) float64, rotation from world to camera axes.
+        t: (3,) float64, x_camera = R x_world + t.
+        width: Of the photograph, pixels; the top-left pixel's centre is (0.5, 0.5).
+        height: Likewise.
     """
 
     K: NDArray[np.float64]
@@ -29,9 +31,20 @@ class Camera:
     height: int
 
     @staticmethod
-    def checked(K: ArrayLike, R: ArrayLike, t: ArrayLike, width: int, height: int, name: str) -> Camera:
-        """A camera from outside: raises CaptureError (codes `camera-not-finite`, `camera-not-rotation`,
-        `camera-focal`, `camera-size`) that names it, and snaps R to the nearest rotation."""
+    def from_matrices(K: ArrayLike, R: ArrayLike, t: ArrayLike, width: int, height: int, name: str) -> Camera:
+        """A camera from outside, checked; R becomes the nearest rotation.
+
+        Args:
+            K: (3, 3) pixels, upper triangular, last row 0 0 1.
+            R: (3, 3) world-to-camera rotation.
+            t: (3,) x_camera = R x_world + t.
+            width: Pixels.
+            height: Pixels.
+            name: Names the camera in errors.
+
+        Raises:
+            CaptureError: `camera-shape`, `camera-not-finite`, `camera-not-rotation`, `camera-focal`, `camera-size`.
+        """
         k, r, p = (np.array(a, dtype=np.float64) for a in (K, R, t))
         if k.shape != (3, 3) or r.shape != (3, 3) or p.shape != (3,):
             raise CaptureError("camera-shape", f"camera {name}: matrices of the wrong shape", remedy="mend its entry")
@@ -48,7 +61,7 @@ class Camera:
         if width < 1 or height < 1:
             raise CaptureError("camera-size", f"camera {name} has a size of {width}x{height}", remedy="mend its entry")
         u, s, vt = np.linalg.svd(r)
-        if np.abs(s - 1).max() > ROTATION_TOLERANCE or np.linalg.det(r) < 0:
+        if np.abs(s - 1).max() > CAMERA_ROTATION_TOLERANCE or np.linalg.det(r) < 0:
             raise CaptureError(
                 "camera-not-rotation",
                 f"camera {name}: the rotation has singular values {s.round(4).tolist()} and determinant "
@@ -68,13 +81,13 @@ class Camera:
         return self.K @ np.hstack([self.R, self.t[:, None]])
 
     def project(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """(n, 3) world points to (n, 2) pixels and (n,) depths; pixels mean nothing where the depth is not positive."""
+        """(n, 3) world points to (n, 2) pixels and (n,) depths; pixels are meaningless where depth is not positive."""
         homogeneous = np.asarray(points, dtype=np.float64) @ self.matrix[:, :3].T + self.matrix[:, 3]
         depth = homogeneous[:, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             return homogeneous[:, :2] / depth[:, None], depth
 
-    def resized(self, width: int, height: int) -> Camera:
+    def resize(self, width: int, height: int) -> Camera:
         """The same view on a `width` x `height` raster that it covers entirely: scaled evenly, centred, cropped."""
         scale = max(width / self.width, height / self.height)
         shift = np.array(
@@ -82,7 +95,7 @@ class Camera:
         )
         return Camera(shift @ np.diag([scale, scale, 1.0]) @ self.K, self.R, self.t, width, height)
 
-    def rounded(self) -> Camera:
-        """The camera as a file keeps it: every number a float32."""
+    def to_float32(self) -> Camera:
+        """The camera with every number rounded to float32, as files keep it."""
         k, r, p = (a.astype(np.float32).astype(np.float64) for a in (self.K, self.R, self.t))
         return Camera(k, r, p, self.width, self.height)

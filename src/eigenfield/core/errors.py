@@ -1,11 +1,11 @@
-"""Errors that a person can mend.
+"""Errors that a person can correct.
 
     EigenfieldError
     ├── CaptureError   photographs, calibrations, masks
     ├── ProxyError     the mesh and its atlas
     ├── FormatError    a scene file that is damaged, newer or not ours
-    ├── OutputError    what is to be written: exists already, disk full, not writable
-    └── OptionError    an option, or a combination of them, that cannot be
+    ├── OutputError    output: exists already, disk full, not writable
+    └── OptionError    an impossible option or combination of options
 
 Each is one line: the file, what is wrong, the remedy. `code` is stable and meant for scripts. A bug is never one
 of these and is never caught: it keeps its traceback.
@@ -19,10 +19,11 @@ import os
 class EigenfieldError(Exception):
     """One line for a person, and a stable `code` for a script.
 
-    code: short, stable, kebab-case ("image-truncated").
-    message: what is wrong, without a full stop.
-    path: the file or folder in question.
-    remedy: what to do about it, an imperative without a full stop.
+    Attributes:
+        code: Short, stable, kebab-case ("image-truncated").
+        message: What is wrong, without a full stop.
+        path: The file or folder in question.
+        remedy: What to do about it, an imperative without a full stop.
     """
 
     def __init__(
@@ -55,7 +56,8 @@ class ProxyError(EigenfieldError):
 class FormatError(EigenfieldError):
     """A scene file that is damaged, newer or not ours.
 
-    where: a byte offset ("byte 20") or a JSON pointer ("/extensions/EIGENFIELD_eigen_textures/planes/0").
+    Attributes:
+        where: A byte offset ("byte 20") or a JSON pointer ("/extensions/EIGENFIELD_eigen_textures/planes/0").
     """
 
     def __init__(
@@ -76,4 +78,4 @@ class OutputError(EigenfieldError):
 
 
 class OptionError(EigenfieldError):
-    """An option, or a combination of options, that cannot be."""
+    """An impossible option or combination of options."""

@@ -10,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """Whole numbers (i, j, k) and the world.
+    """A map from integers (i, j, k) to the world.
 
-    matrix: (4, 4) float64, invertible, from (i, j, k, 1) to homogeneous world coordinates.
-    flat: (i, j) are pixels of a camera that sees the mesh from one side and k is inverse depth: it is coded over them.
-    fine: how many of the last binary digits of i and j are mostly zero.
+    Attributes:
+        matrix: (4, 4) float64, invertible, from (i, j, k, 1) to homogeneous world coordinates.
+        flat: (i, j) are pixels of a camera that sees the mesh from one side, and k is inverse depth, coded over them.
+        fine: Number of the last binary digits of i and j that are mostly zero.
     """
 
     matrix: NDArray[np.float64]
@@ -22,7 +23,7 @@ class Lattice:
     fine: int = 0
 
     def points(self, steps: NDArray[np.int64] | NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n, 3) lattice coordinates, and places between, to world positions. The order of the sums is part of the
+        """(n, 3) lattice coordinates, whole or between, to world positions. The order of the sums is part of the
         format."""
         i, j, k = steps.astype(np.float64).T
         m = self.matrix
@@ -43,11 +44,14 @@ def camera_lattice(
 ) -> Lattice:
     """Pixels and inverse depth of a camera, for a mesh that is all in front of it and seen from one side.
 
-    matrix: (3, 4) K [R | t], last row of K 0 0 1. step: in pixels. inverse_step: of 1 / Z, Z along the camera's axis; k
-    is 0 or more in front of it. origin: the pixel at (0, 0). Rounding moves a point by at most half of each step.
+    Rounding moves a point by at most half of each step. An error e of 1 / Z moves a point by e |K R (C - C')| pixels
+    (the first two numbers) in another view from C' with the same K and R, which bounds `inverse_step`.
 
-    An error e of 1 / Z moves a point by e |K R (C - C')| pixels (the first two numbers) in another view from C' with
-    the same K and R: `inverse_step` follows from what may be seen there.
+    Args:
+        matrix: (3, 4) K [R | t], last row of K 0 0 1.
+        step: In pixels.
+        inverse_step: Of 1 / Z, Z along the camera's axis; k is 0 or more in front of it.
+        origin: The pixel at (0, 0).
     """
     m = np.asarray(matrix, np.float64)
     turn = np.linalg.inv(m[:, :3])

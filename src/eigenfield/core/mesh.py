@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +11,12 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """A triangle mesh.
+    """A triangle mesh. Vertices on a seam are doubled: a vertex has one UV.
 
-    vertices: V, (n, 3) float32 world positions.
-    faces: W, (m, 3) int32 indices into `vertices`; counter-clockwise seen from outside, where that is known.
-    uv: U, (n, 2) float32 in [0, 1], origin at the top left of the atlas and v down (glTF); None before unwrapping.
-    Vertices on a seam are doubled: a vertex has one UV.
+    Attributes:
+        vertices: V, (n, 3) float32 world positions.
+        faces: W, (m, 3) int32 indices into `vertices`; counter-clockwise seen from outside, if the outside is known.
+        uv: U, (n, 2) float32 in [0, 1], origin at the top left of the atlas and v down (glTF); None before unwrapping.
     """
 
     vertices: NDArray[np.float32]
@@ -24,18 +25,36 @@ class Mesh:
 
     def face_normals(self) -> NDArray[np.float64]:
         """(m, 3) unit normals by the right-hand rule; zero for triangles without area."""
-        normal = _crossed(self.vertices[self.faces].astype(np.float64))
-        length = np.linalg.norm(normal, axis=1, keepdims=True)
-        return np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
+        return _unit(area_normals(self.vertices[self.faces].astype(np.float64)))
 
     def face_areas(self) -> NDArray[np.float64]:
         """(m,) areas of the triangles, squared world units."""
         return triangle_areas(self.vertices[self.faces].astype(np.float64))
 
 
+def area_normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3) normals of triangles by the right-hand rule, as long as twice the area, corners (m, 3, 3)."""
+    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
+
+
+def vertex_normals(vertices: NDArray[np.float64], faces: NDArray[np.signedinteger[Any]]) -> NDArray[np.float64]:
+    """(n, 3) unit normals of vertices (n, 3): the means of those of their triangles (m, 3), weighted by area."""
+    normals = np.zeros_like(vertices)
+    by_area = area_normals(vertices[faces])
+    for corner in range(3):
+        np.add.at(normals, faces[:, corner], by_area)
+    return _unit(normals)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, 3) vectors of length 1; zero where they are zero."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+
+
 def triangle_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(m,) areas of triangles in space, corners (m, 3, 3)."""
-    return np.asarray(np.linalg.norm(_crossed(corners), axis=1) / 2)
+    return np.asarray(np.linalg.norm(area_normals(corners), axis=1) / 2)
 
 
 def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -44,14 +63,9 @@ def signed_areas(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray((a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2)
 
 
-def barycentric(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
+def barycentric_coordinates(corners: NDArray[np.int64], points: NDArray[np.int64]) -> NDArray[np.float64]:
     """(n, 3) barycentric coordinates of points (n, 2) in triangles of the plane with area, corners (n, 3, 2)."""
     p = corners - points[:, None]
     one, other = np.roll(p, -1, axis=1), np.roll(p, -2, axis=1)
     area = (one[..., 0] * other[..., 1] - one[..., 1] * other[..., 0]).astype(np.float64)
     return np.asarray(area / area.sum(axis=1, keepdims=True))
-
-
-def _crossed(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(m, 3) normals as long as twice the area."""
-    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))

@@ -1,4 +1,4 @@
-"""How a notebook shows a scene: a room above puts a function here, so that plain data imports no viewer."""
+"""Hook by which a notebook shows a scene, set from above, so that plain data imports no viewer."""
 
 from __future__ import annotations
 

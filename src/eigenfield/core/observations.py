@@ -1,4 +1,4 @@
-"""What is seen is an observation: a photograph, taken by one camera at one instant."""
+"""Observations: photographs, each taken by one camera at one instant."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Photograph:
 
     @staticmethod
     def of(pixels: NDArray[np.float32], mask: NDArray[np.float32] | None) -> Photograph:
-        """The photograph, without a mask that leaves nothing out."""
+        """The photograph; a mask that is 1 everywhere becomes None."""
         return Photograph(pixels, None if mask is not None and mask.min() >= 1 else mask)
 
 
@@ -71,7 +71,7 @@ class CalibratedObservations(Observations, Protocol):
 
     @property
     def metres_per_unit(self) -> float | None:
-        """Metres in one unit of the cameras' world; None where nothing says."""
+        """Metres in one unit of the cameras' world; None if unknown."""
 
     def bytes(self, index: int) -> int:
         """The size of an observation's file."""
@@ -79,7 +79,13 @@ class CalibratedObservations(Observations, Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Selection:
-    """Some of `whole`, whose cameras are counted anew."""
+    """Some of the observations of `whole`, whose cameras are renumbered.
+
+    Attributes:
+        whole: All observations.
+        indices: Those selected.
+        camera: From camera numbers of `whole` to those here.
+    """
 
     whole: Observations
     indices: tuple[int, ...]
@@ -98,12 +104,12 @@ class _Selection:
         return self.whole.photograph(self.indices[index])
 
 
-def of_cameras(observations: Observations, cameras: Sequence[int]) -> Observations:
+def select_cameras(observations: Observations, cameras: Sequence[int]) -> Observations:
     """The observations of some cameras, which are counted in the order given.
 
     Args:
-        observations: those to choose from.
-        cameras: numbers of cameras, each once.
+        observations: Those to choose from.
+        cameras: Numbers of cameras, each once.
 
     Returns:
         The observations of these cameras at all instants: one instant after the other, at each in the cameras' order.

@@ -1,9 +1,8 @@
 """Coded streams that travel with a scene, each found by the content that it decodes to.
 
-A payload is kept under a key: the kind of the content and a SHA-256 digest of its arrays. Whoever saves a scene
-computes the keys of its parts and writes what it finds under them. So a part that was edited is coded anew, even one
-that was edited in place. A part that was not keeps its bytes through copies, pickles, `dataclasses.replace` and other
-processes.
+A payload is cached under a key: the kind of the content and a SHA-256 digest of its arrays. `save` computes the keys of
+a scene's parts and writes the payloads under them. A part that was edited, even in place, has another key and is
+encoded again. All others keep their bytes through copies, pickles, `dataclasses.replace` and other processes.
 """
 
 from __future__ import annotations
@@ -41,7 +40,7 @@ class Payload:
     """A coded stream.
 
     Attributes:
-        codec: Its name in `coding.codecs.CODECS`.
+        codec: Name in `coding.codecs.CODECS`.
         data: The bytes, as a file holds them.
     """
 
@@ -56,7 +55,7 @@ class PicturePayload(Payload):
     Attributes:
         count: Eigen textures in it, one below the other.
         affine: From codes to numbers, for each channel of each texture; None: code / 255.
-        precision: Of a mean, the picture of how finely each place of it is coded; None: all of it alike.
+        precision: Of a mean, a picture of the precision with which each place is coded; None: uniform.
     """
 
     count: int = 1
@@ -65,7 +64,7 @@ class PicturePayload(Payload):
 
 
 class Payloads(Mapping[Key, tuple[Payload, ...]]):
-    """What the parts of a scene were coded to, by key; immutable. The pictures of a basis come by rank."""
+    """Payloads of the parts of a scene by key; immutable. The pictures of a basis come by rank."""
 
     def __init__(self, found: Mapping[Key, Sequence[Payload]] | None = None) -> None:
         self._found = {key: tuple(payloads) for key, payloads in (found or {}).items()}
@@ -83,23 +82,23 @@ class Payloads(Mapping[Key, tuple[Payload, ...]]):
         return Payloads({**self._found, **other})
 
     def without(self, kind: str) -> Payloads:
-        """All but those of one kind of content."""
+        """All payloads but those of one kind of content."""
         return Payloads({key: payloads for key, payloads in self._found.items() if key[0] != kind})
 
     @staticmethod
-    def joined(several: Iterable[Payloads]) -> Payloads:
-        """All of several."""
+    def merge(several: Iterable[Payloads]) -> Payloads:
+        """The payloads of several."""
         return Payloads({key: payloads for one in several for key, payloads in one.items()})
 
     @property
     def bytes(self) -> int:
-        """Of all payloads."""
+        """Bytes of all payloads together."""
         return sum(map(size_of, self._found.values()))
 
 
 @dataclass(frozen=True, eq=False)
 class Coded(Generic[T]):
-    """A value as its file gives it back, and what it was coded to.
+    """A decoded value with its payloads.
 
     Attributes:
         value: The decoded value.
@@ -116,33 +115,38 @@ def size_of(payloads: Iterable[Payload]) -> int:
 
 
 def mesh_key(mesh: Mesh) -> Key:
-    """Of vertices, faces and texture coordinates."""
+    """The key of vertices, faces and texture coordinates."""
     return _key("mesh", mesh.vertices, mesh.faces, *(() if mesh.uv is None else (mesh.uv,)))
 
 
 def cameras_key(cameras: Sequence[Camera]) -> Key:
-    """Of the intrinsics and poses of these cameras in this order; a file says the sizes of the photographs apart."""
+    """The key of the intrinsics and poses of these cameras in this order; files hold the photographs' sizes apart."""
     return _key("cameras", *(np.array([getattr(camera, name) for camera in cameras]) for name in ("K", "R", "t")))
 
 
 def mean_key(mean: NDArray[np.float32]) -> Key:
-    """Of a plane's mean (H, W, C)."""
+    """The key of a plane's mean (H, W, C)."""
     return _key("mean", mean)
 
 
 def textures_key(textures: NDArray[Any], scale: NDArray[np.float32], zero: NDArray[np.float32]) -> Key:
-    """Of a basis's eigen textures (N, H, W, C), and scale and zero (N, C) of their codes."""
+    """The key of a basis's eigen textures (N, H, W, C), and scale and zero (N, C) of their codes."""
     return _key("textures", textures, scale, zero)
 
 
 def weights_key(weights: NDArray[np.float32]) -> Key:
-    """Of a basis's weights (Ne, N)."""
+    """The key of a basis's weights (Ne, N)."""
     return _key("weights", weights)
 
 
 def preview_key(means: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmonised: bool) -> Key:
-    """Of the picture for other viewers, which is made of the means, whose keys these are. harmonised: whether the scene
-    has `colours`."""
+    """The key of the picture for other viewers, which is made of the means.
+
+    Args:
+        means: Their keys.
+        to_rgb: The scene's.
+        harmonised: Whether the scene has `colours`.
+    """
     digests = np.frombuffer(b"".join(digest for _, digest in means), np.uint8)
     return _key("preview", digests, np.array([harmonised]), *(() if to_rgb is None else (to_rgb,)))
 

@@ -11,15 +11,22 @@ T = TypeVar("T")
 class Progress(Protocol):
     """Called as `progress(stage, done, total)`: `done` of `total` steps of `stage` are finished.
 
-    Comes first with done = 0 and last with done = total, from one thread at a time. An exception that it raises
-    ends the work.
+    The first call has done = 0 and the last done = total; calls come from one thread at a time. An exception that it
+    raises ends the work.
     """
 
     def __call__(self, stage: str, done: int, total: int) -> None: ...
 
 
 def track(items: Iterable[T], stage: str, total: int, progress: Progress | None) -> Iterator[T]:
-    """Hand on `items`, reporting each one once the consumer is done with it."""
+    """Yield `items`, and report each one once the consumer is done with it.
+
+    Args:
+        items: Those to yield.
+        stage: Name of the work.
+        total: Number of items.
+        progress: Called before the first item and after each; None: not called.
+    """
     if progress is not None:
         progress(stage, 0, total)
     for done, item in enumerate(items, 1):

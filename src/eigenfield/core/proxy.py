@@ -14,8 +14,8 @@ class Proxy:
 
     Attributes:
         mesh: With UVs.
-        lattice: The pixels and inverse depths of the camera that a relief was made in; None for other meshes, and
-            where nobody has looked for it.
+        lattice: Pixels and inverse depths of the camera in which a relief was made; None for other meshes, and before
+            it was searched.
     """
 
     mesh: Mesh

@@ -1,4 +1,4 @@
-"""An eigen-texture scene in memory: what `encode` makes, a file keeps and `render` draws."""
+"""An eigen-texture scene in memory: `encode` makes it, a file stores it, `render` draws it."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ _lock = threading.RLock()  # of what is derived from any scene
 
 @dataclass(frozen=True, eq=False)
 class Residual:
-    """Photographs of the encoded cameras minus what the scene draws of them, coded: for captured views alone.
+    """Photographs of the encoded cameras minus the scene's renderings of them, coded: for captured views alone.
 
     Attributes:
         video: The coded video, a frame for each encoded camera.
-        size: (rows, columns) of the pictures in it, whose top left part a photograph is.
-        order: (Ne,) the cameras of the frames, counted among the encoded ones.
-        scale: What a code of luma, and of chroma, stands for.
-        full: Chroma is as fine as luma, below it in the frames, not half as fine.
-        smooth: What the scene draws has smooth edges, not one sample a pixel, or k x k (files before 1.5).
+        size: (rows, columns) of the pictures in it, whose top left part is a photograph's.
+        order: (Ne,) the camera of each frame, counted among the encoded ones.
+        scale: Value of one code of luma, and of chroma.
+        full: Chroma has the resolution of luma and stands below it in the frames; otherwise it has half of it.
+        smooth: The renderings have smooth edges, not one sample a pixel, or k x k (files before 1.5).
         codec: Of the video, a name in `coding.codecs.CODECS`.
     """
 
@@ -61,11 +61,11 @@ class Scene:
     Attributes:
         proxy: The surface.
         rig: The cameras.
-        appearance: What is drawn on the surface.
-        settings: JSON object: how it was made.
-        scores: JSON object: what `evaluate --store` measured.
+        appearance: Textures and weights drawn on the surface.
+        settings: JSON object: the options with which it was made.
+        scores: JSON object: measures by `evaluate --store`.
         generator: Name and version of the program that made it.
-        residual: What is missing from captured views, or None. No other view has anything of it.
+        residual: Difference of captured views to their renderings, or None. It improves no other view.
         times: The instants of its observations, in seconds; one for a still scene.
     """
 
@@ -80,10 +80,9 @@ class Scene:
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def rows(self, cameras: ArrayLike | None = None, time: int = 0) -> NDArray[np.int64]:
-        """Which rows of the weights are the observations of some cameras at one instant.
+        """The rows of the weights for the observations of some cameras at one instant.
 
-        Rows are in the order of instants, and at each in that of the encoded cameras. This is the only place that
-        knows.
+        Rows are in the order of instants, and at each in that of the encoded cameras. Only this function relies on it.
 
         Args:
             cameras: (n,) or () indices into `rig.cameras`; None: all encoded ones.
@@ -99,12 +98,14 @@ class Scene:
 
     @property
     def observations(self) -> int:
-        """How many rows the weights have."""
+        """Number of rows of the weights."""
         return len(self.times) * int((~self.rig.held_out).sum())
 
-    def derived(self, name: str, make: Callable[[], T]) -> T:
-        """What `make` returns, called once and kept as long as this object. Copies, pickles and `replace` have none of
-        it; edits in place do not change it."""
+    def derive(self, name: str, make: Callable[[], T]) -> T:
+        """The result of `make`, cached under a name as long as this object exists.
+
+        Copies, pickles and `replace` start without it; edits in place do not change it.
+        """
         if name not in self._derived:
             with _lock:
                 if name not in self._derived:
@@ -116,20 +117,20 @@ class Scene:
         return {**self.__dict__, "_derived": {}}
 
     def _repr_html_(self) -> str | None:
-        """The viewer in a frame: how a notebook shows a scene."""
+        """The viewer in a frame, for notebooks."""
         return None if notebook.show is None else notebook.show(self)
 
 
 @dataclass(frozen=True, eq=False)
 class EncodedScene(Scene):
-    """A scene with what its parts were coded to, as `encode` and `load` return it.
+    """A scene with the payloads of its parts, as `encode` and `load` return it.
 
-    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes those whose content is still there, byte
-    for byte, and codes anew what was edited.
+    `dataclasses.replace`, copies and pickles keep the payloads. `save` writes them byte for byte for parts that are
+    unchanged, and encodes parts that were edited.
 
     Attributes:
         payloads: Of mesh, cameras, means, eigen textures, weights and the picture for other viewers, each under the key
-            of its content. Parts that have not been coded, or that a file holds as plain numbers, have none.
+            of its content. Parts that are not coded, or that a file holds as plain numbers, have none.
     """
 
     payloads: Payloads = field(default_factory=Payloads)

@@ -1,4 +1,4 @@
-"""The array's own geometry: the plane through its cameras, coordinates on it, and the grid, if it is one."""
+"""Geometry of the camera array: the plane through its cameras, coordinates on it, and its grid, if it has one."""
 
 from __future__ import annotations
 
@@ -10,16 +10,18 @@ from numpy.typing import ArrayLike, NDArray
 
 from eigenfield.core.camera import Camera
 
-LINE_RATIO = 0.02  # an array whose smaller extent is below this part of the larger one is a line
+VIEW_PLANE_LINE_RATIO = 0.02  # of the smaller to the larger extent, up to which an array is a line
 
 
 @dataclass(frozen=True, eq=False)
 class ViewPlane:
     """Least-squares plane through the camera centres, with coordinates X, Y.
 
-    origin: (3,) world point at X = Y = 0, the middle of the array's bounding box in the plane.
-    right, up: (3,) orthonormal world directions in which X and Y grow, as the cameras see them.
-    extent: (2,) half the width and height of the bounding box, world units; the second is 0 for cameras on a line.
+    Attributes:
+        origin: (3,) world point at X = Y = 0, the middle of the array's bounding box in the plane.
+        right: (3,) world direction in which X grows, a unit vector, as the cameras see it.
+        up: (3,) world direction in which Y grows, perpendicular to `right`.
+        extent: (2,) half the width and height of the bounding box, world units; the second is 0 for cameras on a line.
     """
 
     origin: NDArray[np.float64]
@@ -32,7 +34,7 @@ class ViewPlane:
         return bool(self.extent[1] == 0)
 
     def coordinates(self, points: ArrayLike) -> NDArray[np.float64]:
-        """(n, 3) world points to (n, 2) X, Y: dropped onto the plane, ±1 at the array's edges."""
+        """(n, 3) world points to (n, 2) X, Y of their projections onto the plane, ±1 at the array's edges."""
         offset = np.asarray(points, dtype=np.float64).reshape(-1, 3) - self.origin
         lengths = np.stack([offset @ self.right, offset @ self.up], axis=1)
         return np.divide(lengths, self.extent, out=np.zeros_like(lengths), where=self.extent > 0)
@@ -53,7 +55,7 @@ def fit_view_plane(cameras: Sequence[Camera]) -> ViewPlane:
     middle = centres.mean(axis=0)
     _, spread, directions = np.linalg.svd(centres - middle, full_matrices=True)
     spread = np.append(spread, np.zeros(3 - len(spread)))
-    line = spread[1] <= LINE_RATIO * spread[0]
+    line = spread[1] <= VIEW_PLANE_LINE_RATIO * spread[0]
     if line:
         right = directions[0] if directions[0] @ axes[0] >= 0 else -directions[0]
         down = axes[1] - (axes[1] @ right) * right
@@ -79,9 +81,12 @@ def fit_view_plane(cameras: Sequence[Camera]) -> ViewPlane:
 class Grid:
     """A regular (possibly jittering) grid of cameras.
 
-    rows, columns: its size; row 0 is the lowest Y, column 0 the lowest X.
-    index: (rows, columns) int, the camera at each node.
-    x, y: (columns,), (rows,) mean view-plane coordinates of the columns and rows, rising.
+    Attributes:
+        rows: Row 0 is the lowest Y.
+        columns: Column 0 is the lowest X.
+        index: (rows, columns) int, the camera at each node.
+        x: (columns,) mean view-plane coordinates of the columns, rising.
+        y: (rows,) mean view-plane coordinates of the rows, rising.
     """
 
     rows: int
@@ -100,13 +105,13 @@ def find_grid(coordinates: ArrayLike) -> Grid | None:
         if total % rows:
             continue
         for r, c in {(rows, total // rows), (total // rows, rows)}:
-            grid = _grid_of(points, r, c)
+            grid = _fit_grid(points, r, c)
             if grid is not None:
                 return grid
     return None
 
 
-def _grid_of(points: NDArray[np.float64], rows: int, columns: int) -> Grid | None:
+def _fit_grid(points: NDArray[np.float64], rows: int, columns: int) -> Grid | None:
     by_row = np.argsort(points[:, 1], kind="stable").reshape(rows, columns)
     index = np.take_along_axis(by_row, np.argsort(points[by_row, 0], axis=1, kind="stable"), axis=1)
     placed = points[index]

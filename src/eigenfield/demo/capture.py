@@ -21,7 +21,7 @@ from eigenfield.demo.light import environment_map
 from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import write_ply
-from eigenfield.runtime.files import mended
+from eigenfield.runtime.files import output_errors
 from eigenfield.runtime.parallel import parallel_stream
 
 DEMO_SAMPLES_PER_SIDE = 3  # of a pixel
@@ -60,7 +60,7 @@ def draw_demo_capture(
     parent = folder.absolute().parent
     if not parent.is_dir():
         raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
-    with mended(folder):
+    with output_errors(folder):
         work = Path(tempfile.mkdtemp(prefix=f".{folder.name}.", suffix=".part", dir=parent))
         try:
             _draw_into(work, rows, columns, size, progress)
@@ -103,7 +103,7 @@ def draw_view(mesh: Mesh, camera: Camera, surface: NDArray[np.float32], room: ND
         room: Of `environment_map`.
     """
     assert mesh.uv is not None
-    fine = camera.resized(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
+    fine = camera.resize(DEMO_SAMPLES_PER_SIDE * camera.width, DEMO_SAMPLES_PER_SIDE * camera.height)
     raster = rasterise_view(mesh, fine)
     rays = np.ascontiguousarray(fine.R.T @ np.linalg.inv(fine.K))
     picture = np.empty((camera.height, camera.width, 3), np.float32)

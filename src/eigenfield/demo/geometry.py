@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, area_normals, vertex_normals
 from eigenfield.demo.cameras import DEMO_FOCAL_WIDTHS, DEMO_HALF_ARRAY_UNITS, array_camera, array_centre
 
 Array = NDArray[np.float64]
@@ -157,7 +157,7 @@ def _surface_of_revolution(name: str, profile: Array, rows: int, columns: int) -
     points = points + emboss_height(name, angles, arc / length[-1])[..., None] * outward
     faces = _grid(rows + 1, columns + 1)[:, ::-1]
     vertices = points.reshape(-1, 3)
-    normals = _vertex_normals(vertices, faces).reshape(points.shape)
+    normals = vertex_normals(vertices, faces).reshape(points.shape)
     normals[:, 0] = normals[:, -1] = (normals[:, 0] + normals[:, -1]) / 2  # the seam at the back
     depth = np.linalg.norm(array_centre() - vertices.mean(axis=0))
     chart = np.stack([angles * across, -arc], axis=-1).reshape(-1, 2) * DEMO_FOCAL_WIDTHS * CHART_FRAME_PIXELS / depth
@@ -236,22 +236,13 @@ def _grid(rows: int, columns: int) -> NDArray[np.int64]:
     return np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
-def _vertex_normals(vertices: Array, faces: NDArray[np.int64]) -> Array:
-    p = vertices[faces]
-    slope_normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
-    normals = np.zeros_like(vertices)
-    for k in range(3):
-        np.add.at(normals, faces[:, k], slope_normal)
-    return np.asarray(normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300))
-
-
 def _cull_back_faces(part: SurfacePart) -> SurfacePart:
     """The part without triangles that face away from all four corners of the array, and without their vertices.
 
     The relief is ignored, so that charts have smooth borders. The rest is wound counter-clockwise as seen from outside.
     """
     p, normals = part.vertices[part.faces], part.normals[part.faces].sum(axis=1)
-    inward = (np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]) * normals).sum(axis=1) < 0
+    inward = (area_normals(p) * normals).sum(axis=1) < 0
     faces = np.where(inward[:, None], part.faces[:, ::-1], part.faces)
     middle, outward = p.mean(axis=1), part.outward[part.faces].mean(axis=1)
     seen = np.zeros(len(faces), bool)

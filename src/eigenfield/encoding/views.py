@@ -13,7 +13,7 @@ from eigenfield.capture import Capture
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
-from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, of_cameras
+from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, select_cameras
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
@@ -55,7 +55,7 @@ class CaptureViews:
     @cached_property
     def observations(self) -> Observations:
         """Those of the encoded cameras, which are counted among themselves."""
-        return of_cameras(self.capture, self.rig.encoded.tolist())
+        return select_cameras(self.capture, self.rig.encoded.tolist())
 
     @cached_property
     def taken_by(self) -> NDArray[np.int64]:
@@ -81,7 +81,7 @@ def select_views(capture: CalibratedObservations, options: EncodeOptions) -> Cap
     Raises:
         OptionError: `hold-out` or `reference` for a rule or a name that does not fit the capture.
     """
-    cameras = tuple(camera.rounded() for camera in capture.cameras)
+    cameras = tuple(camera.to_float32() for camera in capture.cameras)
     places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
     held = held_out_cameras(options.hold_out, capture.names, places)
     reference = _reference(options.reference, capture.names, places, held)

@@ -5,11 +5,11 @@ from eigenfield.evaluation.report import EVALUATION_SCHEMA, evaluate, stored_sco
 from eigenfield.evaluation.session import match_photographs, with_scene_cameras
 from eigenfield.evaluation.uv import reconstruct_maps
 from eigenfield.imaging.flip import flip, flip_map
-from eigenfield.imaging.metrics import PSNR_CAP, psnr, psnr_luma, ssim
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, ssim
 
 __all__ = [
     "EVALUATION_SCHEMA",
-    "PSNR_CAP",
+    "PSNR_MAX_DECIBELS",
     "ExcludedCircle",
     "evaluate",
     "flip",

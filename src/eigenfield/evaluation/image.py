@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.imaging.flip import flip
-from eigenfield.imaging.metrics import Picture, psnr, psnr_luma, ssim, to_codes
+from eigenfield.imaging.metrics import PictureArray, psnr, psnr_luma, ssim, to_codes
 
 ImageScores = dict[str, float | None]
 HIGHER_IS_WORSE = frozenset({"flip"})
 
 
 def measure_picture(
-    drawn: Picture,
+    drawn: PictureArray,
     surface: NDArray[np.bool_],
-    photograph: Picture,
+    photograph: PictureArray,
     mask: NDArray[np.float32] | None = None,
     with_flip: bool = False,
 ) -> ImageScores:

@@ -22,7 +22,7 @@ from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import to_codes
-from eigenfield.runtime.files import mended, write_bytes
+from eigenfield.runtime.files import output_errors, write_bytes
 
 ContactSheetRow = tuple[
     str, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]
@@ -108,7 +108,7 @@ def write_plots(
         scene, capture, textures=scores["textures"], filter=scores["filter"], weights=scores["weights"]
     )
     refuse_existing_plots(folder, overwrite)
-    with mended(folder):
+    with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
     written = []
     for name in plot_names(scores):

@@ -306,7 +306,7 @@ def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
     if not len(chosen):
         raise _no_photographs(scene, photographs.root, photographs.names)
     lenses = _recorded_lenses(scene)
-    return chosen.calibrated(
+    return chosen.with_cameras(
         [scene.rig.cameras[index[name]] for name in chosen.names], [lenses[index[name]] for name in chosen.names]
     )
 

@@ -21,7 +21,7 @@ class Buffer:
         length: Of these.
         views: The JSON's buffer views.
         accessors: The JSON's accessors.
-        once: Buffer views of bytes that `shared` has written.
+        once: Buffer views of bytes that `shared_stream` has written.
         codecs: Places (`streams.PLACES`) and codecs of its streams.
     """
 
@@ -47,7 +47,7 @@ class Buffer:
         self.codecs.add((place, payload.codec))
         return self.view(payload.data)
 
-    def shared(self, payload: Payload, place: str) -> int:
+    def shared_stream(self, payload: Payload, place: str) -> int:
         """As `stream`; the same buffer view for the same bytes."""
         if payload.data not in self.once:
             self.once[payload.data] = self.stream(payload, place)

@@ -42,7 +42,7 @@ class Glb:
 
     def cut_off(self) -> FormatError:
         """The error to raise where the missing bytes are needed."""
-        return _truncated(self.size, self.size + self.missing)
+        return _truncation_error(self.size, self.size + self.missing)
 
 
 def read_file(path: Path) -> bytes:
@@ -100,10 +100,10 @@ def _parse_truncated(data: bytes, length: int) -> Glb:
             if kind == BINARY_CHUNK and len(data) < first + extent <= length:
                 value = strict_json.parse(data[start:end], f"byte {start}")
                 return Glb(value, memoryview(data)[first:], len(data), end, first + extent - len(data))
-    raise _truncated(len(data), length)
+    raise _truncation_error(len(data), length)
 
 
-def _truncated(size: int, length: int) -> FormatError:
+def _truncation_error(size: int, length: int) -> FormatError:
     return FormatError(
         "truncated",
         f"ends after {size} of {length} bytes",

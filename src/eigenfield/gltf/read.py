@@ -133,7 +133,7 @@ def _preview(document: Document, layout: FileLayout) -> Payload | None:
 def _scene(layout: FileLayout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
     assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
-    payloads = Payloads.joined(plane.payloads for plane in planes)
+    payloads = Payloads.merge(plane.payloads for plane in planes)
     if layout.mesh_payload is not None:
         payloads |= {mesh_key(layout.mesh): [layout.mesh_payload]}
     if layout.cameras.payload is not None:
@@ -168,7 +168,7 @@ def _decode_plane(plane: PlaneLayout) -> Coded[Plane]:
     if plane.mean.precision is not None:
         mean /= spread_precision(plane.mean.precision.decode()[0, ..., 0], *mean.shape[:2])
     bases = [_decode_basis(basis, plane.mean.channels) for basis in plane.bases]
-    payloads = Payloads.joined(basis.payloads for basis in bases) | {mean_key(mean): [plane.mean.payload]}
+    payloads = Payloads.merge(basis.payloads for basis in bases) | {mean_key(mean): [plane.mean.payload]}
     return Coded(Plane(mean, tuple(basis.value for basis in bases)), payloads)
 
 

@@ -303,7 +303,7 @@ def _plane(
 def _precision(picture: Payload, buffer: Buffer) -> dict[str, Any]:
     size = dimensions(memoryview(picture.data), picture.codec, "precision")
     return {
-        "bufferView": buffer.shared(picture, "precision"),
+        "bufferView": buffer.shared_stream(picture, "precision"),
         "size": list(size),
         **codec_entry(picture.codec, "precision"),
     }

@@ -1,4 +1,4 @@
-"""Constants and curves of colour spaces."""
+"""Constants and transfer functions of colour spaces."""
 
 from __future__ import annotations
 

@@ -16,8 +16,9 @@ def components(count: int, one: Indices, other: Indices) -> NDArray[np.int32]:
     """The connected components of an undirected graph.
 
     Args:
-        count: nodes.
-        one, other: (n,) the nodes that each link joins.
+        count: Number of nodes.
+        one: (n,) first node of each link.
+        other: (n,) its second node.
 
     Returns:
         (count,) the component of each node, numbered from 0 in the order of their first nodes.

@@ -4,7 +4,7 @@ Two-dimensional homogeneous rasterisation (Olano and Greer, "Triangle Scan Conve
 Coordinates", 1997): the edge functions come from the adjugate of the matrix of the three homogeneous corners, so
 triangles that reach behind the camera need no clipping, and their values at a pixel are proportional to the
 perspective-correct barycentric coordinates. Triangles are sorted into fixed bands of rows, each drawn by one thread;
-within a row an edge is crossed once, so the pixels of a triangle are a run whose ends are solved for, not searched.
+within a row an edge is crossed once, so the pixels of a triangle are a span whose ends are solved for, not searched.
 """
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
@@ -21,21 +21,22 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.runtime.jit import kernel
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-BAND = 64  # rows a thread draws at a time
-SET_UP = 8192  # triangles a thread sets up at a time
-EDGE_SLACK = 1e-7  # of the sum of edge functions: a pixel centre on a shared edge belongs to both triangles
-BOUND_SLACK = 1e-6  # pixels by which a bounding box is widened
-FAR = 1e30  # pixels
+RASTER_BAND_ROWS = 64  # that a thread draws at a time
+RASTER_SET_UP_TRIANGLES = 8192  # that a thread sets up at a time
+RASTER_EDGE_SLACK_FRACTION = 1e-7  # of the sum of edge functions: a centre on a shared edge is in both triangles
+RASTER_BOUND_SLACK_PIXELS = 1e-6  # by which a bounding box is widened
+RASTER_FAR_PIXELS = 1e30  # the end of a span that an edge does not bound
 
 
 @dataclass(frozen=True, eq=False)
 class Raster:
-    """What is nearest at each pixel centre.
+    """The nearest triangle at each pixel centre.
 
-    face: (H, W) int32, the triangle, -1 where there is none.
-    inverse_depth: (H, W) float32, 1 / depth along z, 0 where there is no surface.
-    edges: (m, 3, 3) float64; row i of edges[f] at (x, y, 1) is proportional to corner i's barycentric coordinate,
-        the three sum to 1 / depth.
+    Attributes:
+        face: (H, W) int32, the triangle, -1 where there is none.
+        inverse_depth: (H, W) float32, 1 / depth along z, 0 where there is no surface.
+        edges: (m, 3, 3) float64; row i of edges[f] at (x, y, 1) is proportional to corner i's barycentric coordinate,
+            the three sum to 1 / depth.
     """
 
     face: NDArray[np.int32]
@@ -45,10 +46,17 @@ class Raster:
 
 @kernel()
 def edge_functions(corners, faces, first, last, edges):
-    """Triangles [first, last) of corners (n, 3), homogeneous pixels (x w, y w, w), into edges (m, 3, 3).
+    """Compute the edge functions of triangles.
 
-    With M = [c0 c1 c2] and b the barycentric coordinates over depth, M b = (x, y, 1): b = M^-1 (x, y, 1). Zero for a
-    triangle that is seen edge-on, and for one that is wholly behind the camera.
+    With M = [c0 c1 c2] and b the barycentric coordinates over depth, M b = (x, y, 1): b = M^-1 (x, y, 1). They are zero
+    for a triangle that is seen edge-on, and for one that is wholly behind the camera.
+
+    Args:
+        corners: (n, 3) homogeneous pixels (x w, y w, w).
+        faces: (m, 3) indices of corners.
+        first: First triangle.
+        last: End of the triangles.
+        edges: (m, 3, 3) result.
     """
     for f in range(first, last):
         x0, y0, w0 = corners[faces[f, 0]]
@@ -78,31 +86,42 @@ def edge_functions(corners, faces, first, last, edges):
 
 
 @kernel()
-def find_pixels(corners, pixels):
-    """pixels (n, 2) out: where homogeneous corners (n, 3) lie in the picture; of no use at depths of 0 and less."""
+def project_corners(corners, pixels):
+    """Project homogeneous corners (n, 3) into pixels (n, 2), the result; meaningless where depth is not positive."""
     for i in range(corners.shape[0]):
         pixels[i, 0] = corners[i, 0] / corners[i, 2]
         pixels[i, 1] = corners[i, 1] / corners[i, 2]
 
 
 @kernel(inline=True)
-def first_from(low, size):
+def clamped_ceil(low, size):
     """`low` rounded up, within 0 and `size`."""
     return np.int32(np.ceil(min(max(low, 0.0), size)))
 
 
 @kernel(inline=True)
-def end_at(high, size):
+def clamped_floor(high, size):
     """`high` rounded down, within 0 and `size`."""
     return np.int32(np.floor(min(max(high, 0.0), size)))
 
 
 @kernel()
 def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last, bounds):
-    """bounds (m, 4) int32 of triangles [first, last): the pixels [top, bottom) x [left, right) they may cover.
+    """Bound the pixels [top, bottom) x [left, right) that triangles may cover.
 
-    pixels: of `find_pixels`, so that no corner is divided for each of its triangles. A triangle that reaches behind the
-    camera is bounded by the picture; one that covers nothing gets zeros.
+    A triangle that reaches behind the camera is bounded by the picture; one that covers nothing gets zeros.
+
+    Args:
+        corners: (n, 3) homogeneous pixels.
+        pixels: (n, 2) of `project_corners`, so that no corner is divided for each of its triangles.
+        faces: (m, 3) indices of corners.
+        edges: (m, 3, 3) edge functions.
+        width: Of the picture, pixels.
+        height: Likewise.
+        slack: Pixels by which bounds are widened.
+        first: First triangle.
+        last: End of the triangles.
+        bounds: (m, 4) int32 result.
     """
     columns, rows, more = float(width), float(height), 0.5 + slack
     for f in range(first, last):
@@ -112,8 +131,11 @@ def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last
             if (corners[i, 2] > 0) & (corners[j, 2] > 0) & (corners[k, 2] > 0):
                 x0, x1, x2 = pixels[i, 0], pixels[j, 0], pixels[k, 0]
                 y0, y1, y2 = pixels[i, 1], pixels[j, 1], pixels[k, 1]
-                top, bottom = first_from(min(y0, y1, y2) - more, rows), end_at(max(y0, y1, y2) + more, rows)
-                left, right = first_from(min(x0, x1, x2) - more, columns), end_at(max(x0, x1, x2) + more, columns)
+                top, bottom = clamped_ceil(min(y0, y1, y2) - more, rows), clamped_floor(max(y0, y1, y2) + more, rows)
+                left, right = (
+                    clamped_ceil(min(x0, x1, x2) - more, columns),
+                    clamped_floor(max(x0, x1, x2) + more, columns),
+                )
                 if (top >= bottom) | (left >= right):
                     top, bottom, left, right = np.int32(0), np.int32(0), np.int32(0), np.int32(0)
             else:
@@ -123,9 +145,15 @@ def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last
 
 @kernel()
 def sort_into_bands(bounds, band, starts):
-    """Triangles by band of `band` rows, in rising order: those of band b are listing[starts[b] : starts[b + 1]].
+    """Sort triangles into bands of rows.
 
-    starts: (bands + 1,) int64 out.
+    Args:
+        bounds: (m, 4) of `bound_faces`.
+        band: Rows of a band.
+        starts: (bands + 1,) int64 result.
+
+    Returns:
+        Triangles in rising order in each band: those of band b are listing[starts[b] : starts[b + 1]].
     """
     starts[:] = 0
     for f in range(bounds.shape[0]):
@@ -145,35 +173,35 @@ def sort_into_bands(bounds, band, starts):
 
 
 @kernel()
-def run_end(slope, along, constant):
-    """Where slope x + along y + constant >= 0 on row y: x >= a y + b and x <= c y + d, returned as a, b, c, d.
+def edge_span(slope, along, constant):
+    """The span where slope x + along y + constant >= 0 on row y: x >= a y + b and x <= c y + d, as a, b, c, d.
 
-    An edge bounds the run on one side; the other is left far away. One that runs along the rows takes all or nothing.
+    An edge bounds the span on one side; the other end is far away. An edge along the rows takes all or nothing.
     """
     if slope > 0:
         root = -1.0 / slope
-        return along * root, constant * root, 0.0, FAR
+        return along * root, constant * root, 0.0, RASTER_FAR_PIXELS
     if slope < 0:
         root = -1.0 / slope
-        return 0.0, -FAR, along * root, constant * root
-    return -FAR * along, -FAR * constant, 0.0, FAR
+        return 0.0, -RASTER_FAR_PIXELS, along * root, constant * root
+    return -RASTER_FAR_PIXELS * along, -RASTER_FAR_PIXELS * constant, 0.0, RASTER_FAR_PIXELS
 
 
 @kernel()
-def run_ends(e, slack):
-    """Of the edge functions b_i in e (3, 3) with sum q: `run_end` of b_i + slack q for each, and q's coefficients."""
+def edge_spans(e, slack):
+    """For edge functions b_i in e (3, 3) with sum q: `edge_span` of each b_i + slack q, and q's coefficients."""
     qx, qy, qc = e[0, 0] + e[1, 0] + e[2, 0], e[0, 1] + e[1, 1] + e[2, 1], e[0, 2] + e[1, 2] + e[2, 2]
     return (
-        run_end(e[0, 0] + slack * qx, e[0, 1] + slack * qy, e[0, 2] + slack * qc),
-        run_end(e[1, 0] + slack * qx, e[1, 1] + slack * qy, e[1, 2] + slack * qc),
-        run_end(e[2, 0] + slack * qx, e[2, 1] + slack * qy, e[2, 2] + slack * qc),
+        edge_span(e[0, 0] + slack * qx, e[0, 1] + slack * qy, e[0, 2] + slack * qc),
+        edge_span(e[1, 0] + slack * qx, e[1, 1] + slack * qy, e[1, 2] + slack * qc),
+        edge_span(e[2, 0] + slack * qx, e[2, 1] + slack * qy, e[2, 2] + slack * qc),
         (qx, qy, qc),
     )
 
 
 @kernel()
-def run_of(a, b, c, y, first, last):
-    """The columns [left, right) within [first, last) of the row at y, from the `run_ends` a, b, c."""
+def row_span(a, b, c, y, first, last):
+    """The columns [left, right) within [first, last) of the row at y, from the `edge_spans` a, b, c."""
     left = max(max(a[0] * y + a[1], b[0] * y + b[1]), max(c[0] * y + c[1], first + 0.5))
     right = min(min(a[2] * y + a[3], b[2] * y + b[3]), min(c[2] * y + c[3], last - 0.5))
     if not left <= right:
@@ -183,20 +211,29 @@ def run_of(a, b, c, y, first, last):
 
 @kernel()
 def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):
-    """Rows [first, last) of the triangles in `listing` into face and inverse_depth (H, W), nearest first kept; ties
-    go to the lower index.
+    """Draw triangles into a band of rows. The nearest one is kept; ties go to the lower index.
 
     A pixel is inside where b_i + slack q >= 0 for the three edge functions b_i and their sum q, all linear in x along
-    a row: each bounds the run from one side.
+    a row: each bounds the span from one side.
+
+    Args:
+        edges: (m, 3, 3) edge functions.
+        bounds: (m, 4) of `bound_faces`.
+        listing: Triangles of this band.
+        first: First row.
+        last: End of the rows.
+        slack: Fraction of q.
+        face: (H, W) result.
+        inverse_depth: (H, W) result.
     """
     face[first:last] = -1
     inverse_depth[first:last] = 0
     for f in listing:
-        a, b, c, q = run_ends(edges[f], slack)
+        a, b, c, q = edge_spans(edges[f], slack)
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             y = row + 0.5
             start = q[1] * y + q[2]
-            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            left, right = row_span(a, b, c, y, bounds[f, 2], bounds[f, 3])
             for column in range(left, right):
                 near = np.float32(q[0] * (column + 0.5) + start)
                 if near > inverse_depth[row, column]:
@@ -211,25 +248,32 @@ def homogeneous_corners(camera: Camera, vertices: NDArray[np.float32]) -> NDArra
 
 
 def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int, height: int) -> Raster:
-    """Draw triangles given by (n, 3) homogeneous pixel corners; see `Raster` for what comes back."""
+    """Draw triangles.
+
+    Args:
+        corners: (n, 3) homogeneous pixels.
+        faces: (m, 3) indices of corners.
+        width: Of the picture, pixels.
+        height: Likewise.
+    """
     edges, pixels = np.empty((len(faces), 3, 3)), np.empty((len(corners), 2))
     bounds = np.empty((len(faces), 4), np.int32)
-    find_pixels(corners, pixels)
+    project_corners(corners, pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, faces, *part, edges)
-        bound_faces(corners, pixels, faces, edges, width, height, BOUND_SLACK, *part, bounds)
+        bound_faces(corners, pixels, faces, edges, width, height, RASTER_BOUND_SLACK_PIXELS, *part, bounds)
 
-    parallel_map(set_up, pieces(len(faces), SET_UP))
-    bands = pieces(height, BAND)
+    parallel_map(set_up, pieces(len(faces), RASTER_SET_UP_TRIANGLES))
+    bands = pieces(height, RASTER_BAND_ROWS)
     starts = np.empty(len(bands) + 1, np.int64)
-    listing = sort_into_bands(bounds, BAND, starts)
+    listing = sort_into_bands(bounds, RASTER_BAND_ROWS, starts)
     face = np.empty((height, width), np.int32)
     inverse_depth = np.empty((height, width), np.float32)
 
     def draw(band: int) -> None:
         part = listing[starts[band] : starts[band + 1]]
-        draw_band(edges, bounds, part, *bands[band], EDGE_SLACK, face, inverse_depth)
+        draw_band(edges, bounds, part, *bands[band], RASTER_EDGE_SLACK_FRACTION, face, inverse_depth)
 
     parallel_map(draw, range(len(bands)))
     return Raster(face, inverse_depth, edges)

@@ -1,4 +1,4 @@
-"""Choosing some of many points, and pictures at half their size."""
+"""Farthest point sampling, and pictures at half their size."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ def farthest_points(
     """Farthest point sampling (Gonzalez, "Clustering to minimize the maximum intercluster distance", 1985).
 
     Args:
-        distance_to: (n,) distances of all points from the one of an index. Points that are not to be chosen have a
-            negative one.
-        first: index of the point chosen first.
-        count: how many are chosen at most. Points that coincide with chosen ones are not.
+        distance_to: From an index to (n,) distances of all points from that one. Points that must not be chosen have a
+            negative distance.
+        first: Index of the point chosen first.
+        count: How many are chosen at most. Points that coincide with chosen ones are not.
 
     Returns:
         (k,) indices: `first`, then each time the point farthest from all those before it.
@@ -36,7 +36,7 @@ def distances_to(points: NDArray[np.floating[Any]]) -> Callable[[int], NDArray[n
     return lambda index: np.linalg.norm(points - points[index], axis=1)
 
 
-def halved(picture: NDArray[np.float32]) -> NDArray[np.float32]:
+def halve_picture(picture: NDArray[np.float32]) -> NDArray[np.float32]:
     """(h / 2, w / 2, ...) means of four pixels of (h, w, ...), h and w even."""
     height, width, *channels = picture.shape
     return np.asarray(picture.reshape(height // 2, 2, width // 2, 2, *channels).mean(axis=(1, 3)), np.float32)

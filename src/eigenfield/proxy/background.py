@@ -187,7 +187,7 @@ def seen_faces(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.bool_]:
 
 def _small_camera(camera: Camera) -> Camera:
     scale = min(1.0, BACKGROUND_TUNING.visibility_pixels / max(camera.width, camera.height))
-    return camera.resized(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
+    return camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
 
 
 def add_face_ring(faces: NDArray[np.int32], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -266,7 +266,7 @@ def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
     for index in keep:
         K = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0]) @ cameras[index].K
         full_size.append(replace(cameras[index], K=K, width=capture.sizes[index][0], height=capture.sizes[index][1]))
-    return capture.subset(keep).calibrated(full_size, problems=problems)
+    return capture.subset(keep).with_cameras(full_size, problems=problems)
 
 
 def _inverse_depths(

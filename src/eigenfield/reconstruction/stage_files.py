@@ -62,7 +62,7 @@ def read_cameras(path: Path, capture: Capture) -> tuple[LightField, NDArray[np.f
         known = [None if not text else json.loads(str(text)) for text in data["lenses"]]
         problems, points = tuple(map(str, data["problems"])), data["points"]
     lenses = [None if lens is None else Lens(lens[0], tuple(lens[1])) for lens in known]
-    light_field = capture.subset(kept).calibrated(cameras, lenses)
+    light_field = capture.subset(kept).with_cameras(cameras, lenses)
     return replace(light_field, problems=problems), points
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from eigenfield.rendering.checks import FILTERS
+from eigenfield.rendering.checks import TEXTURE_FILTERS
 from eigenfield.rendering.exposure import camera_colour
 from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
-from eigenfield.rendering.paths import PATHS, path_points
+from eigenfield.rendering.paths import FLIGHT_PATHS, path_points
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.render_jobs import RenderJob
 from eigenfield.rendering.software.renderer import (
@@ -21,12 +21,12 @@ from eigenfield.rendering.software.renderer import (
 )
 from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weight_map import weight_map
-from eigenfield.rendering.weights import MODES, ViewWeights, camera_weights, delaunay_triangles, view_weights
+from eigenfield.rendering.weights import WEIGHT_MODES, ViewWeights, camera_weights, delaunay_triangles, view_weights
 
 __all__ = [
-    "FILTERS",
-    "MODES",
-    "PATHS",
+    "FLIGHT_PATHS",
+    "TEXTURE_FILTERS",
+    "WEIGHT_MODES",
     "OpenGLRenderer",
     "Picture",
     "RenderJob",

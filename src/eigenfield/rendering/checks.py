@@ -4,16 +4,32 @@ from __future__ import annotations
 
 from eigenfield.core.errors import OptionError
 
-FILTERS = ("bilinear", "bicubic")  # of texels; BICUBIC 0, 1 of the shader
+TEXTURE_FILTERS = ("bilinear", "bicubic")  # of texels; BICUBIC 0, 1 of the shader
 
 
 def check_filter(filter: str) -> None:
-    """Raise OptionError `filter` unless it is one of `FILTERS`."""
-    if filter not in FILTERS:
-        raise OptionError("filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(FILTERS)}")
+    """Refuse an unknown filter.
+
+    Args:
+        filter: Its name.
+
+    Raises:
+        OptionError: `filter`: it is none of `TEXTURE_FILTERS`.
+    """
+    if filter not in TEXTURE_FILTERS:
+        raise OptionError(
+            "filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(TEXTURE_FILTERS)}"
+        )
 
 
 def check_textures(textures: int | None) -> None:
-    """Raise OptionError `textures` for fewer than no eigen textures; None is all of them."""
+    """Refuse a negative number of eigen textures.
+
+    Args:
+        textures: The number; None: all of them.
+
+    Raises:
+        OptionError: `textures`: it is negative.
+    """
     if textures is not None and textures < 0:
         raise OptionError("textures", f"{textures} eigen textures were asked for", remedy="ask for 0 or more")

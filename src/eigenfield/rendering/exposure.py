@@ -9,7 +9,12 @@ from eigenfield.core.scene import Scene
 
 
 def camera_colour(scene: Scene, index: int) -> NDArray[np.float32] | None:
-    """(2, 3) gain and offset that harmonised the camera at `index`; None where the scene is not harmonised."""
+    """(2, 3) gain and offset that harmonised a camera; None where the scene is not harmonised.
+
+    Args:
+        scene: The scene.
+        index: Of the camera.
+    """
     return None if scene.appearance.colours is None else scene.appearance.colours[index]
 
 
@@ -19,8 +24,16 @@ def undo_colour(
     background: NDArray[np.float32],
     colour: NDArray[np.float32],
 ) -> NDArray[np.float32]:
-    """(H, W, C >= 3) with the surface's R, G and B as the camera saw them, (x - offset) / gain; the background, which
-    shows with the part 1 - coverage, stays as it is. Nothing is cut."""
+    """(H, W, C) with the surface's R, G and B as the camera saw them: (x - offset) / gain.
+
+    The background, which shows with the weight 1 - coverage, stays as it is. Nothing is clipped.
+
+    Args:
+        image: (H, W, C >= 3) the drawn picture.
+        coverage: (H, W) the part of each pixel that shows the surface.
+        background: (C,) its colour.
+        colour: (2, 3) gain and offset, of `camera_colour`.
+    """
     gain, offset = colour
     surface, behind = coverage[..., None], (1 - coverage)[..., None] * background[:3]
     own = image.copy()

@@ -1,4 +1,4 @@
-"""A flight through the array as files: a film, or numbered pictures."""
+"""A flight through the array as files: a video, or numbered pictures."""
 
 from __future__ import annotations
 
@@ -23,13 +23,22 @@ def write_flight(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
-    """Draw (n, 2) viewpoints into `output`: an .mp4 of `fps` pictures a second, or a .png each where its name has a
-    %04d. All of it appears at the end, or nothing.
+    """Draw viewpoints into a video, or into a .png each. All files appear at the end, or none.
 
-    Raises OutputError, and OptionError as `Renderer.draw` does.
+    Args:
+        job: What is drawn, and how.
+        points: (n, 2) viewpoints.
+        output: An .mp4, or a .png whose name has a %04d.
+        fps: Pictures a second of the video.
+        overwrite: Whether existing files are replaced.
+        progress: Reports each picture.
+
+    Raises:
+        OptionError: As `Renderer.draw`.
+        OutputError: A file cannot be written.
     """
     if not is_numbered(output):
-        write_video(output, job.film_along(points, progress), fps, overwrite=overwrite)
+        write_video(output, job.video_along(points, progress), fps, overwrite=overwrite)
         return
     with atomic_files(numbered_files(output, len(points)), overwrite=overwrite) as places:
         for place, data in zip(places, job.pngs_along(points, progress), strict=True):
@@ -37,6 +46,15 @@ def write_flight(
 
 
 def refuse_flight(output: Path, count: int, overwrite: bool) -> None:
-    """Before any work: raise OutputError where one of the files may not or cannot be written."""
+    """Before any work: check that all files may be written.
+
+    Args:
+        output: As of `write_flight`.
+        count: Number of pictures.
+        overwrite: Whether existing files may be replaced.
+
+    Raises:
+        OutputError: One of the files may not or cannot be written.
+    """
     for path in numbered_files(output, count) if is_numbered(output) else [output]:
         refuse_existing(path, overwrite)

@@ -1,4 +1,4 @@
-"""A camera that nobody held: what stands at a viewpoint between the captured ones."""
+"""A camera at a viewpoint between the captured ones."""
 
 from __future__ import annotations
 
@@ -11,18 +11,25 @@ from eigenfield.rendering.weights import place_weights
 
 
 def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
-    """The camera at view-plane coordinates `at` (clamped to the array's [-1, 1]), as large as the reference camera.
+    """The camera at a viewpoint, as large as the reference camera.
 
-    Its centre is the point of the view plane; K and R are the captured ones', with Delaunay weights. K linearly: in a
-    rectified array the principal point moves with the camera, and so does this one's, which keeps the plane of zero
-    parallax where it is. R is the weighted mean, made a rotation again.
+    Its centre is the point of the view plane. K is the mean of the captured cameras' with Delaunay weights: in a
+    rectified array the principal point moves with the camera, which keeps the plane of zero parallax in its place. R is
+    the rotation nearest to their weighted mean.
+
+    Args:
+        scene: The scene.
+        at: View-plane coordinates, clamped to the array's [-1, 1].
+
+    Raises:
+        OptionError: `viewpoint`.
     """
     cameras, weights = place_weights(scene, at)
     x, y = np.clip(np.asarray(at, dtype=np.float64), -1.0, 1.0)
     reference = scene.rig.cameras[scene.rig.reference]
     K, R = np.zeros((3, 3)), np.zeros((3, 3))
     for index, weight in zip(cameras, weights, strict=True):
-        camera = scene.rig.cameras[index].resized(reference.width, reference.height)
+        camera = scene.rig.cameras[index].resize(reference.width, reference.height)
         K += weight * camera.K
         R += weight * camera.R
     rotation = nearest_rotation(R)
@@ -31,7 +38,11 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
 
 
 def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(3, 3) the rotation nearest to a matrix, least squares (polar decomposition)."""
+    """(3, 3) the rotation nearest to a matrix, by least squares (polar decomposition).
+
+    Args:
+        matrix: (3, 3).
+    """
     u, _, vt = np.linalg.svd(matrix)
     turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
     rotation: NDArray[np.float64] = (u * turn) @ vt

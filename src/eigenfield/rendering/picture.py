@@ -7,16 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-WHOLE = 0.999  # of a pixel's samples
+PICTURE_COVERED_RATIO = 0.999  # of a pixel's samples
 
 
 @dataclass(frozen=True, eq=False)
 class Picture:
     """A drawn view.
 
-    image: (H, W, C) float32 in the textures' range (0..1 for photographs; bicubic filtering and truncated bases may
-        go a little beyond), the background where nothing is covered.
-    coverage: (H, W) float32, the part of each pixel's samples on which the proxy puts surface.
+    Attributes:
+        image: (H, W, C) float32 in the textures' range (0..1 for photographs; bicubic filtering and truncated bases may
+            go a little beyond), the background where nothing is covered.
+        coverage: (H, W) float32, the part of each pixel's samples that show the proxy.
     """
 
     image: NDArray[np.float32]
@@ -24,9 +25,8 @@ class Picture:
 
     @property
     def covered(self) -> NDArray[np.bool_]:
-        """(H, W): where the proxy puts surface on all samples of a pixel; one that it covers in part has the background
-        mixed in."""
-        return self.coverage > WHOLE
+        """(H, W) the pixels all of whose samples show the proxy; the others are blended with the background."""
+        return self.coverage > PICTURE_COVERED_RATIO
 
     def to_uint8(self) -> NDArray[np.uint8]:
         """(H, W, C) uint8: times 255, rounded half to even, clipped."""

@@ -1,4 +1,4 @@
-"""Many pictures of a scene under the same options, as files want them: bytes of a PNG, or RGB for a film."""
+"""Many pictures of a scene with the same options, as files need them: bytes of a PNG, or RGB for a video."""
 
 from __future__ import annotations
 
@@ -23,18 +23,27 @@ from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 
 RENDERERS = ("software", "opengl")
-EDGE_SAMPLES = 4  # of OpenGL
+OPENGL_EDGE_SAMPLES = 4  # a pixel
 Item = TypeVar("Item")
 Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, eq=False)
 class RenderJob:
-    """A scene and how it is to be drawn.
+    """A scene and how it is drawn.
 
-    resolution: (width, height), the camera's own if None. background: 1 or 3 numbers in 0..1, None for transparent.
-    weights, filter, textures, samples: as of `render`.
-    renderer: `software`, or `opengl`, which has no samples but smooths edges, and draws in one thread.
+    Attributes:
+        scene: The scene.
+        resolution: (width, height). Default: the camera's own.
+        background: 1 or 3 numbers in 0..1; None: transparent.
+        weights: One of `WEIGHT_MODES`.
+        filter: One of `TEXTURE_FILTERS`.
+        textures: Number of eigen textures of each basis. Default: all.
+        samples: As of `Renderer.draw`.
+        renderer: `software`, or `opengl`, which has no `samples` but smooths edges, and draws in one thread.
+
+    Raises:
+        OptionError: `renderer`, `samples`.
     """
 
     scene: Scene
@@ -55,9 +64,15 @@ class RenderJob:
             raise OptionError("samples", "OpenGL chooses its samples itself", remedy="leave them out")
 
     def picture(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> Picture:
-        """One picture; black behind what is to be transparent. colour: of `Renderer.draw`.
+        """One picture, on black where the background is transparent.
 
-        Raises OptionError `not-a-picture` for scenes of other than 1 or 3 channels, and those of `Renderer.draw`.
+        Args:
+            camera: The camera.
+            weights: What is blended.
+            colour: As of `Renderer.draw`.
+
+        Raises:
+            OptionError: `not-a-picture`: the scene has other than 1 or 3 channels; as `Renderer.draw`.
         """
         view = camera if self.resolution is None else at_resolution(camera, self.resolution)
         behind = self.background or (0.0,)
@@ -73,18 +88,33 @@ class RenderJob:
         )  # fmt: skip
 
     def rgb(self, camera: Camera, weights: ViewWeights) -> NDArray[np.uint8]:
-        """(H, W, 3) uint8, greys repeated."""
+        """(H, W, 3) uint8 of `picture`; greys are repeated.
+
+        Args:
+            camera: The camera.
+            weights: What is blended.
+        """
         image = self.picture(camera, weights).to_uint8()
         return image if image.shape[2] == 3 else np.repeat(image, 3, axis=2)
 
     def pixels(
         self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None
     ) -> NDArray[np.uint8]:
-        """(H, W, 1 to 4) uint8 as `png` takes it, with (straight) alpha where it is to be transparent."""
+        """(H, W, 1 to 4) uint8 as `png` takes it, with straight alpha where the background is transparent.
+
+        Args:
+            camera: The camera.
+            weights: What is blended.
+            colour: As of `Renderer.draw`.
+        """
         return self.pixels_of(self.picture(camera, weights, colour))
 
     def pixels_of(self, picture: Picture) -> NDArray[np.uint8]:
-        """`pixels` of a picture that `picture` drew."""
+        """`pixels` of a drawn picture.
+
+        Args:
+            picture: Drawn by `picture`.
+        """
         if self.background is not None:
             return picture.to_uint8()
         part = picture.coverage[..., None]
@@ -93,21 +123,42 @@ class RenderJob:
         return np.clip(np.rint(values * np.float32(255)), 0, 255).astype(np.uint8)
 
     def png(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> bytes:
-        """The picture as a .png."""
+        """The bytes of a .png.
+
+        Args:
+            camera: The camera.
+            weights: What is blended.
+            colour: As of `Renderer.draw`.
+        """
         return png(self.pixels(camera, weights, colour))
 
     def pngs_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[bytes]:
-        """A .png for each of (n, 2) viewpoints."""
+        """The bytes of a .png for each viewpoint.
+
+        Args:
+            points: (n, 2) viewpoints.
+            progress: Reports each picture.
+        """
         drawn = self.each(lambda view: self.png(*view), self._views(points))
         return track(drawn, "drawing", len(points), progress)
 
-    def film_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[NDArray[np.uint8]]:
-        """(H, W, 3) uint8 for each of (n, 2) viewpoints."""
+    def video_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[NDArray[np.uint8]]:
+        """(H, W, 3) uint8 for each viewpoint.
+
+        Args:
+            points: (n, 2) viewpoints.
+            progress: Reports each picture.
+        """
         drawn = self.each(lambda view: self.rgb(*view), self._views(points))
         return track(drawn, "drawing", len(points), progress)
 
     def each(self, draw: Callable[[Item], Drawn], items: Iterable[Item]) -> Iterator[Drawn]:
-        """draw(item) for each of `items`, in order: in several threads where the renderer allows it."""
+        """draw(item) for each item, in order; in several threads where the renderer allows it.
+
+        Args:
+            draw: Draws one.
+            items: What is drawn.
+        """
         return map(draw, items) if self.renderer == "opengl" else parallel_stream(draw, items)
 
     def _views(self, points: NDArray[np.float64]) -> Iterator[tuple[Camera, ViewWeights]]:
@@ -116,11 +167,15 @@ class RenderJob:
 
     @cached_property
     def _opengl(self) -> OpenGLRenderer:
-        return OpenGLRenderer(self.scene, filter=self.filter, multisample=EDGE_SAMPLES)
+        return OpenGLRenderer(self.scene, filter=self.filter, multisample=OPENGL_EDGE_SAMPLES)
 
 
 def png(picture: NDArray[np.uint8]) -> bytes:
-    """(H, W, 1 to 4) uint8 as a .png: grey, grey and alpha, RGB, RGBA."""
+    """The bytes of a .png.
+
+    Args:
+        picture: (H, W, 1 to 4) uint8: grey, grey and alpha, RGB, RGBA.
+    """
     if picture.shape[2] in (1, 3):
         return png_bytes(picture)
     from PIL import Image
@@ -131,7 +186,14 @@ def png(picture: NDArray[np.uint8]) -> bytes:
 
 
 def refuse_attributes(channels: int) -> None:
-    """Raise OptionError `not-a-picture` unless there are 1 or 3 channels."""
+    """Refuse scenes whose channels make no picture.
+
+    Args:
+        channels: Their number.
+
+    Raises:
+        OptionError: `not-a-picture`: neither 1 nor 3.
+    """
     if channels not in (1, 3):
         raise OptionError(
             "not-a-picture",

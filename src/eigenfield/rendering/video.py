@@ -12,16 +12,29 @@ from numpy.typing import NDArray
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.runtime.files import atomic_writer
 
-QUALITY = 16  # x264's constant rate factor: visually lossless
-ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
-SETTINGS = {"crf": str(QUALITY), "preset": "medium", "x264-params": "mbtree=0"}  # with it, bytes vary between runs
-BT709, LIMITED = 1, 1  # as libavutil numbers them
+VIDEO_CRF = 16  # x264's constant rate factor: visually lossless
+VIDEO_ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
+VIDEO_ENCODER_OPTIONS = {
+    "crf": str(VIDEO_CRF),
+    "preset": "medium",
+    "x264-params": "mbtree=0",
+}  # with it, bytes vary between runs
+VIDEO_BT709, VIDEO_LIMITED_RANGE = 1, 1  # as libavutil numbers them
 
 
 def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction, *, overwrite: bool = False) -> None:
-    """Write (H, W, 3) uint8 pictures of one size as H.264 in an .mp4, which appears whole or not at all.
+    """Write pictures as H.264 in an .mp4, which appears whole or not at all.
 
-    Odd sizes gain a row or column, a copy of the last: 4:2:0 needs even ones. Raises OutputError.
+    Odd sizes gain a row or column, a copy of the last: 4:2:0 needs even ones.
+
+    Args:
+        path: The .mp4.
+        pictures: (H, W, 3) uint8, of one size.
+        fps: Pictures a second.
+        overwrite: Whether an existing file is replaced.
+
+    Raises:
+        OutputError: The file cannot be written.
     """
     import av
 
@@ -31,16 +44,16 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
             planes = yuv420(picture)
             if stream is None:
                 height, width = planes[0].shape
-                stream = container.add_stream("libx264", rate=fps, options=SETTINGS)
+                stream = container.add_stream("libx264", rate=fps, options=VIDEO_ENCODER_OPTIONS)
                 stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
                 context = stream.codec_context
-                context.thread_count = ENCODER_THREADS
-                context.color_primaries = context.color_trc = context.colorspace = BT709
-                context.color_range = LIMITED
+                context.thread_count = VIDEO_ENCODER_THREADS
+                context.color_primaries = context.color_trc = context.colorspace = VIDEO_BT709
+                context.color_range = VIDEO_LIMITED_RANGE
             stacked = np.concatenate([planes[0].reshape(-1), planes[1].reshape(-1), planes[2].reshape(-1)])
             frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
-            frame.color_primaries = frame.color_trc = frame.colorspace = BT709
-            frame.color_range = LIMITED
+            frame.color_primaries = frame.color_trc = frame.colorspace = VIDEO_BT709
+            frame.color_range = VIDEO_LIMITED_RANGE
             frame.pts, frame.time_base = number, 1 / fps
             container.mux(stream.encode(frame))
         if stream is not None:
@@ -48,24 +61,31 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
 
 
 def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.uint8], NDArray[np.uint8]]:
-    """(H, W, 3) uint8 RGB as BT.709 Y' (H, W), Cb and Cr (H / 2, W / 2), limited range; odd sizes padded.
+    """BT.709 Y' (H, W), Cb and Cr (H / 2, W / 2) in limited range.
 
-    Chroma sits where H.264 expects it: level with the left of two columns, between two rows.
+    Chroma samples lie where H.264 expects them: level with the left of two columns, between two rows.
+
+    Args:
+        picture: (H, W, 3) uint8 RGB; odd sizes are padded.
     """
     height, width = picture.shape[:2]
     padded = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge")
     rgb = padded.astype(np.float32) / np.float32(255)
     luma = rgb @ np.array(LUMA_BT709, np.float32)
     cb, cr = (rgb[..., 2] - luma) / np.float32(1.8556), (rgb[..., 0] - luma) / np.float32(1.5748)
-    return _bytes(16 + 219 * luma), _bytes(128 + 224 * _halved(cb)), _bytes(128 + 224 * _halved(cr))
+    return (
+        _to_bytes(16 + 219 * luma),
+        _to_bytes(128 + 224 * _halve_chroma(cb)),
+        _to_bytes(128 + 224 * _halve_chroma(cr)),
+    )
 
 
-def _halved(plane: NDArray[np.floating]) -> NDArray[np.floating]:
+def _halve_chroma(plane: NDArray[np.floating]) -> NDArray[np.floating]:
     """(H, W) to (H / 2, W / 2): means of two rows, and (1 2 1) / 4 around every second column."""
     rows = (plane[0::2] + plane[1::2]) / 2
     left = np.concatenate([rows[:, :1], rows[:, 1:-1:2]], axis=1)
     return (left + 2 * rows[:, 0::2] + rows[:, 1::2]) / 4
 
 
-def _bytes(plane: NDArray[np.floating]) -> NDArray[np.uint8]:
+def _to_bytes(plane: NDArray[np.floating]) -> NDArray[np.uint8]:
     return np.clip(np.rint(plane), 0, 255).astype(np.uint8)

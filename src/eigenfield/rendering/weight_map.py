@@ -6,16 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.weights import SLACK, hull, nearest_on_segments, view_weights
+from eigenfield.rendering.weights import WEIGHTS_INSIDE_SLACK, hull, nearest_on_segments, view_weights
 
-NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
+WEIGHT_MAP_NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
 
 
-def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDArray[np.float32]:
-    """(nodes, nodes, N) float32: ω(j) of equation 7 at X, Y of -1..1 and the first instant, first index Y, nodes on the
-    edges.
+def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = WEIGHT_MAP_NODES) -> NDArray[np.float32]:
+    """(nodes, nodes, N) float32: ω(j) of equation 7 at Y, X of -1..1 and the first instant, with nodes on the edges.
 
-    N counts the components of all bases of all planes. Raises OptionError as `view_weights`.
+    N counts the components of all bases of all planes.
+
+    Args:
+        scene: The scene.
+        mode: One of `WEIGHT_MODES`.
+        nodes: Along each axis.
+
+    Raises:
+        OptionError: As `view_weights`.
     """
     steps = np.linspace(-1.0, 1.0, nodes)
     rows = component_rows(scene)
@@ -30,7 +37,11 @@ def weight_map(scene: Scene, mode: str = "delaunay", nodes: int = NODES) -> NDAr
 
 
 def component_rows(scene: Scene) -> NDArray[np.float64]:
-    """(No, N) float64: the weights of all bases of all planes, side by side."""
+    """(No, N) float64: the weights of all bases of all planes, side by side.
+
+    Args:
+        scene: The scene.
+    """
     parts = [basis.weights for plane in scene.appearance.planes for basis in plane.bases]
     return np.concatenate([np.zeros((scene.observations, 0)), *parts], axis=1, dtype=np.float64)
 
@@ -38,20 +49,27 @@ def component_rows(scene: Scene) -> NDArray[np.float64]:
 def _fill_triangles(
     scene: Scene, steps: NDArray[np.float64], rows: NDArray[np.float64], found: NDArray[np.float64]
 ) -> None:
-    """Put the weights of every node into `found`: within a Delaunay triangle its corners', outside the hull those of
-    the nearest point on it. rows: (Ne, N) of the encoded cameras."""
+    """Fill `found` with the weights of every node: within a Delaunay triangle its corners', outside the hull those of
+    the nearest point on it.
+
+    Args:
+        scene: The scene.
+        steps: (nodes,) coordinates of the nodes along an axis.
+        rows: (Ne, N) weights of the encoded cameras' observations.
+        found: (nodes, nodes, N), written.
+    """
     places = scene.rig.view_plane.coordinates([scene.rig.cameras[i].centre for i in scene.rig.encoded])
     for triangle in scene.rig.triangles:
         a, b, c = places[triangle]
         low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
-        first = np.searchsorted(steps, low - SLACK)
-        last = np.searchsorted(steps, high + SLACK, side="right")
+        first = np.searchsorted(steps, low - WEIGHTS_INSIDE_SLACK)
+        last = np.searchsorted(steps, high + WEIGHTS_INSIDE_SLACK, side="right")
         x, y = np.meshgrid(steps[first[0] : last[0]], steps[first[1] : last[1]])
         area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
         second = ((x - a[0]) * (c[1] - a[1]) - (y - a[1]) * (c[0] - a[0])) / area
         third = ((b[0] - a[0]) * (y - a[1]) - (b[1] - a[1]) * (x - a[0])) / area
         parts = np.stack([1 - second - third, second, third], axis=-1)
-        inside = parts.min(axis=-1) >= -SLACK
+        inside = parts.min(axis=-1) >= -WEIGHTS_INSIDE_SLACK
         block = found[first[1] : last[1], first[0] : last[0]]
         block[inside] = parts[inside] @ rows[triangle]
     outside = np.argwhere(np.isnan(found).any(axis=2))

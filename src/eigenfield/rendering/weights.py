@@ -11,10 +11,10 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import find_grid
 
-MODES = ("delaunay", "nearest3", "bilinear")
-FLAT = 1e-6  # triangles whose area is below this part of their longest side squared count as a line
-SLACK = 1e-9  # by which rounding may put a point on an edge outside of both its triangles, or cells
-Sparse = tuple[NDArray[np.integer], NDArray[np.float64]]  # (k,) encoded cameras, counted among themselves, and weights
+WEIGHT_MODES = ("delaunay", "nearest3", "bilinear")
+WEIGHTS_FLAT_RATIO = 1e-6  # of area to longest side squared: flatter triangles count as a line
+WEIGHTS_INSIDE_SLACK = 1e-9  # by which rounding may put a point on an edge outside of both its triangles, or cells
+_Sparse = tuple[NDArray[np.integer], NDArray[np.float64]]  # (k,) encoded cameras, counted among themselves, and weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,7 @@ def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", 
     Args:
         scene: The scene.
         at: View-plane coordinates.
-        mode: One of `MODES`.
+        mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
 
     Raises:
@@ -108,7 +108,7 @@ def place_weights(
     Args:
         scene: The scene.
         at: View-plane coordinates, clamped to the array's [-1, 1].
-        mode: One of `MODES`.
+        mode: One of `WEIGHT_MODES`.
 
     Returns:
         (k,) ascending indices into `scene.rig.cameras`, and (k,) their weights, none 0, whose sum is 1.
@@ -122,7 +122,7 @@ def place_weights(
     return scene.rig.encoded[among[order]], weights[order]
 
 
-def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> Sparse:
+def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse:
     """As `place_weights`, in any order."""
     x, y = float(at[0]), float(at[1])
     if not (np.isfinite(x) and np.isfinite(y)):
@@ -137,7 +137,9 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> Sparse:
         return _nearest3(point, places)
     if mode == "bilinear":
         return _bilinear(point, places)
-    raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(MODES)}")
+    raise OptionError(
+        "weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(WEIGHT_MODES)}"
+    )
 
 
 def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> ViewWeights:
@@ -146,7 +148,7 @@ def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int =
     Args:
         scene: The scene.
         index: Of the camera.
-        mode: One of `MODES`.
+        mode: One of `WEIGHT_MODES`.
         time: Index of the instant.
 
     Raises:
@@ -160,9 +162,12 @@ def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int =
 
 
 def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
-    """(T, 3) int32 triangles over (n, 2) view-plane coordinates; none for cameras on a line or fewer than three.
+    """(T, 3) int32 triangles; none for cameras on a line or fewer than three.
 
     Grids have four cameras on each circle; the choice of diagonal is Qhull's, and the same for the same numbers.
+
+    Args:
+        coordinates: (n, 2) view-plane coordinates of the cameras.
     """
     from scipy.spatial import Delaunay, QhullError
 
@@ -171,26 +176,25 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
         return np.zeros((0, 3), np.int32)
     centred = points - points.mean(axis=0)
     spread = np.linalg.svd(centred, compute_uv=False)
-    if spread[1] <= FLAT * spread[0]:
+    if spread[1] <= WEIGHTS_FLAT_RATIO * spread[0]:
         return np.zeros((0, 3), np.int32)
     try:
         found = Delaunay(points)
     except QhullError:
         return np.zeros((0, 3), np.int32)
     triangles = found.simplices.astype(np.int32)
-    return np.ascontiguousarray(triangles[_area(points[triangles]) > FLAT])
+    return np.ascontiguousarray(triangles[_area(points[triangles]) > WEIGHTS_FLAT_RATIO])
 
 
 def _coordinates(scene: Scene) -> NDArray[np.float64]:
-    """(Ne, 2) view-plane coordinates of the encoded cameras, kept as long as the scene: they are asked for at every
-    frame."""
+    """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene."""
 
     def make() -> NDArray[np.float64]:
         return scene.rig.view_plane.coordinates(
             np.array([scene.rig.cameras[index].centre for index in scene.rig.encoded])
         )
 
-    return scene.derived("view-plane coordinates", make)
+    return scene.derive("view-plane coordinates", make)
 
 
 def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -210,19 +214,23 @@ def _barycentric(point: NDArray[np.float64], corners: NDArray[np.float64]) -> ND
     return np.stack([1 - second - third, second, third], axis=1)
 
 
-def _delaunay(point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]) -> Sparse:
+def _delaunay(point: NDArray[np.float64], places: NDArray[np.float64], triangles: NDArray[np.int32]) -> _Sparse:
     if len(triangles) == 0:
         return _along_line(point, places)
     inside = _barycentric(point, places[triangles])
     best = int(np.argmax(inside.min(axis=1)))
-    if inside[best].min() >= -SLACK:
+    if inside[best].min() >= -WEIGHTS_INSIDE_SLACK:
         part = np.maximum(inside[best], 0)
         return triangles[best], part / part.sum()
     return _on_segments(point, places, hull(triangles))
 
 
 def hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-    """(E, 2) edges that belong to one triangle only."""
+    """(E, 2) edges that belong to one triangle only.
+
+    Args:
+        triangles: (T, 3).
+    """
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     unique, count = np.unique(edges, axis=0, return_counts=True)
     return unique[count == 1]
@@ -231,8 +239,16 @@ def hull(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
 def nearest_on_segments(
     points: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Of (n, 2) points the nearest of (E, 2) segments between places, (n,), the first where two are as near, and how
-    far along it the nearest point is, (n,) in 0..1."""
+    """The nearest segment of each point, and how far along it the nearest point lies.
+
+    Args:
+        points: (n, 2).
+        places: (m, 2) ends of segments.
+        segments: (E, 2) indices of places.
+
+    Returns:
+        (n,) indices of segments, the first of those equally near, and (n,) positions along them, 0..1.
+    """
     start, along = places[segments[:, 0]], places[segments[:, 1]] - places[segments[:, 0]]
     length = (along**2).sum(axis=1)
     away = points[:, None] - start
@@ -242,13 +258,13 @@ def nearest_on_segments(
     return nearest, part[np.arange(len(points)), nearest]
 
 
-def _on_segments(point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]) -> Sparse:
+def _on_segments(point: NDArray[np.float64], places: NDArray[np.float64], segments: NDArray[np.int32]) -> _Sparse:
     """Linear weights on the nearest point of (E, 2) segments."""
     nearest, part = nearest_on_segments(point[None], places, segments)
     return segments[nearest[0]], np.array([1.0 - part[0], part[0]])
 
 
-def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
+def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> _Sparse:
     """Cameras on a line, in the order of their positions along it: linear between neighbours, clamped at the ends."""
     if len(places) == 1:
         return np.zeros(1, np.int32), np.ones(1)
@@ -257,15 +273,15 @@ def _along_line(point: NDArray[np.float64], places: NDArray[np.float64]) -> Spar
     return _on_segments(point, places, np.stack([order[:-1], order[1:]], axis=1))
 
 
-def _nearest3(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
+def _nearest3(point: NDArray[np.float64], places: NDArray[np.float64]) -> _Sparse:
     near = np.argsort(((places - point) ** 2).sum(axis=1), kind="stable")[:3].astype(np.int32)
-    if len(near) < 3 or _area(places[near][None])[0] <= FLAT:
+    if len(near) < 3 or _area(places[near][None])[0] <= WEIGHTS_FLAT_RATIO:
         among, weights = _along_line(point, places[near])
         return near[among], weights
     return near, _barycentric(point, places[near][None])[0]
 
 
-def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse:
+def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> _Sparse:
     """Between the four cameras of the grid cell; on a jittering grid the cell's quadrilateral is inverted exactly."""
     grid = find_grid(places)
     if grid is None:
@@ -280,7 +296,7 @@ def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> Sparse
     ahead, towards = np.roll(corners, -1, axis=1) - corners, point - corners
     inside = (ahead[..., 0] * towards[..., 1] - ahead[..., 1] * towards[..., 0]).min(axis=1)
     best = int(np.argmax(inside))
-    if inside[best] < -SLACK:
+    if inside[best] < -WEIGHTS_INSIDE_SLACK:
         rim = np.concatenate([index[0], index[1:, -1], index[-1, -2::-1], index[-2::-1, 0]])
         return _on_segments(point, places, np.stack([rim[:-1], rim[1:]], axis=1))
     s, t = _in_cell(point, corners[best])

@@ -1,4 +1,4 @@
-"""Files that are whole or absent, and room on disk that is there before it is used."""
+"""Files that are whole or absent, and disk space that is allocated before it is used."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ from numpy.typing import DTypeLike, NDArray
 
 from eigenfield.core.errors import OutputError
 
-_NUMBER = re.compile(r"%0?\d{0,2}d")
-_FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_NUMBER_PLACE = re.compile(r"%0?\d{0,2}d")
+_DISK_FULL_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 @contextlib.contextmanager
-def mended(path: str | os.PathLike[str]) -> Iterator[None]:
-    """Turn what the operating system says of writing `path` into an OutputError with a remedy."""
+def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Turn errors of the operating system on writing `path` into an OutputError with a remedy."""
     try:
         yield
     except OSError as error:
-        if error.errno in _FULL:
+        if error.errno in _DISK_FULL_ERRORS:
             raise OutputError(
                 "disk-full", "no room left on the disk", path=path, remedy="free some or write elsewhere"
             ) from error
@@ -58,31 +58,31 @@ def refuse_existing(path: Path, overwrite: bool) -> None:
 
 
 def is_numbered(path: Path) -> bool:
-    """Whether a .png's name stands for many: it has a place for a number, `%04d` or `%d`."""
-    return path.suffix.lower() == ".png" and _NUMBER.search(path.name) is not None
+    """Whether a .png's name is a pattern with a place for a number, `%04d` or `%d`."""
+    return path.suffix.lower() == ".png" and _NUMBER_PLACE.search(path.name) is not None
 
 
 def numbered_files(path: Path, count: int) -> list[Path]:
     """The files 0 to `count` - 1 of a numbered name."""
 
     def numbered(index: int) -> str:
-        return _NUMBER.sub(lambda place: place[0] % index, path.name)
+        return _NUMBER_PLACE.sub(lambda place: place[0] % index, path.name)
 
     return [path.with_name(numbered(index)) for index in range(count)]
 
 
 @contextlib.contextmanager
 def atomic_writer(path: Path, *, overwrite: bool = False) -> Iterator[IO[bytes]]:
-    """A binary file that appears as `path` by rename, after fsync, when the block ends well; else nothing stays."""
+    """A binary file that appears as `path` by rename, after fsync, when the block succeeds; else nothing is left."""
     refuse_existing(path, overwrite)
-    with mended(path):
+    with output_errors(path):
         handle, name = tempfile.mkstemp(prefix=f".{path.name}.", suffix=".part", dir=path.absolute().parent)
         try:
             with os.fdopen(handle, "wb") as file:
                 yield file
                 file.flush()
                 os.fsync(file.fileno())
-            Path(name).chmod(0o666 & ~_umask())  # mkstemp's 0600 would hide the result from other users
+            Path(name).chmod(0o666 & ~current_umask())  # mkstemp's 0600 would hide the result from other users
             Path(name).replace(path)
         except BaseException:
             with contextlib.suppress(OSError):
@@ -98,13 +98,13 @@ def write_bytes(path: Path, data: bytes, *, overwrite: bool = False) -> None:
 
 @contextlib.contextmanager
 def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[list[Path]]:
-    """Files of one folder that appear together by rename, in order, when the block ends well; else nothing stays.
+    """Files of one folder that appear together by rename, in order, when the block succeeds; else nothing is left.
 
-    Yields the places at which the block is to write them.
+    Yields the paths at which the block must write them.
     """
     for target in targets:
         refuse_existing(target, overwrite)
-    with mended(targets[0]):
+    with output_errors(targets[0]):
         part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=targets[0].absolute().parent))
         old = part / "old"
         places = [part / "new" / target.name for target in targets]
@@ -116,7 +116,7 @@ def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterato
             flush_folder(part)
             for place, target in zip(places, targets, strict=True):
                 if target.exists():
-                    _keep(target, old / target.name)
+                    _link_or_copy(target, old / target.name)
                 done.append(target)
                 place.replace(target)
         except BaseException:
@@ -132,8 +132,8 @@ def atomic_files(targets: Sequence[Path], *, overwrite: bool = False) -> Iterato
             shutil.rmtree(part, ignore_errors=True)
 
 
-def _keep(path: Path, copy: Path) -> None:
-    """A second name for a file; a copy where the file system knows no links."""
+def _link_or_copy(path: Path, copy: Path) -> None:
+    """A second name for a file; a copy where the file system has no links."""
     try:
         os.link(path, copy)
     except OSError:
@@ -141,7 +141,7 @@ def _keep(path: Path, copy: Path) -> None:
 
 
 def flush_folder(folder: Path) -> None:
-    """Every file below `folder` onto the disk."""
+    """Flush every file below `folder` to the disk."""
     for inside, _, files in os.walk(folder):
         for name in files:
             handle = os.open(Path(inside) / name, os.O_RDONLY)
@@ -151,7 +151,8 @@ def flush_folder(folder: Path) -> None:
                 os.close(handle)
 
 
-def _umask() -> int:
+def current_umask() -> int:
+    """The permissions that new files do not get."""
     mask = os.umask(0o022)
     os.umask(mask)
     return mask
@@ -159,10 +160,15 @@ def _umask() -> int:
 
 @contextlib.contextmanager
 def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None = None) -> Iterator[NDArray[Any]]:
-    """A zeroed array in a memory-mapped temporary file, gone with the block (or with the process, however it ends).
+    """A zeroed array in a memory-mapped temporary file, deleted after the block (or when the process ends).
 
-    folder: where the room is taken, the system's temporary folder if None. Room is claimed at once where the system
-    can: a sparse file on a disk that fills up later would end the process by SIGBUS instead of by an OutputError.
+    Space is allocated at once where the system can: a sparse file on a disk that fills up later would end the process
+    by SIGBUS instead of by an OutputError.
+
+    Args:
+        shape: Of the array.
+        dtype: Of the array.
+        folder: Where the file is made; None: the system's temporary folder.
     """
     place = Path(folder) if folder is not None else Path(tempfile.gettempdir())
     size = int(np.prod(shape, dtype=np.int64)) * np.dtype(dtype).itemsize
@@ -170,7 +176,7 @@ def scratch_array(shape: tuple[int, ...], dtype: DTypeLike, folder: Path | None 
         yield np.zeros(shape, dtype)
         return
     with contextlib.ExitStack() as opened:
-        with mended(place):  # what goes wrong in the caller's block is not about this folder
+        with output_errors(place):  # what goes wrong in the caller's block is not about this folder
             file = opened.enter_context(tempfile.TemporaryFile(prefix=".eigenfield-", dir=place))
             if hasattr(os, "posix_fallocate"):
                 os.posix_fallocate(file.fileno(), 0, size)

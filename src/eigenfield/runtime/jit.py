@@ -23,8 +23,8 @@ _IMPORTS = re.compile(r"^from eigenfield\.(\S+) import", re.MULTILINE)
 
 @cache
 def _cache_folder() -> str:
-    """A folder for this state of all kernels and of what they import: numba sees a change of a kernel's own file, but
-    none of a kernel or a constant from another. A change elsewhere compiles nothing anew."""
+    """A folder for this state of all kernels and of their imports. Numba notices a change of a kernel's own file, but
+    not of a kernel or a constant from another one. A change elsewhere recompiles nothing."""
     root = Path(__file__).parents[1]
     texts = {path: path.read_text(encoding="utf-8") for path in root.rglob("*.py")}
     waiting = [path for path, text in texts.items() if "from eigenfield.runtime.jit import" in text]
@@ -55,8 +55,8 @@ def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str
     """Let other kernels call a compilation of their own, which takes a fifth less time to make.
 
     It has no wrapper for calls from Python, which unpacks every array of every argument; numba makes one for each
-    compilation otherwise. Kernels that pass constants share it: numba would compile a kernel anew for each constant
-    with which another kernel calls it. LLVM still folds the constants of what it inlines.
+    compilation otherwise. Kernels that pass constants share one: otherwise numba compiles a kernel for each constant
+    with which another kernel calls it. LLVM still folds the constants of inlined kernels.
     """
     widen = numba.types.unliteral
 
@@ -73,8 +73,9 @@ def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str
 def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
     """Decorator: compile with numba (nopython, nogil), keep the machine code between processes.
 
-    fastmath: allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
-    inline: for small functions that other kernels call in their inner loops.
+    Args:
+        fastmath: Allow sums to be re-ordered; for drawing only, never where bytes of a file depend on it.
+        inline: For small functions that other kernels call in their inner loops.
     """
 
     def decorate(function: Kernel) -> Kernel:

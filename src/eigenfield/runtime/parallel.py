@@ -19,7 +19,7 @@ from eigenfield.core.errors import OptionError
 
 A = TypeVar("A")
 B = TypeVar("B")
-TASKS = Path("/proc/self/task")  # on Linux, this process's threads
+TASKS_FOLDER = Path("/proc/self/task")  # on Linux, this process's threads
 
 
 class _Pool:
@@ -38,7 +38,7 @@ class _Pool:
             threading.Thread(target=self._run, name=f"eigenfield-{number}", daemon=True).start()
 
     def _run(self) -> None:
-        _inside.worker = True
+        _thread_state.worker = True
         while (task := self._work.get()) is not None:
             future, function, item = task
             if future.set_running_or_notify_cancel():
@@ -58,7 +58,7 @@ class _Pool:
         return future
 
     def close(self) -> None:
-        """Let the threads end once what is queued is done."""
+        """Let the threads end once the queue is empty."""
         with self._gate:
             self._open = False
             for _ in range(self._count):
@@ -66,13 +66,13 @@ class _Pool:
 
 
 _lock = threading.Lock()
-_inside = threading.local()
+_thread_state = threading.local()
 _threads: int | None = None
 _pool: _Pool | None = None
 
 
 def threads() -> int:
-    """Number of threads in use: what `set_threads` said, else the processors this process may run on."""
+    """Number of threads in use: that of `set_threads`, else the processors this process may run on."""
     if _threads is not None:
         return _threads
     if hasattr(os, "sched_getaffinity"):
@@ -106,14 +106,14 @@ def parallel_map(function: Callable[[A], B], items: Iterable[A]) -> list[B]:
     Within a worker it runs serially, so that nested calls cannot wait for each other.
     """
     work = list(items)
-    if threads() == 1 or len(work) < 2 or getattr(_inside, "worker", False):
+    if threads() == 1 or len(work) < 2 or getattr(_thread_state, "worker", False):
         return [function(item) for item in work]
     return list(parallel_stream(function, work))
 
 
 def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[B]:
     """As `parallel_map`, but lazily: at most two items more than there are threads are ahead of the consumer."""
-    if threads() == 1 or getattr(_inside, "worker", False):
+    if threads() == 1 or getattr(_thread_state, "worker", False):
         yield from map(function, items)
         return
     pool = _current_pool()
@@ -137,9 +137,9 @@ def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[
 def ordinary_scheduling() -> Iterator[None]:
     """Threads that become real-time within, the calling one or new ones, are made ordinary again at the end (Linux).
 
-    For SVT-AV1: run by root, it gives its caller and its own threads the highest real-time priority. All else on the
-    machine then waits for them; so do other threads of this process, and where OpenBLAS spins until one of those has
-    done its part, for ever.
+    For SVT-AV1: run by root, it gives its caller and its own threads the highest real-time priority. Everything else on
+    the machine then waits for them, other threads of this process too. Where OpenBLAS spins until one of those threads
+    is done, it waits for ever.
     """
     before = _real_time_threads()
     try:
@@ -153,8 +153,8 @@ def ordinary_scheduling() -> Iterator[None]:
 
 def _real_time_threads() -> set[int]:
     found: set[int] = set()
-    if TASKS.is_dir() and hasattr(os, "sched_getscheduler"):
-        for thread in (int(task.name) for task in TASKS.iterdir()):
+    if TASKS_FOLDER.is_dir() and hasattr(os, "sched_getscheduler"):
+        for thread in (int(task.name) for task in TASKS_FOLDER.iterdir()):
             with contextlib.suppress(OSError):
                 if os.sched_getscheduler(thread) in (os.SCHED_FIFO, os.SCHED_RR):
                     found.add(thread)

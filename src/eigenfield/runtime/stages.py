@@ -1,7 +1,7 @@
-"""Finished stages of long work in a folder, so that the same command goes on after a crash.
+"""Finished stages of long work in a folder, so that the same command resumes after a crash.
 
-A stage's folder carries a digest of all that its result depends on: a changed option, photograph or program finds
-nothing and builds anew. It is built beside its place and appears there by rename: what exists is whole.
+The name of a stage's folder has a digest of everything that its result depends on: with another option, photograph or
+program, the stage is built again. It is built beside its place and renamed: a folder that exists is whole.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import flush_folder, mended
+from eigenfield.runtime.files import flush_folder, output_errors
 
 log = logging.getLogger("eigenfield.stages")
 
-BLOCK = 1 << 20
-PACKAGE = Path(__file__).parents[1]
+DIGEST_BLOCK_BYTES = 1 << 20
+PACKAGE_FOLDER = Path(__file__).parents[1]
 STAGE_ROOMS = "core", "runtime", "imaging", "capture", "stereo", "calibrate", "proxy", "reconstruction"
 
 
 @cache
-def code_version(root: Path = PACKAGE) -> str:
-    """A digest of the sources of STAGE_ROOMS in a package: a stage built by another version of them is not taken up."""
+def code_version(root: Path = PACKAGE_FOLDER) -> str:
+    """A digest of the sources of STAGE_ROOMS in a package: a stage built by another version of them is not reused."""
     digest = hashlib.sha256()
     for source in sorted(path for room in STAGE_ROOMS for path in (root / room).rglob("*.py")):
         digest.update(f"{source.relative_to(root).as_posix()}\n".encode() + source.read_bytes())
@@ -41,7 +41,7 @@ def file_digest(path: Path) -> str:
     """The SHA-256 of a file's bytes."""
     digest = hashlib.sha256()
     with path.open("rb") as file:
-        while block := file.read(BLOCK):
+        while block := file.read(DIGEST_BLOCK_BYTES):
             digest.update(block)
     return digest.hexdigest()
 
@@ -53,31 +53,38 @@ def stage_key(inputs: Iterable[Any]) -> str:
 
 
 class Stages:
-    """Finished stages below `folder`; None keeps nothing: every stage is built in a temporary folder."""
+    """Finished stages in a folder."""
 
     def __init__(self, folder: Path | None) -> None:
+        """Make the folder; None keeps nothing: every stage is built in a temporary folder."""
         self._temporary = tempfile.TemporaryDirectory(prefix="eigenfield-") if folder is None else None
         self.folder = Path(self._temporary.name) if self._temporary else Path(folder or ".")
         if self.folder.exists() and not self.folder.is_dir():
             raise OutputError("work-is-file", "is a file", path=self.folder, remedy="name a folder as --work")
-        with mended(self.folder):
+        with output_errors(self.folder):
             self.folder.mkdir(parents=True, exist_ok=True)
 
     def path(self, name: str, key: str) -> Path:
-        """Where the finished stage lies, or will."""
+        """The folder of a finished stage, now or later."""
         return self.folder / f"{name}-{key}"
 
     def run(self, name: str, key: str, build: Callable[[Path], None]) -> Path:
-        """The folder of stage `name`: the finished one, else made by `build(folder)`, which writes files there.
+        """The folder of a stage: the finished one, otherwise a new one.
 
-        Raises what `build` raises, and OutputError; then nothing of the stage stays.
+        Args:
+            name: Of the stage.
+            key: Digest of everything that its result depends on (`stage_key`).
+            build: Writes the stage's files into the folder that it is given.
+
+        Raises:
+            OutputError: The folder cannot be written. Errors of `build` pass through; nothing of the stage is left.
         """
         place = self.path(name, key)
         if place.is_dir():
             log.info("%s: taken up from %s", name, place)
             return place
-        with mended(self.folder):
-            _clear(self.folder, name)
+        with output_errors(self.folder):
+            _remove_unfinished(self.folder, name)
             part = Path(tempfile.mkdtemp(prefix=f".{name}-{os.getpid()}-", suffix=".part", dir=self.folder))
             try:
                 build(part)
@@ -95,7 +102,7 @@ class Stages:
         return place
 
     def close(self) -> None:
-        """Remove what was only temporary."""
+        """Remove the folder if it is temporary."""
         if self._temporary is not None:
             with contextlib.suppress(OSError):
                 self._temporary.cleanup()
@@ -107,16 +114,16 @@ class Stages:
         self.close()
 
 
-def _clear(folder: Path, name: str) -> None:
-    """Remove what killed runs left unfinished; a run that still lives keeps its own."""
+def _remove_unfinished(folder: Path, name: str) -> None:
+    """Remove unfinished stages of killed runs; those of running processes stay."""
     for part in folder.glob(f".{name}-*.part"):
         process = part.name.removeprefix(f".{name}-").split("-")[0]
-        if process.isdecimal() and not _lives(int(process)):
+        if process.isdecimal() and not _is_alive(int(process)):
             log.info("removed what a killed run left: %s", part)
             shutil.rmtree(part, ignore_errors=True)
 
 
-def _lives(process: int) -> bool:
+def _is_alive(process: int) -> bool:
     if os.name != "posix":  # elsewhere signal 0 is no question
         return True
     try:

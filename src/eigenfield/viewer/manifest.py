@@ -10,13 +10,23 @@ from eigenfield.core.version import __version__
 from eigenfield.viewer.page import page_html, static_file
 from eigenfield.viewer.photographs import Photographs
 
-JAVASCRIPT = "text/javascript; charset=utf-8"
-STATIC = {"viewer.js": JAVASCRIPT, "eigenfield-three.js": JAVASCRIPT, "viewer.css": "text/css; charset=utf-8"}
+JAVASCRIPT_TYPE = "text/javascript; charset=utf-8"
+STATIC_TYPES = {
+    "viewer.js": JAVASCRIPT_TYPE,
+    "eigenfield-three.js": JAVASCRIPT_TYPE,
+    "viewer.css": "text/css; charset=utf-8",
+}
 
 
 @dataclass(frozen=True, eq=False)
 class Content:
-    """Bytes, their media type, and the strong ETag that names them."""
+    """What a path is answered with.
+
+    Attributes:
+        type: The media type.
+        data: The bytes.
+        tag: Their strong ETag, quotes included.
+    """
 
     type: str
     data: bytes
@@ -24,6 +34,12 @@ class Content:
 
     @staticmethod
     def of(type: str, data: bytes) -> Content:
+        """Bytes with their ETag.
+
+        Args:
+            type: The media type.
+            data: The bytes.
+        """
         return Content(type, data, f'"{hashlib.sha256(data).hexdigest()[:32]}"')
 
 
@@ -36,26 +52,34 @@ def make_manifest(
     """The page, its files, the scene, and a picture for each photograph: path to what makes the content.
 
     All but photographs is held in memory, so that files replaced on disk never mix with those that were checked.
-    Raises OutputError `viewer-build` where the page was not built.
+
+    Args:
+        glb: The scene's file.
+        title: Of the page.
+        photographs: Of the scene's cameras.
+        metres_per_unit: Metres in one unit of the capture, for headsets.
+
+    Raises:
+        OutputError: `viewer-build`: the page was not built.
     """
     config: dict[str, object] = {"title": title, "scene": "scene.glb", "bytes": len(glb), "version": __version__}
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
     if photographs is not None:
         config["photographs"] = {name: f"photographs/{index}" for index, name in photographs.names.items()}
-    fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC.items()}
+    fixed = {f"/{name}": Content.of(type, static_file(name)) for name, type in STATIC_TYPES.items()}
     fixed["/"] = Content.of("text/html; charset=utf-8", page_html(config))
     fixed["/scene.glb"] = Content.of("model/gltf-binary", glb)
-    manifest: dict[str, Callable[[], Content]] = {path: _constant(content) for path, content in fixed.items()}
+    manifest: dict[str, Callable[[], Content]] = {path: _answer_fixed(content) for path, content in fixed.items()}
     if photographs is not None:
         for index in photographs.names:
-            manifest[f"/photographs/{index}"] = _photograph(photographs, index)
+            manifest[f"/photographs/{index}"] = _answer_photograph(photographs, index)
     return manifest
 
 
-def _constant(content: Content) -> Callable[[], Content]:
+def _answer_fixed(content: Content) -> Callable[[], Content]:
     return lambda: content
 
 
-def _photograph(photographs: Photographs, index: int) -> Callable[[], Content]:
+def _answer_photograph(photographs: Photographs, index: int) -> Callable[[], Content]:
     return lambda: Content.of("image/png", photographs.png(index))

@@ -10,30 +10,34 @@ from eigenfield.core.scene import Scene
 from eigenfield.gltf import encode_scene
 from eigenfield.viewer.page import single_file
 
-TITLE = "Eigen-texture scene"
-HEIGHT = 480  # pixels
-MOST = 64 * 2**20  # bytes of a scene's file; notebooks keep what they show, and are slow with more
-ALLOWED = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
+NOTEBOOK_TITLE = "Eigen-texture scene"
+NOTEBOOK_HEIGHT_PX = 480
+NOTEBOOK_MAX_BYTES = 64 * 2**20  # of a scene's file; notebooks save what they show, and are slow with more
+NOTEBOOK_FEATURES = "xr-spatial-tracking; gyroscope; accelerometer; gamepad"
 
 
 def scene_html(scene: Scene) -> str:
     """The scene as an <iframe>, for Jupyter and its like; one line of text where it cannot be shown.
 
-    What has been coded is shown as it is, the rest is coded once; the residual is left out. The frame is an
-    origin of its own (`sandbox` without `allow-same-origin`): it can neither read the notebook nor act in it.
+    What has no payload is coded once; the residual is left out. The frame is an origin of its own (`sandbox` without
+    `allow-same-origin`): it can neither read the notebook nor act in it.
+
+    Args:
+        scene: The scene.
     """
     try:
-        glb = scene.derived("glb", lambda: encode_scene(replace(scene, residual=None)))
-        if len(glb) > MOST:
+        glb = scene.derive("glb", lambda: encode_scene(replace(scene, residual=None)))
+        if len(glb) > NOTEBOOK_MAX_BYTES:
             return _line(
                 f"a scene of {len(glb) / 1e6:.0f} MB is too large for a notebook; save it and use `eigenfield view`"
             )
-        page = single_file(glb, title=TITLE).decode("utf-8")
+        page = single_file(glb, title=NOTEBOOK_TITLE).decode("utf-8")
     except EigenfieldError as error:
         return _line(str(error))
     return (
-        f'<iframe srcdoc="{html.escape(page)}" title="{TITLE}" width="100%" height="{HEIGHT}" style="border: 0" '
-        f'allow="{ALLOWED}" allowfullscreen sandbox="allow-scripts allow-downloads"></iframe>'
+        f'<iframe srcdoc="{html.escape(page)}" title="{NOTEBOOK_TITLE}" width="100%" '
+        f'height="{NOTEBOOK_HEIGHT_PX}" style="border: 0" '
+        f'allow="{NOTEBOOK_FEATURES}" allowfullscreen sandbox="allow-scripts allow-downloads"></iframe>'
     )
 
 

@@ -14,18 +14,25 @@ from typing import Any
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
 
-STATIC = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
-TITLE = "<title>eigenfield</title>"
-CONFIG = '<script type="application/json" id="eigenfield-config">{}</script>'
-SCRIPT = re.compile(r'<script type="module"[^>]*\bsrc="(?:\./)?viewer\.js"[^>]*></script>')
-STYLE = re.compile(r'<link rel="stylesheet"[^>]*\bhref="(?:\./)?viewer\.css"[^>]*/?>')
-HEAD = re.compile(r"<head>\s*(?:<meta charset=[^>]*>)?", re.IGNORECASE)
+STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
+TITLE_ELEMENT = "<title>eigenfield</title>"
+CONFIG_ELEMENT = '<script type="application/json" id="eigenfield-config">{}</script>'
+SCRIPT_ELEMENT = re.compile(r'<script type="module"[^>]*\bsrc="(?:\./)?viewer\.js"[^>]*></script>')
+STYLE_ELEMENT = re.compile(r'<link rel="stylesheet"[^>]*\bhref="(?:\./)?viewer\.css"[^>]*/?>')
+HEAD_ELEMENT = re.compile(r"<head>\s*(?:<meta charset=[^>]*>)?", re.IGNORECASE)
 
 
 def static_file(name: str) -> bytes:
-    """A file of the built page. Raises OutputError `viewer-build` where it is missing."""
+    """A file of the built page.
+
+    Args:
+        name: Of the file.
+
+    Raises:
+        OutputError: `viewer-build`: it is missing.
+    """
     try:
-        return (STATIC / name).read_bytes()
+        return (STATIC_FOLDER / name).read_bytes()
     except FileNotFoundError as error:
         raise _not_built(name, "is missing") from error
 
@@ -33,10 +40,14 @@ def static_file(name: str) -> bytes:
 def page_html(config: Mapping[str, Any]) -> bytes:
     """The page with its configuration, as a server gives it beside viewer.js and viewer.css.
 
-    config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
-    metresPerUnit, version. Raises OutputError `viewer-build`.
+    Args:
+        config: JSON object, all keys optional: title, scene (URL), bytes, embedded, photographs (camera name to URL),
+            metresPerUnit, version.
+
+    Raises:
+        OutputError: `viewer-build`.
     """
-    return _encoded(_configured(_text("index.html"), config))
+    return _encode(_configure(_text("index.html"), config))
 
 
 def single_file(
@@ -48,9 +59,16 @@ def single_file(
 ) -> bytes:
     """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
 
-    photographs: camera name to an encoded picture and its media type, of the camera's size. The page's own policy
-    allows its one script and style, named by their hashes, and no connection to anywhere. Raises OutputError
-    `viewer-build`.
+    The page's own policy allows its one script and style, named by their hashes, and no connection to anywhere.
+
+    Args:
+        glb: The scene's file.
+        title: Of the page.
+        photographs: Camera name to an encoded picture, of the camera's size, and its media type.
+        metres_per_unit: Metres in one unit of the capture, for headsets.
+
+    Raises:
+        OutputError: `viewer-build`.
     """
     config: dict[str, Any] = {"title": title, "embedded": True, "bytes": len(glb), "version": __version__}
     if metres_per_unit is not None:
@@ -64,37 +82,41 @@ def single_file(
     )
     scene = base64.b64encode(glb).decode("ascii")
     page = _text("index.html")
-    page = _replaced(page, STYLE, lambda _: f"<style>{style}</style>")
-    page = _replaced(page, SCRIPT, lambda _: f'<script type="module">{script}</script>')
+    page = _replace_once(page, STYLE_ELEMENT, lambda _: f"<style>{style}</style>")
+    page = _replace_once(page, SCRIPT_ELEMENT, lambda _: f'<script type="module">{script}</script>')
     meta = f'<meta http-equiv="Content-Security-Policy" content="{policy}">'
-    page = _replaced(page, HEAD, lambda head: f"{head}\n{meta}")
+    page = _replace_once(page, HEAD_ELEMENT, lambda head: f"{head}\n{meta}")
     data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
-    return _encoded(_configured(page, config, data))
+    return _encode(_configure(page, config, data))
 
 
 def _text(name: str) -> str:
-    """A text of the build, its lines ended as an HTML parser ends them: hashes are of what it sees."""
+    """A text of the build with the line ends of an HTML parser, which hashes what it reads."""
     return static_file(name).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
 
 
-def _configured(page: str, config: Mapping[str, Any], more: str = "") -> str:
+def _configure(page: str, config: Mapping[str, Any], more: str = "") -> str:
     """The page with its title and configuration; `more` behind them."""
-    for mark in (TITLE, CONFIG):
+    for mark in (TITLE_ELEMENT, CONFIG_ELEMENT):
         if page.count(mark) != 1:
             raise _not_built("index.html", f"has not exactly one {mark}")
-    page = page.replace(TITLE, f"<title>{html.escape(str(config.get('title', 'eigenfield')))}</title>")
-    before, after = page.split(CONFIG)  # not `replace`: nothing that came in is searched again
-    return before + CONFIG.replace("{}", json_for_html(config)) + more + after
+    page = page.replace(TITLE_ELEMENT, f"<title>{html.escape(str(config.get('title', 'eigenfield')))}</title>")
+    before, after = page.split(CONFIG_ELEMENT)  # not `replace`: nothing that came in is searched again
+    return before + CONFIG_ELEMENT.replace("{}", json_for_html(config)) + more + after
 
 
 def json_for_html(value: Any) -> str:
-    """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold."""
+    """JSON in ASCII that ends no script element and begins no comment, whatever its strings hold.
+
+    Args:
+        value: JSON object.
+    """
     text = json.dumps(value, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _inline_script(text: str) -> str:
-    """JavaScript that may stand in a script element: what would end it, or begin a comment, is spelt otherwise.
+    """JavaScript for a script element: what would end it, or begin a comment, is escaped.
 
     Such text occurs in strings, templates and regular expressions only, where \\x3c is the same character.
     """
@@ -102,11 +124,11 @@ def _inline_script(text: str) -> str:
 
 
 def _inline_style(text: str) -> str:
-    """CSS that may stand in a style element."""
+    """CSS for a style element: what would end it is escaped."""
     return re.sub(r"</(?=style)", r"<\\/", text, flags=re.IGNORECASE)
 
 
-def _replaced(page: str, pattern: re.Pattern[str], text: Callable[[str], str]) -> str:
+def _replace_once(page: str, pattern: re.Pattern[str], text: Callable[[str], str]) -> str:
     """The page with the one place of `pattern` replaced by what `text` makes of it."""
     made, count = pattern.subn(lambda match: text(match[0]), page)
     if count != 1:
@@ -122,7 +144,7 @@ def _data_url(data: bytes, mime: str) -> str:
     return f"data:{mime};base64,{base64.b64encode(data).decode('ascii')}"
 
 
-def _encoded(page: str) -> bytes:
+def _encode(page: str) -> bytes:
     return page.encode("utf-8", "replace")  # a title from a file name may hold half a character
 
 
@@ -130,6 +152,6 @@ def _not_built(name: str, reason: str) -> OutputError:
     return OutputError(
         "viewer-build",
         f"the viewer's page {reason}",
-        path=STATIC / name,
+        path=STATIC_FOLDER / name,
         remedy="build it with `npm ci && npm run build` in web/, or install a released package",
     )

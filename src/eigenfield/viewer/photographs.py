@@ -1,4 +1,4 @@
-"""Photographs beside a scene, as PNG of the size of its cameras, decoded when they are asked for."""
+"""Photographs beside a scene, as PNG of the size of its cameras, decoded on request."""
 
 from __future__ import annotations
 
@@ -12,17 +12,27 @@ from eigenfield.core.errors import CaptureError
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 
-AT_ONCE = 2  # photographs decoded at a time: a large one takes 16 bytes a pixel and more
-KEPT = 64 * 2**20  # bytes of PNG that are kept for the next time
+PHOTOGRAPHS_AT_ONCE = 2  # decoded at a time: a large one takes 16 bytes a pixel and more
+PHOTOGRAPH_CACHE_BYTES = 64 * 2**20  # of PNG
 
 
 class Photographs:
-    """The photographs of a scene's cameras, lens removed, masks left alone; may be called from any thread."""
+    """The photographs of a scene's cameras, undistorted and without their masks; may be called from any thread.
+
+    Attributes:
+        names: Index of a camera to its name, for those with a photograph.
+    """
 
     def __init__(self, scene: Scene, capture: LightField, views: Mapping[int, int]) -> None:
-        """views: index of a scene's camera to the index of its view in the capture, as `match_photographs` gives.
+        """Check the photographs' sizes.
 
-        Raises CaptureError `photograph-size` for a photograph that is not of its camera's size.
+        Args:
+            scene: The scene.
+            capture: The photographs.
+            views: Index of a scene's camera to the index of its view in the capture, of `match_photographs`.
+
+        Raises:
+            CaptureError: `photograph-size`: a photograph does not have its camera's size.
         """
         for index, view in views.items():
             own, other = scene.rig.cameras[index], capture.views[view].camera
@@ -36,30 +46,37 @@ class Photographs:
         self.names: Mapping[int, str] = {index: scene.rig.names[index] for index in sorted(views)}
         self._capture = replace(capture, views=tuple(replace(view, mask=None) for view in capture.views))
         self._views = dict(views)
-        self._kept: OrderedDict[int, bytes] = OrderedDict()
-        self._gate = threading.Lock()
-        self._slots = threading.BoundedSemaphore(AT_ONCE)
+        self._cache: OrderedDict[int, bytes] = OrderedDict()
+        self._lock = threading.Lock()
+        self._slots = threading.BoundedSemaphore(PHOTOGRAPHS_AT_ONCE)
 
     def png(self, index: int) -> bytes:
-        """Camera `index`'s photograph as 8-bit RGB PNG. Raises CaptureError where it cannot be decoded."""
-        kept = self._recall(index)
-        if kept is not None:
-            return kept
+        """A camera's photograph as 8-bit RGB PNG.
+
+        Args:
+            index: Of the camera.
+
+        Raises:
+            CaptureError: It cannot be decoded.
+        """
+        cached = self._recall(index)
+        if cached is not None:
+            return cached
         with self._slots:
-            kept = self._recall(index)  # another thread may have made it while this one waited
-            if kept is None:
-                kept = png_bytes(self._capture.photograph(self._views[index]).pixels)
-                self._keep(index, kept)
-            return kept
+            cached = self._recall(index)  # another thread may have made it while this one waited
+            if cached is None:
+                cached = png_bytes(self._capture.photograph(self._views[index]).pixels)
+                self._store(index, cached)
+            return cached
 
     def _recall(self, index: int) -> bytes | None:
-        with self._gate:
-            if index in self._kept:
-                self._kept.move_to_end(index)
-            return self._kept.get(index)
+        with self._lock:
+            if index in self._cache:
+                self._cache.move_to_end(index)
+            return self._cache.get(index)
 
-    def _keep(self, index: int, data: bytes) -> None:
-        with self._gate:
-            self._kept[index] = data
-            while len(self._kept) > 1 and sum(map(len, self._kept.values())) > KEPT:
-                self._kept.popitem(last=False)
+    def _store(self, index: int, data: bytes) -> None:
+        with self._lock:
+            self._cache[index] = data
+            while len(self._cache) > 1 and sum(map(len, self._cache.values())) > PHOTOGRAPH_CACHE_BYTES:
+                self._cache.popitem(last=False)

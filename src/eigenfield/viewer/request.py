@@ -22,21 +22,34 @@ from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from typing import ClassVar
 
-MAX_LINE = 8192  # bytes of the request line
-MAX_HEAD = 32768  # bytes of request line and headers together
+REQUEST_LINE_MAX_BYTES = 8192
+REQUEST_HEAD_MAX_BYTES = 32768  # request line and headers together
 REQUEST_SECONDS = 10.0  # for a request's head, from the first moment it may come
 SEND_SECONDS = 30.0  # for each piece of an answer
 LINGER_SECONDS = 2.0  # for reading what a refused client still sends, so that it sees the answer
-PIECE = 256 * 1024  # bytes of an answer that are sent at a time
-TOKEN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
-REQUEST_LINE = re.compile(TOKEN + rb" [^ \r\n]+ HTTP/[0-9]\.[0-9]\r\n")
-HEADER_LINE = re.compile(TOKEN + rb":[^\x00-\x08\x0a-\x1f]*\r\n")
+SEND_PIECE_BYTES = 256 * 1024  # of an answer, sent at a time
+TOKEN_PATTERN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
+REQUEST_LINE = re.compile(TOKEN_PATTERN + rb" [^ \r\n]+ HTTP/[0-9]\.[0-9]\r\n")
+HEADER_LINE = re.compile(TOKEN_PATTERN + rb":[^\x00-\x08\x0a-\x1f]*\r\n")
 
 
 class RefusedError(Exception):
-    """A request that is answered with an error: its status, one line for a person, and headers of the answer."""
+    """A request that is answered with an error.
+
+    Attributes:
+        status: Of HTTP.
+        reason: One line for a person.
+        headers: Of the answer.
+    """
 
     def __init__(self, status: int, reason: str, headers: Mapping[str, str] | None = None) -> None:
+        """Refuse a request.
+
+        Args:
+            status: Of HTTP.
+            reason: One line for a person.
+            headers: Of the answer.
+        """
         self.status = status
         self.reason = reason
         self.headers = dict(headers or {})
@@ -96,12 +109,22 @@ class StrictHandler(BaseHTTPRequestHandler):
         raise RefusedError(code, HTTPStatus(code).phrase)  # found by parse_request
 
     def refuse(self, error: RefusedError) -> None:
-        """Answer with an error: one line of text."""
+        """Answer with an error: one line of text.
+
+        Args:
+            error: The error.
+        """
         headers = {"Content-Type": "text/plain; charset=utf-8", **error.headers}
         self.reply(error.status, headers, f"{error.reason}\n".encode())
 
     def reply(self, status: int, headers: Mapping[str, str], content: bytes | memoryview | None) -> None:
-        """Send an answer, to HEAD without the content. content: None for an answer that has none (304)."""
+        """Send an answer, to HEAD without the content.
+
+        Args:
+            status: Of HTTP.
+            headers: Beside those of every answer.
+            content: None: the answer has none (304).
+        """
         self.connection.settimeout(SEND_SECONDS)
         self.send_response_only(status)
         length = {} if content is None else {"Content-Length": str(len(content))}
@@ -112,9 +135,9 @@ class StrictHandler(BaseHTTPRequestHandler):
         self.end_headers()
         if content is not None and self.command != "HEAD":
             view = memoryview(content)
-            for start in range(0, len(view), PIECE):
+            for start in range(0, len(view), SEND_PIECE_BYTES):
                 self.connection.settimeout(SEND_SECONDS)
-                self.connection.sendall(view[start : start + PIECE])
+                self.connection.sendall(view[start : start + SEND_PIECE_BYTES])
 
     def _read_request(self) -> None:
         """The next request. Raises RefusedError; OSError if the client closes, or lets the time pass without a byte."""
@@ -148,13 +171,16 @@ class StrictHandler(BaseHTTPRequestHandler):
                 if not start:
                     raise ConnectionAbortedError
                 raise RefusedError(400, "this is not HTTP")  # TLS, as a rule
-            line = self._read_line(MAX_LINE, RefusedError(414, f"the request line is longer than {MAX_LINE} bytes"))
+            line = self._read_line(
+                REQUEST_LINE_MAX_BYTES,
+                RefusedError(414, f"the request line is longer than {REQUEST_LINE_MAX_BYTES} bytes"),
+            )
         if not REQUEST_LINE.fullmatch(line):
             raise RefusedError(400, "the request line is not METHOD TARGET HTTP/1.1")
         headers = bytearray()
-        long = RefusedError(431, f"the headers are longer than {MAX_HEAD} bytes")
+        long = RefusedError(431, f"the headers are longer than {REQUEST_HEAD_MAX_BYTES} bytes")
         while True:
-            header = self._read_line(MAX_HEAD - len(line) - len(headers), long)
+            header = self._read_line(REQUEST_HEAD_MAX_BYTES - len(line) - len(headers), long)
             headers += header
             if header == b"\r\n":
                 return line, bytes(headers)
@@ -178,12 +204,12 @@ class StrictHandler(BaseHTTPRequestHandler):
         """Say that no more comes, and read what is on its way: closing with bytes unread would take back the answer."""
         self.connection.shutdown(socket.SHUT_WR)
         self._incoming.deadline = time.monotonic() + LINGER_SECONDS
-        while self._incoming.read(PIECE):
+        while self._incoming.read(SEND_PIECE_BYTES):
             pass
 
 
 class _Incoming(io.RawIOBase):
-    """The bytes that a connection receives until `deadline`, a moment of time.monotonic(); then TimeoutError."""
+    """The bytes that a connection receives until `deadline`, a value of time.monotonic(); then TimeoutError."""
 
     def __init__(self, connection: socket.socket) -> None:
         self.deadline = 0.0

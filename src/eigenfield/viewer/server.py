@@ -27,10 +27,10 @@ from eigenfield.viewer.request import RefusedError, StrictHandler
 log = logging.getLogger("eigenfield.viewer")
 
 LOOPBACK = "127.0.0.1"
-MOST = 64  # connections at a time; a browser opens six
-CLOSE_SECONDS = 2.0  # for the threads of open connections to end
-POLL_SECONDS = 0.1  # between two looks at whether the server is to close
-POLICY = (
+SERVER_MAX_CONNECTIONS = 64  # at a time; a browser opens six
+SERVER_CLOSE_SECONDS = 2.0  # for the threads of open connections to end
+SERVER_POLL_SECONDS = 0.1  # between two checks whether the server is to close
+CONTENT_SECURITY_POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' blob:; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 )
@@ -38,17 +38,17 @@ REFUSED_FEATURES = (
     "camera", "clipboard-read", "display-capture", "geolocation", "hid", "microphone", "midi", "payment",
     "serial", "usb",
 )  # fmt: skip
-FEATURES = ", ".join(
+PERMISSIONS_POLICY = ", ".join(
     [f"{name}=(self)" for name in ("xr-spatial-tracking", "gyroscope", "accelerometer", "fullscreen")]
     + [f"{name}=()" for name in REFUSED_FEATURES]
 )
-ALWAYS = {
-    "Content-Security-Policy": POLICY,
+ANSWER_HEADERS = {
+    "Content-Security-Policy": CONTENT_SECURITY_POLICY,
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
-    "Permissions-Policy": FEATURES,
+    "Permissions-Policy": PERMISSIONS_POLICY,
     "Cache-Control": "no-cache",
 }
 
@@ -56,13 +56,25 @@ ALWAYS = {
 class Server(ThreadingHTTPServer):
     """Answers from a manifest, in threads of its own, from `with` until the block ends.
 
-    host: name or address to listen on; port: 0 for one that is free. Raises OptionError `host-unknown`, `port-busy`,
-    `port-refused`.
+    Attributes:
+        manifest: What is answered.
+        host: Name or address that it listens on.
+        port: That it listens on.
     """
 
     daemon_threads = True  # threads that are decoding a photograph end with the process
 
     def __init__(self, manifest: Manifest, host: str = LOOPBACK, port: int = 0) -> None:
+        """Listen, without answering yet.
+
+        Args:
+            manifest: What is answered.
+            host: Name or address to listen on.
+            port: To listen on; 0: one that is free.
+
+        Raises:
+            OptionError: `host-unknown`, `port-busy`, `port-refused`.
+        """
         listener = _listen(host, port)
         super().__init__(("", 0), _Answers, bind_and_activate=False)  # its own way to bind waits for a name server
         self.socket.close()
@@ -71,8 +83,8 @@ class Server(ThreadingHTTPServer):
         self.host = host
         self.port: int = listener.getsockname()[1]
         self._connections: set[socket.socket] = set()
-        self._gate = threading.Lock()
-        self._acceptor = threading.Thread(target=self.serve_forever, args=(POLL_SECONDS,), daemon=True)
+        self._lock = threading.Lock()
+        self._acceptor = threading.Thread(target=self.serve_forever, args=(SERVER_POLL_SECONDS,), daemon=True)
 
     def __enter__(self) -> Server:
         self._acceptor.start()
@@ -86,11 +98,11 @@ class Server(ThreadingHTTPServer):
         if self._acceptor.ident is not None:
             self.shutdown()
         self.server_close()
-        with self._gate:
+        with self._lock:
             for connection in self._connections:
                 with contextlib.suppress(OSError):
                     connection.shutdown(socket.SHUT_RDWR)
-        deadline = time.monotonic() + CLOSE_SECONDS
+        deadline = time.monotonic() + SERVER_CLOSE_SECONDS
         while self._connections and time.monotonic() < deadline:
             time.sleep(0.01)
 
@@ -107,8 +119,13 @@ class Server(ThreadingHTTPServer):
         return not ipaddress.ip_address(self.socket.getsockname()[0].partition("%")[0]).is_loopback
 
     def authorities(self, reached: str) -> set[str]:
-        """What a client of ours may believe to talk to. The address that it reached is safe, being no name: a name may
-        be pointed at us by anyone."""
+        """The authorities that a request may name as its Host.
+
+        The address that a client reached is safe, being no name: anyone may let a name resolve to this machine.
+
+        Args:
+            reached: Address of this end of the connection.
+        """
         places = {LOOPBACK, "localhost", "::1", self.host, reached.partition("%")[0]}
         if self.is_public:
             places.add(socket.gethostname())
@@ -119,13 +136,13 @@ class Server(ThreadingHTTPServer):
         try:
             return super().get_request()
         except OSError:
-            time.sleep(POLL_SECONDS)  # no file descriptors left: some come free when others end
+            time.sleep(SERVER_POLL_SECONDS)  # no file descriptors left: some come free when others end
             raise
 
     def verify_request(self, request: Any, client_address: Any) -> bool:
-        """Whether there is room for another connection; else it is told so, by this thread, which waits for nobody."""
-        with self._gate:
-            full = len(self._connections) >= MOST
+        """Whether there is room for another connection; else this thread answers 503, without waiting."""
+        with self._lock:
+            full = len(self._connections) >= SERVER_MAX_CONNECTIONS
             if not full:
                 self._connections.add(request)
         if full:
@@ -134,7 +151,7 @@ class Server(ThreadingHTTPServer):
 
     def close_request(self, request: Any) -> None:
         super().close_request(request)
-        with self._gate:
+        with self._lock:
             self._connections.discard(request)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -144,7 +161,7 @@ class Server(ThreadingHTTPServer):
 class _Answers(StrictHandler):
     """What a connection is answered: a content of the manifest, whole or a range of it."""
 
-    always = ALWAYS
+    always = ANSWER_HEADERS
     server: Server
 
     def answer(self) -> None:
@@ -218,7 +235,7 @@ def _listen(host: str, port: int) -> socket.socket:
             remedy="leave it out, or name one of this machine",
         ) from error
     try:
-        listener = socket.create_server(place, family=family, backlog=MOST)
+        listener = socket.create_server(place, family=family, backlog=SERVER_MAX_CONNECTIONS)
     except OSError as error:
         raise _not_listening(host, port, error) from error
     listener.setblocking(False)  # a client that goes away again before it is accepted blocks nobody

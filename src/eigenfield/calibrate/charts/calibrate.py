@@ -295,7 +295,7 @@ def _report_camera(solved: _SolvedRig, index: int) -> CameraReport:
     return CameraReport(
         name=chart_camera.name,
         size=chart_camera.size,
-        camera=Camera.checked(camera_matrix(row), R, t, *chart_camera.size, chart_camera.name) if known else None,
+        camera=Camera.from_matrices(camera_matrix(row), R, t, *chart_camera.size, chart_camera.name) if known else None,
         lens=brown_lens(row) if known else None,
         pictures=len(chart_camera.moments),
         boards=len(seen),

@@ -90,7 +90,7 @@ def brown_lens(intrinsics: NDArray[np.float64]) -> Lens | None:
     """
     k1, k2, p1, p2, k3 = (float(v) for v in intrinsics[4:])
     found = Lens("brown", (k1, k2, p1, p2, k3))
-    return None if found.does_nothing else found
+    return None if found.is_identity else found
 
 
 def project_points(points: NDArray[np.float64], intrinsics: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import printable
+from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.locate import photographs_in
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.core.errors import CaptureError
@@ -186,9 +186,9 @@ def _videos_by_camera(root: Path) -> dict[str, Path]:
     """Videos of a folder by their names, or the one video of each folder by the folder's name."""
     here = _videos_in(root)
     if here:
-        return {printable(path.stem): path for path in here}
+        return {escape_name(path.stem): path for path in here}
     below = {folder: _videos_in(folder) for folder in _folders(root)}
-    return {printable(folder.name): videos[0] for folder, videos in below.items() if len(videos) == 1}
+    return {escape_name(folder.name): videos[0] for folder, videos in below.items() if len(videos) == 1}
 
 
 def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
@@ -198,7 +198,7 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
     if here:
         for path in here:
             name, moment = split_name(path.stem)
-            cameras.setdefault(printable(name or root.name), []).append((moment, path))
+            cameras.setdefault(escape_name(name or root.name), []).append((moment, path))
         return cameras
     for folder in _folders(root):
         pictures = photographs_in(folder)
@@ -206,7 +206,7 @@ def _pictures_by_camera(root: Path) -> dict[str, list[tuple[str, Path]]]:
             numbers = [split_name(path.stem)[1] for path in pictures]
             by_number = all(numbers) and len(set(numbers)) == len(numbers)
             moments = numbers if by_number else [path.stem for path in pictures]
-            cameras[printable(folder.name)] = list(zip(moments, pictures, strict=True))
+            cameras[escape_name(folder.name)] = list(zip(moments, pictures, strict=True))
     return cameras
 
 
@@ -259,7 +259,7 @@ def _usable_pictures(
     found: dict[str, tuple[Path, tuple[int, int]]] = {}
     for moment, path in pictures:
         try:
-            size = read_header(path).upright
+            size = read_header(path).upright_size
         except CaptureError as error:
             problems.append(f"{error} (left out)")
             continue
@@ -271,7 +271,7 @@ def _usable_pictures(
     if len(sizes) > 1:
         usual = max(sizes, key=lambda size: (sizes[size], size))
         odd = [moment for moment, (_, size) in found.items() if size != usual]
-        shown = ", ".join(printable(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES]) + (
+        shown = ", ".join(escape_name(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES]) + (
             " .." if len(odd) > CHART_MAX_LISTED_NAMES else ""
         )
         problems.append(f"camera {name}: {len(odd)} pictures are not {usual[0]}x{usual[1]} (left out): {shown}")

@@ -19,7 +19,7 @@ from PIL import Image
 
 from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
 from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.capture.photographs.decoded import decode_masked
+from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress, track
@@ -129,7 +129,7 @@ def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     Raises:
         CaptureError: As `decode`.
     """
-    pixels, mask = decode_masked(shot.path, shot.upright, shot.width, shot.height, shot.mask)
+    pixels, mask = decode_with_mask(shot.path, shot.upright, shot.width, shot.height, shot.mask)
     height, width = pixels.shape[:2]
     scale = min(1.0, options.max_side / max(width, height))
     size = max(1, round(width * scale)), max(1, round(height * scale))

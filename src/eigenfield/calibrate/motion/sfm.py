@@ -25,7 +25,7 @@ from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import Features
 from eigenfield.calibrate.motion.mapping import MAPPING_TUNING, SparseModel, map_views
 from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
-from eigenfield.capture.calibration import printable
+from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
@@ -261,13 +261,14 @@ def _failure_reason(
             + (f", a group of {len(company)} apart from the rest" if company else ", which have no camera either")
         )
     return "no-pose", (
-        f"residual too large: it matches {matched} (best {printable(names[best])}, {partners[best]} features), but no "
+        f"residual too large: it matches {matched} "
+        f"(best {escape_name(names[best])}, {partners[best]} features), but no "
         "pose explains enough points"
     )
 
 
 def _list_names(names: Sequence[str]) -> str:
-    shown = ", ".join(printable(name) for name in names[:SFM_MAX_LISTED_NAMES])
+    shown = ", ".join(escape_name(name) for name in names[:SFM_MAX_LISTED_NAMES])
     return shown if len(names) <= SFM_MAX_LISTED_NAMES else f"{shown} and {len(names) - SFM_MAX_LISTED_NAMES} more"
 
 
@@ -326,7 +327,7 @@ def _assemble(
     points = _points(model, chosen, features)
     scale, R, t = natural_gauge(cameras)
     cameras = [transform_camera(camera, scale, R, t) for camera in cameras]
-    points = points.moved(scale, R, t)
+    points = points.transform(scale, R, t)
     errors = _reprojection_errors(points, cameras, lenses)
     points = points.with_errors(errors)
     by_view = np.bincount(points.view, minlength=len(chosen))
@@ -338,9 +339,9 @@ def _assemble(
             entry.name, True, "", "", entry.features, entry.partners, int(by_view[place]),
             float(sums[place] / max(by_view[place], 1)),
         )  # fmt: skip
-    problems = [f"{printable(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
+    problems = [f"{escape_name(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
     log.info("%d of %d photographs have a camera", len(chosen), len(photos))
-    light_field = photos.subset(chosen).calibrated(cameras, [lens.lens for lens in lenses], problems)
+    light_field = photos.subset(chosen).with_cameras(cameras, [lens.lens for lens in lenses], problems)
     return SfmResult(light_field, points, tuple(entries))
 
 
@@ -348,9 +349,9 @@ def _solved_camera(image: Any, shot: Shot, known: KnownLens | None) -> tuple[Kno
     if known is None:
         focal, cx, cy, k = (float(v) for v in image.camera.params)
         lens = Lens("brown", (k, 0.0, 0.0, 0.0, 0.0))
-        known = KnownLens(np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1.0]]), None if lens.does_nothing else lens)
+        known = KnownLens(np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1.0]]), None if lens.is_identity else lens)
     pose = np.asarray(image.cam_from_world().matrix())
-    return known, Camera.checked(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
+    return known, Camera.from_matrices(known.K, pose[:, :3], pose[:, 3], shot.width, shot.height, shot.name)
 
 
 def _points(model: SparseModel, chosen: Sequence[int], features: Sequence[Features]) -> SparsePoints:

@@ -84,7 +84,7 @@ def start_planar(
         if error.code not in ("grid-motion", "grid-swapped") or layout.measured or layout.signs:
             raise
         try:
-            start = _estimate_start(pictures, layout.exchanged(), names)
+            start = _estimate_start(pictures, layout.transpose(), names)
         except CaptureError:
             raise error from None
     log.warning("the photographs move as if the names gave the column first, then the row: taken so")

@@ -1,4 +1,4 @@
-"""Pixels and mask of a photograph, held against the size that its capture was opened with."""
+"""Pixels and mask of a photograph, whose size must be that with which its capture was opened."""
 
 from __future__ import annotations
 
@@ -11,12 +11,23 @@ from eigenfield.capture.photographs.read import decode, decode_mask
 from eigenfield.core.errors import CaptureError
 
 
-def decode_masked(
+def decode_with_mask(
     path: Path, upright: bool, width: int, height: int, mask: Path | None
 ) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-    """(H, W, 3) pixels of a photograph, and (H, W) alpha and mask file together; None where there is neither.
+    """Decode a photograph with its mask.
 
-    Raises CaptureError as `LightField.photograph` does.
+    Args:
+        path: The photograph.
+        upright: Apply the EXIF orientation.
+        width: As the capture was opened, pixels.
+        height: Likewise.
+        mask: The mask's file, or None.
+
+    Returns:
+        (H, W, 3) pixels, and (H, W) the lesser of alpha and mask; None where there is neither.
+
+    Raises:
+        CaptureError: As `LightField.photograph` does.
     """
     pixels, alpha = decode(path, upright)
     if pixels.shape[:2] != (height, width):
@@ -40,7 +51,7 @@ def decode_masked(
 
 
 def size_on_disk(path: Path) -> int:
-    """Bytes of a file; CaptureError `image-missing` where it is gone."""
+    """Bytes of a file; CaptureError `image-missing` where it no longer exists."""
     try:
         return path.stat().st_size
     except OSError as error:

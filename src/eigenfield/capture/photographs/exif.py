@@ -8,46 +8,52 @@ from typing import Any
 
 from PIL import AvifImagePlugin, JpegImagePlugin, TiffImagePlugin, WebPImagePlugin
 
-from eigenfield.capture.photographs.read import DAMAGE, Header
+from eigenfield.capture.photographs.read import DECODER_ERRORS, Header
 
-READERS: dict[str, Any] = {
+EXIF_READERS: dict[str, Any] = {
     "JPEG": JpegImagePlugin.JpegImageFile,
     "WebP": WebPImagePlugin.WebPImageFile,
     "TIFF": TiffImagePlugin.TiffImageFile,
     "AVIF": AvifImagePlugin.AvifImageFile,
 }
-PHOTO = 0x8769  # the IFD of the tags below
-FOCAL, FOCAL_35MM, PLANE_X, PLANE_UNIT, PIXELS_X = 0x920A, 0xA405, 0xA20E, 0xA210, 0xA002
-UNITS = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # mm
-DIAGONAL = math.hypot(36, 24)  # of 35 mm film, which the equivalent focal length is defined by (CIPA DCG-001)
-PLAUSIBLE = (0.2, 50.0)  # focal length over the longer side
+EXIF_PHOTO_IFD = 0x8769  # the IFD of the tags below
+EXIF_FOCAL_TAG = 0x920A  # FocalLength, millimetres
+EXIF_FOCAL_35MM_TAG = 0xA405  # FocalLengthIn35mmFilm, millimetres
+EXIF_PLANE_X_TAG = 0xA20E  # FocalPlaneXResolution, pixels a unit
+EXIF_PLANE_UNIT_TAG = 0xA210  # FocalPlaneResolutionUnit
+EXIF_PIXELS_X_TAG = 0xA002  # PixelXDimension
+EXIF_UNITS_MM = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}
+EXIF_35MM_DIAGONAL_MM = math.hypot(36, 24)  # of 35 mm film, for the equivalent focal length (CIPA DCG-001)
+EXIF_FOCAL_RANGE_SIDES = (0.2, 50.0)  # focal length over the longer side
 
 
-def focal_of(path: Path, header: Header) -> float | None:
+def read_focal_length(path: Path, header: Header) -> float | None:
     """Focal length in pixels from EXIF: FocalLengthIn35mmFilm, else FocalLength with FocalPlaneXResolution.
 
-    None where neither is there, or what is there cannot be. A crop is not known to EXIF, and makes it too short.
+    None where neither is there, or the value is impossible. EXIF does not state a crop, which makes it too short.
     """
-    if header.format not in READERS:
+    if header.format not in EXIF_READERS:
         return None
     try:
         with path.open("rb") as file:
-            tags = dict(READERS[header.format](file).getexif().get_ifd(PHOTO))
-    except (*DAMAGE, ZeroDivisionError, OverflowError):
+            tags = dict(EXIF_READERS[header.format](file).getexif().get_ifd(EXIF_PHOTO_IFD))
+    except (*DECODER_ERRORS, ZeroDivisionError, OverflowError):
         return None
-    equivalent, plane, millimetres = (_number(tags, tag) for tag in (FOCAL_35MM, PLANE_X, FOCAL))
+    equivalent, plane, millimetres = (
+        _read_positive(tags, tag) for tag in (EXIF_FOCAL_35MM_TAG, EXIF_PLANE_X_TAG, EXIF_FOCAL_TAG)
+    )
     focal = None
     if equivalent:
-        focal = equivalent / DIAGONAL * math.hypot(*header.stored)
+        focal = equivalent / EXIF_35MM_DIAGONAL_MM * math.hypot(*header.stored_size)
     elif plane and millimetres:
-        unit = UNITS.get(tags.get(PLANE_UNIT, 2), 25.4)
+        unit = EXIF_UNITS_MM.get(tags.get(EXIF_PLANE_UNIT_TAG, 2), 25.4)
         # the resolution is that of the picture as taken: a smaller copy keeps the tag
-        focal = millimetres * plane / unit * header.width / (_number(tags, PIXELS_X) or header.width)
-    low, high = (bound * max(header.stored) for bound in PLAUSIBLE)
+        focal = millimetres * plane / unit * header.width / (_read_positive(tags, EXIF_PIXELS_X_TAG) or header.width)
+    low, high = (bound * max(header.stored_size) for bound in EXIF_FOCAL_RANGE_SIDES)
     return focal if focal is not None and low <= focal <= high else None
 
 
-def _number(tags: dict[int, Any], tag: int) -> float | None:
+def _read_positive(tags: dict[int, Any], tag: int) -> float | None:
     try:
         value = float(tags[tag])
     except (KeyError, TypeError, ValueError, ZeroDivisionError, OverflowError):

@@ -12,12 +12,20 @@ from eigenfield.runtime.jit import kernel
 
 @kernel()
 def sample_cubic(picture, x, y, first, last, out):  # type: ignore[no-untyped-def]
-    """Rows [first, last) of out (h, w, C) from picture (H, W, C) at positions x, y (h, w), integer pixel centres.
+    """Sample a picture at given positions.
 
     Separable Catmull-Rom (Keys 1981, a = -1/2): for a fraction t the four weights are
         w(-1) = t (-1 + t (2 - t)) / 2        w(0) = (2 + t^2 (3 t - 5)) / 2
         w(1)  = t (1 + t (4 - 3 t)) / 2       w(2) = t^2 (t - 1) / 2
     Samples outside the picture are those of its rim.
+
+    Args:
+        picture: (H, W, C).
+        x: (h, w) positions, integer pixel centres.
+        y: (h, w) likewise.
+        first: First row to sample.
+        last: End of the rows.
+        out: (h, w, C) result.
     """
     height, width, channels = picture.shape
     for row in range(first, last):

@@ -1,4 +1,4 @@
-"""Lens distortion, and its removal: a photograph is drawn anew as the pinhole camera of the same K and size sees it."""
+"""Lens distortion, and its removal: a photograph is resampled as the pinhole camera of the same K and size sees it."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from eigenfield.capture.photographs.kernels import sample_cubic
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-BAND = 64  # rows drawn at a time
-NEGLIGIBLE = 1e-12  # coefficients below this are no distortion
+LENS_BAND_ROWS = 64  # resampled at a time
+LENS_NEGLIGIBLE_COEFFICIENT = 1e-12  # smaller ones are no distortion
 
 
 @dataclass(frozen=True)
 class Lens:
-    """Distortion: from the pinhole's coordinates x = X / Z, y = Y / Z to the photograph's x', y', times K either way.
+    """Distortion from normalised coordinates x = X / Z, y = Y / Z to distorted ones x', y', both times K.
 
-    model, coefficients:
+    Models and their coefficients:
         "brown", (k1, k2, p1, p2, k3): x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), y' alike
             (OpenCV's default, COLMAP's SIMPLE_RADIAL, RADIAL and OPENCV).
         "fisheye", (k1, k2, k3, k4): theta' = theta (1 + k1 theta^2 + .. + k4 theta^8) (OpenCV's and COLMAP's fisheye).
@@ -32,18 +32,22 @@ class Lens:
             alike with p1 and p2 exchanged; then x' + s y': the skew, in units of the focal length (B2 / fx).
         "metashape-equidistant", "metashape-equisolid": the same, of the x, y scaled to the length theta, or
             2 sin(theta / 2), theta the angle to the axis: Agisoft's fisheye cameras.
+
+    Attributes:
+        model: One of these names.
+        coefficients: In the order above.
     """
 
     model: Literal["brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid"]
     coefficients: tuple[float, ...]
 
     @property
-    def does_nothing(self) -> bool:
-        """No distortion at all; a fisheye is never without."""
+    def is_identity(self) -> bool:
+        """Whether there is no distortion at all; a fisheye always has some."""
         flat = self.model in ("brown", "rational", "metashape")
-        return flat and all(abs(c) < NEGLIGIBLE for c in self.coefficients)
+        return flat and all(abs(c) < LENS_NEGLIGIBLE_COEFFICIENT for c in self.coefficients)
 
-    def limit(self) -> float:
+    def valid_radius(self) -> float:
         """The undistorted radius (tangent of the angle to the axis) up to which distortion grows with it.
 
         Beyond, the polynomial folds back and a pinhole picture would repeat the photograph's rim: nothing is there.
@@ -71,22 +75,31 @@ def _first_fold(above: tuple[float, ...], below: tuple[float, ...] = ()) -> floa
         try:
             roots = np.concatenate([np.roots(p.coef[::-1]) for p in (slope, d)])
         except np.linalg.LinAlgError as error:
-            raise _beyond() from error
+            raise _not_finite_error() from error
     real = roots.real[(np.abs(roots.imag) < 1e-9) & (roots.real > 0)]
     return float(np.sqrt(real.min())) if len(real) else np.inf
 
 
-def _beyond() -> CaptureError:
+def _not_finite_error() -> CaptureError:
     return CaptureError("lens", "the lens coefficients give positions that are not finite", remedy="mend them")
 
 
 def source_positions(
     K: NDArray[np.float64], lens: Lens, width: int, height: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.bool_]]:
-    """Where each pixel of the pinhole picture lies in the photograph.
+    """The position in the photograph of each pixel of the pinhole picture.
 
-    Returns x and y, (H, W) float32, positions with integer pixel centres, and (H, W) bool, whether the photograph
-    has anything there. OpenCV counts pixel centres from 0, we from 0.5: K is shifted on the way in.
+    OpenCV counts pixel centres from 0, we from 0.5: K is shifted first.
+
+    Args:
+        K: (3, 3) pixels, centres at +0.5.
+        lens: The photograph's distortion.
+        width: Of both pictures, pixels.
+        height: Likewise.
+
+    Returns:
+        x and y, (H, W) float32 positions with integer pixel centres, and (H, W) bool, whether the photograph covers
+        them.
     """
     shifted = K - np.array([[0, 0, 0.5], [0, 0, 0.5], [0, 0, 0]])
     size = (width, height)
@@ -98,7 +111,7 @@ def source_positions(
     else:
         x, y = _metashape_positions(shifted, lens, width, height)
     inside = (x >= -0.5) & (x <= width - 0.5) & (y >= -0.5) & (y <= height - 0.5)
-    limit = lens.limit()
+    limit = lens.valid_radius()
     if np.isfinite(limit):
         nx, ny = _pinhole_coordinates(shifted, width, height)
         inside &= nx**2 + ny**2 < limit**2
@@ -136,13 +149,14 @@ def _metashape_positions(
 
 
 def resample(picture: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32]) -> NDArray[np.float32]:
-    """(H, W, C) drawn anew at positions x, y (integer pixel centres): Catmull-Rom, the rim repeated outside."""
+    """A picture (H, W, C) sampled at positions x, y (h, w) with integer pixel centres: Catmull-Rom, the rim repeated
+    outside."""
     out = np.empty((*x.shape, picture.shape[2]), np.float32)
 
     def draw(band: tuple[int, int]) -> None:
         sample_cubic(picture, x, y, band[0], band[1], out)
 
-    parallel_map(draw, pieces(len(x), BAND))
+    parallel_map(draw, pieces(len(x), LENS_BAND_ROWS))
     return out
 
 
@@ -156,7 +170,7 @@ def remove_lens(
     height, width = pixels.shape[:2]
     x, y, inside = source_positions(K, lens, width, height)
     if not np.isfinite(x).all() or not np.isfinite(y).all():
-        raise _beyond()
+        raise _not_finite_error()
     if mask is None:
         return np.clip(resample(pixels, x, y), 0, 1), inside.astype(np.float32)
     weighted = resample(np.concatenate([pixels * mask[..., None], mask[..., None]], axis=2), x, y)

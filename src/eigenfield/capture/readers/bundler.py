@@ -14,26 +14,34 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
-from eigenfield.capture.messages import count, some
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.photographs.read import EXTENSIONS
-from eigenfield.capture.readers.text import check_finite, check_lens, damaged, numbers, shown, text, unreadable
+from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
+from eigenfield.capture.readers.text import (
+    check_finite,
+    check_lens,
+    damaged_error,
+    excerpt,
+    parse_numbers,
+    read_text,
+    unreadable_error,
+)
 from eigenfield.core.errors import CaptureError
 
-FOLDERS = ("", "bundle", "bundler")
-FLIP = np.diag([1.0, -1.0, -1.0])
-LINE_LIMIT = 4096  # characters; lines of points are passed over and not read
-COUNT_LIMIT = 10_000_000
+BUNDLER_FOLDERS = ("", "bundle", "bundler")
+BUNDLER_TO_OPENCV_AXES = np.diag([1.0, -1.0, -1.0])
+BUNDLER_MAX_LINE_CHARACTERS = 4096  # lines of points are skipped and not read
+BUNDLER_MAX_CAMERAS = 10_000_000
 
 
 def find_bundler(folder: Path) -> Path | None:
     """A Bundler file with its list: `bundle.out` in the folder or `bundle/`, else any `*.out` that begins as one."""
-    for inner in FOLDERS:
+    for inner in BUNDLER_FOLDERS:
         named = folder / inner / "bundle.out"
         others = sorted((folder / inner).glob("*.out")) if (folder / inner).is_dir() else []
         for path in (named, *others):
-            if path.is_file() and _begins_as_bundle(path) and _list_of(path) is not None:
+            if path.is_file() and _begins_as_bundle(path) and _find_list(path) is not None:
                 return path
     return None
 
@@ -46,7 +54,7 @@ def _begins_as_bundle(path: Path) -> bool:
         return False
 
 
-def _list_of(path: Path) -> Path | None:
+def _find_list(path: Path) -> Path | None:
     """The list of photographs: beside the file, or in the folder above."""
     stems = list(dict.fromkeys([path.stem, path.stem.removesuffix(".bundle")]))
     names = [f"{stem}{end}" for stem in stems for end in (".list.txt", "_list.txt", "-list.txt", ".lst")]
@@ -64,7 +72,7 @@ def read_bundler(path: Path) -> Calibration:
     Raises CaptureError (`calibration-missing`, `calibration-damaged`, `calibration-count`, `calibration-empty`,
     `bundler-list` (no list of photographs)) where the file as a whole cannot be used.
     """
-    listed = _list_of(path)
+    listed = _find_list(path)
     if listed is None:
         raise CaptureError(
             "bundler-list",
@@ -72,15 +80,15 @@ def read_bundler(path: Path) -> Calibration:
             path=path,
             remedy="put its list.txt into the same folder",
         )
-    names = [_name(line.strip()) for line in text(listed).split("\n") if line.strip()]
-    lines = _lines(path)
+    names = [_parse_name(line.strip()) for line in read_text(listed).split("\n") if line.strip()]
+    lines = _read_lines(path)
     first = next(lines, (1, ""))
     counts = next(lines, (2, "")) if first[1].startswith("#") else first
     words = counts[1].split()
     if len(words) != 2 or not all(w.isascii() and w.isdigit() and len(w) < 12 for w in words):
-        raise damaged(path, f"line {counts[0]} is not the counts of cameras and points", "name a bundle.out")
+        raise damaged_error(path, f"line {counts[0]} is not the counts of cameras and points", "name a bundle.out")
     cameras = int(words[0])
-    if not 0 < cameras <= COUNT_LIMIT:
+    if not 0 < cameras <= BUNDLER_MAX_CAMERAS:
         raise CaptureError(
             "calibration-empty", f"lists {cameras} cameras", path=path, remedy="name another calibration"
         )
@@ -95,9 +103,9 @@ def read_bundler(path: Path) -> Calibration:
     for name in names:
         block = list(islice(lines, 5))
         if len(block) < 5:
-            raise damaged(path, f"ends before camera {printable(name)}")
+            raise damaged_error(path, f"ends before camera {escape_name(name)}")
         try:
-            entry = _entry(block, name, path)
+            entry = _parse_entry(block, name, path)
         except CaptureError as error:
             errors.append(error)
             continue
@@ -105,38 +113,46 @@ def read_bundler(path: Path) -> Calibration:
             lost.append(name)
         else:
             entries.append(entry)
-    problems = [f"{count(lost, 'camera was', 'cameras were')} not registered by Bundler: {some(lost)}"] if lost else []
+    problems = (
+        [f"{count_phrase(lost, 'camera was', 'cameras were')} not registered by Bundler: {list_names(lost)}"]
+        if lost
+        else []
+    )
     return Calibration(path, "bundler", tuple(entries), tuple(errors), tuple(problems))
 
 
-def _name(line: str) -> str:
+def _parse_name(line: str) -> str:
     """The name of a line `name [0 focal]`: names may hold spaces, and end in an extension."""
     words = line.split()
     for end in range(len(words), 0, -1):
-        if words[end - 1].lower().endswith(EXTENSIONS):
+        if words[end - 1].lower().endswith(PHOTOGRAPH_EXTENSIONS):
             return " ".join(words[:end]).replace("\\", "/").removeprefix("./")
     return words[0].replace("\\", "/").removeprefix("./")
 
 
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
+def _read_lines(path: Path) -> Iterator[tuple[int, str]]:
     """Lines that are not empty, none longer than LINE_LIMIT."""
     try:
         with path.open(encoding="utf-8-sig", errors="surrogateescape") as file:
             number = 0
-            while line := file.readline(LINE_LIMIT):
+            while line := file.readline(BUNDLER_MAX_LINE_CHARACTERS):
                 number += 1
-                if len(line) >= LINE_LIMIT:
-                    raise damaged(path, f"line {number} has {LINE_LIMIT} characters or more", "name a bundle.out")
+                if len(line) >= BUNDLER_MAX_LINE_CHARACTERS:
+                    raise damaged_error(
+                        path, f"line {number} has {BUNDLER_MAX_LINE_CHARACTERS} characters or more", "name a bundle.out"
+                    )
                 if stripped := line.strip():
                     yield number, stripped
     except OSError as error:
-        raise unreadable(path, error) from error
+        raise unreadable_error(path, error) from error
 
 
-def _entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry | None:
+def _parse_entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry | None:
     """The camera of five lines; None where it was not registered."""
-    label = f"camera {printable(name)}"
-    rows = [numbers(line.split(), 3, f"line {number} of {label} ({shown(line)})", path) for number, line in lines]
+    label = f"camera {escape_name(name)}"
+    rows = [
+        parse_numbers(line.split(), 3, f"line {number} of {label} ({excerpt(line)})", path) for number, line in lines
+    ]
     (focal, k1, k2), R, t = rows[0], np.stack(rows[1:4]), rows[4]
     if focal == 0:
         return None
@@ -147,4 +163,4 @@ def _entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry | None:
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t
     check_finite([centre], label, path)
-    return Entry(name, label, intrinsics, FLIP @ R, centre, None if lens.does_nothing else lens)
+    return Entry(name, label, intrinsics, BUNDLER_TO_OPENCV_AXES @ R, centre, None if lens.is_identity else lens)

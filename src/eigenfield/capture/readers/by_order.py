@@ -9,17 +9,24 @@ from pathlib import Path
 from eigenfield.capture.locate import photographs_in
 from eigenfield.core.errors import CaptureError
 
-REDUCED = re.compile(r"images_(\d+)")  # LLFF's images_4, images_8: the same photographs, so many times smaller
+# LLFF's images_4, images_8: the same photographs, so many times smaller
+REDUCED_IMAGES_FOLDER = re.compile(r"images_(\d+)")
 
 
 def photographs_in_order(root: Path, count: int, path: Path) -> list[str]:
-    """Names of `count` photographs relative to `root`, sorted as plain text: from `images`, else the least reduced
-    `images_N`, else `root` itself, whichever holds exactly `count`.
+    """Names of photographs relative to `root`, sorted as plain text: from `images`, else the least reduced `images_N`,
+    else `root` itself, whichever holds exactly `count`.
 
-    path: the calibration, for the message. CaptureError `calibration-count` where no folder fits.
+    Args:
+        root: Folder of the capture.
+        count: Number of photographs.
+        path: The calibration, named in the error.
+
+    Raises:
+        CaptureError: `calibration-count` where no folder fits.
     """
     seen = []
-    for folder in _folders(root):
+    for folder in _candidate_folders(root):
         names = sorted(photograph.name for photograph in photographs_in(root / folder))
         if len(names) == count:
             return [f"{folder}/{name}" if folder else name for name in names]
@@ -33,12 +40,12 @@ def photographs_in_order(root: Path, count: int, path: Path) -> list[str]:
     )
 
 
-def _folders(root: Path) -> list[str]:
+def _candidate_folders(root: Path) -> list[str]:
     reduced = []
     if root.is_dir():
         with os.scandir(root) as entries:
             for entry in entries:
-                match = REDUCED.fullmatch(entry.name)
+                match = REDUCED_IMAGES_FOLDER.fullmatch(entry.name)
                 if match and entry.is_dir():
                     reduced.append((len(match[1]), match[1], entry.name))
     return ["images", *(name for _, _, name in sorted(reduced)), ""]

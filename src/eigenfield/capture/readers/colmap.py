@@ -16,31 +16,38 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, unreadable_error
 from eigenfield.core.errors import CaptureError
 
-FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
+COLMAP_FOLDERS = ("sparse/0", "sparse", ".", "colmap/sparse/0")
 # name: (number in the binary format, number of parameters); from colmap/src/colmap/sensor/models.h
-MODELS = {
+COLMAP_MODELS = {
     "SIMPLE_PINHOLE": (0, 3), "PINHOLE": (1, 4), "SIMPLE_RADIAL": (2, 4), "RADIAL": (3, 5), "OPENCV": (4, 8),
     "OPENCV_FISHEYE": (5, 8), "FULL_OPENCV": (6, 12),
 }  # fmt: skip
-OTHERS = {
+COLMAP_UNREAD_MODELS = {
     7: "FOV", 8: "SIMPLE_RADIAL_FISHEYE", 9: "RADIAL_FISHEYE", 10: "THIN_PRISM_FISHEYE",
     11: "RAD_TAN_THIN_PRISM_FISHEYE", 12: "SIMPLE_DIVISION", 13: "DIVISION", 14: "SIMPLE_FISHEYE", 15: "FISHEYE",
     16: "EUCM", 17: "EQUIRECTANGULAR",
 }  # fmt: skip
-NUMBERS = {number: name for name, (number, _) in MODELS.items()}
-NAME_LIMIT = 4096  # bytes of an image's name
-SIZE_LIMIT = 1_000_000  # pixels along a side
-POINT = 24  # bytes of a 2D point: x, y, point id
-QUATERNION_TOLERANCE = 1e-3
+COLMAP_MODEL_NAMES = {number: name for name, (number, _) in COLMAP_MODELS.items()}
+COLMAP_MAX_NAME_BYTES = 4096  # of an image's name
+COLMAP_POINT_BYTES = 24  # of a 2D point: x, y, point id
+COLMAP_QUATERNION_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
-class _Shot:
-    """One line of `images`: the pose as it stands."""
+class _ImageRecord:
+    """One line of `images`, not yet checked.
+
+    Attributes:
+        quaternion: w, x, y, z, world to camera.
+        translation: World to camera.
+        camera: Its number in `cameras`.
+        name: Of the photograph.
+    """
 
     quaternion: tuple[float, ...]
     translation: tuple[float, ...]
@@ -56,8 +63,8 @@ def is_model(folder: Path) -> bool:
 
 
 def find_colmap(folder: Path) -> Path | None:
-    """The model in a folder, where COLMAP and those who follow it put it."""
-    return next((folder / inner for inner in FOLDERS if is_model(folder / inner)), None)
+    """The model in a folder, where COLMAP and tools with its layout write it."""
+    return next((folder / inner for inner in COLMAP_FOLDERS if is_model(folder / inner)), None)
 
 
 def read_colmap(folder: Path) -> Calibration:
@@ -69,19 +76,19 @@ def read_colmap(folder: Path) -> Calibration:
     kind = "bin" if (folder / "cameras.bin").is_file() and (folder / "images.bin").is_file() else "txt"
     images = folder / f"images.{kind}"
     if kind == "bin":
-        cameras = _cameras_binary(folder / "cameras.bin")
-        shots = list(_shots_binary(images))
+        cameras = _read_cameras_binary(folder / "cameras.bin")
+        shots = list(_read_images_binary(images))
     else:
-        cameras = _cameras_text(folder / "cameras.txt")
-        shots = list(_shots_text(images))
+        cameras = _read_cameras_text(folder / "cameras.txt")
+        shots = list(_read_images_text(images))
     if not shots:
         raise CaptureError("calibration-empty", "lists no image", path=images, remedy="name another model")
-    entries, errors = read_each(lambda shot: _entry(shot, cameras, images), shots)
+    entries, errors = read_each(lambda shot: _make_entry(shot, cameras, images), shots)
     return Calibration(folder, "colmap", entries, errors)
 
 
-def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path: Path) -> Entry:
-    label = f"image {printable(shot.name)}"
+def _make_entry(shot: _ImageRecord, cameras: dict[int, tuple[Intrinsics, Lens | None]], path: Path) -> Entry:
+    label = f"image {escape_name(shot.name)}"
     if shot.camera not in cameras:
         raise CaptureError(
             "colmap-camera",
@@ -99,20 +106,20 @@ def _entry(shot: _Shot, cameras: dict[int, tuple[Intrinsics, Lens | None]], path
             path=path,
             remedy="mend or remove its entry",
         )
-    if abs(length - 1) > QUATERNION_TOLERANCE:
+    if abs(length - 1) > COLMAP_QUATERNION_TOLERANCE:
         raise CaptureError(
             "camera-not-rotation",
             f"camera {label}: its quaternion has a length of {length:.4g}",
             path=path,
             remedy="mend or remove its entry",
         )
-    R = _rotation(q / length)
+    R = _rotation_matrix(q / length)
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t
     return Entry(shot.name.replace("\\", "/"), label, intrinsics, R, centre, lens)
 
 
-def _rotation(q: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotation_matrix(q: NDArray[np.float64]) -> NDArray[np.float64]:
     """(3, 3) from a unit quaternion w, x, y, z."""
     w, x, y, z = q
     return np.array([
@@ -122,14 +129,14 @@ def _rotation(q: NDArray[np.float64]) -> NDArray[np.float64]:
     ])  # fmt: skip
 
 
-def _intrinsics(
+def _make_intrinsics(
     model: str, width: int, height: int, p: tuple[float, ...], path: Path, camera: int
 ) -> tuple[Intrinsics, Lens | None]:
     if not all(map(math.isfinite, p)):
         raise CaptureError(
             "camera-not-finite", f"camera {camera} has NaN or infinite entries", path=path, remedy="mend its entry"
         )
-    if not (1 <= width <= SIZE_LIMIT and 1 <= height <= SIZE_LIMIT):
+    if not (1 <= width <= CALIBRATION_MAX_SIDE_PIXELS and 1 <= height <= CALIBRATION_MAX_SIDE_PIXELS):
         raise CaptureError(
             "camera-size", f"camera {camera} has a size of {width}x{height}", path=path, remedy="mend its entry"
         )
@@ -144,15 +151,15 @@ def _intrinsics(
         return intrinsics, Lens("rational", rest)
     k1, k2, p1, p2, k3 = (*rest, 0.0, 0.0, 0.0, 0.0, 0.0)[:5]
     lens = Lens("brown", (k1, k2, p1, p2, k3))
-    return intrinsics, None if lens.does_nothing else lens
+    return intrinsics, None if lens.is_identity else lens
 
 
-def _refuse_model(name: str, camera: int, path: Path) -> CaptureError:
+def _unread_model_error(name: str, camera: int, path: Path) -> CaptureError:
     return CaptureError(
         "camera-model",
         f"camera {camera} has the camera model {name}, which is not read",
         path=path,
-        remedy=f"undistort with `colmap image_undistorter`, or use one of {', '.join(MODELS)}",
+        remedy=f"undistort with `colmap image_undistorter`, or use one of {', '.join(COLMAP_MODELS)}",
     )
 
 
@@ -166,6 +173,7 @@ class _Bytes:
         self.data, self.path, self.at = data, path, 0
 
     def need(self, size: int) -> None:
+        """Raise CaptureError `colmap-truncated` where fewer bytes are left."""
         if size > len(self.data) - self.at:
             raise CaptureError(
                 "colmap-truncated",
@@ -175,6 +183,7 @@ class _Bytes:
             )
 
     def take(self, layout: str) -> tuple[int | float, ...]:
+        """The next numbers, in a layout of `struct`."""
         size = struct.calcsize(layout)
         self.need(size)
         values = struct.unpack(layout, self.data[self.at : self.at + size])
@@ -182,9 +191,10 @@ class _Bytes:
         return values
 
     def name(self) -> str:
-        end = self.data.find(b"\0", self.at, self.at + NAME_LIMIT)
+        """The next text, which ends with a NUL."""
+        end = self.data.find(b"\0", self.at, self.at + COLMAP_MAX_NAME_BYTES)
         if end < 0:
-            self.need(NAME_LIMIT)
+            self.need(COLMAP_MAX_NAME_BYTES)
             raise CaptureError(
                 "colmap-damaged", f"no end to the name at byte {self.at}", path=self.path, remedy="export it again"
             )
@@ -193,12 +203,13 @@ class _Bytes:
         return raw.decode("utf-8", "surrogateescape")
 
     def count(self, smallest: int) -> int:
-        """A count of records of at least `smallest` bytes each: they must fit into what is left."""
+        """A count of records of at least `smallest` bytes each, which must fit into the remaining bytes."""
         count = int(self.take("<Q")[0])
         self.need(count * smallest)
         return count
 
     def end(self) -> None:
+        """Raise CaptureError `colmap-damaged` where bytes are left."""
         if self.at != len(self.data):
             raise CaptureError(
                 "colmap-damaged",
@@ -208,85 +219,83 @@ class _Bytes:
             )
 
 
-def _contents(path: Path) -> bytes | mmap.mmap:
+def _map_file(path: Path) -> bytes | mmap.mmap:
     try:
         with path.open("rb") as file:
             if path.stat().st_size == 0:
                 return b""
             return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise unreadable_error(path, error) from error
 
 
-def _unreadable(path: Path, error: OSError) -> CaptureError:
-    return CaptureError("calibration-missing", error.strerror or "cannot be read", path=path, remedy="check the path")
-
-
-def _cameras_binary(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
-    source = _Bytes(_contents(path), path)
+def _read_cameras_binary(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
+    source = _Bytes(_map_file(path), path)
     cameras = {}
     for _ in range(source.count(24)):
         camera, number, width, height = (int(v) for v in source.take("<IiQQ"))
-        if number not in NUMBERS:
-            raise _refuse_model(OTHERS.get(number, f"number {number}"), camera, path)
-        model = NUMBERS[number]
-        parameters = source.take(f"<{MODELS[model][1]}d")
-        cameras[camera] = _intrinsics(model, width, height, parameters, path, camera)
+        if number not in COLMAP_MODEL_NAMES:
+            raise _unread_model_error(COLMAP_UNREAD_MODELS.get(number, f"number {number}"), camera, path)
+        model = COLMAP_MODEL_NAMES[number]
+        parameters = source.take(f"<{COLMAP_MODELS[model][1]}d")
+        cameras[camera] = _make_intrinsics(model, width, height, parameters, path, camera)
     source.end()
     return cameras
 
 
-def _shots_binary(path: Path) -> Iterator[_Shot]:
-    source = _Bytes(_contents(path), path)
+def _read_images_binary(path: Path) -> Iterator[_ImageRecord]:
+    source = _Bytes(_map_file(path), path)
     for _ in range(source.count(4 + 56 + 4 + 1 + 8)):
         values = source.take("<I7dI")
         name = source.name()
-        points = source.count(POINT)
-        source.at += points * POINT
-        yield _Shot(tuple(values[1:5]), tuple(values[5:8]), int(values[8]), name)
+        points = source.count(COLMAP_POINT_BYTES)
+        source.at += points * COLMAP_POINT_BYTES
+        yield _ImageRecord(tuple(values[1:5]), tuple(values[5:8]), int(values[8]), name)
     source.end()
 
 
 # text
 
 
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
+def _read_lines(path: Path) -> Iterator[tuple[int, str]]:
     try:
         with path.open(encoding="utf-8-sig", errors="surrogateescape") as file:
             for number, line in enumerate(file, 1):
                 yield number, line.strip()
     except OSError as error:
-        raise _unreadable(path, error) from error
+        raise unreadable_error(path, error) from error
 
 
-def _bad_line(path: Path, number: int, message: str) -> CaptureError:
+def _line_error(path: Path, number: int, message: str) -> CaptureError:
     return CaptureError("colmap-line", f"line {number}: {message}", path=path, remedy="export the model again")
 
 
-def _cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
+def _read_cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
     cameras = {}
-    for number, line in _lines(path):
+    for number, line in _read_lines(path):
         if not line or line.startswith("#"):
             continue
         words = line.split()
         if len(words) < 4:
-            raise _bad_line(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS")
+            raise _line_error(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS")
         try:
             camera, width, height = int(words[0]), int(words[2]), int(words[3])
             parameters = tuple(float(word) for word in words[4:])
         except ValueError:
-            raise _bad_line(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS") from None
-        if words[1] not in MODELS:
-            raise _refuse_model(words[1], camera, path)
-        if len(parameters) != MODELS[words[1]][1]:
-            raise _bad_line(path, number, f"{words[1]} has {MODELS[words[1]][1]} parameters, not {len(parameters)}")
-        cameras[camera] = _intrinsics(words[1], width, height, parameters, path, camera)
+            raise _line_error(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS") from None
+        if words[1] not in COLMAP_MODELS:
+            raise _unread_model_error(words[1], camera, path)
+        if len(parameters) != COLMAP_MODELS[words[1]][1]:
+            raise _line_error(
+                path, number, f"{words[1]} has {COLMAP_MODELS[words[1]][1]} parameters, not {len(parameters)}"
+            )
+        cameras[camera] = _make_intrinsics(words[1], width, height, parameters, path, camera)
     return cameras
 
 
-def _shots_text(path: Path) -> Iterator[_Shot]:
-    """Two lines an image; the second, its points, may be empty and is only checked to be what it should."""
-    lines = _lines(path)
+def _read_images_text(path: Path) -> Iterator[_ImageRecord]:
+    """Two lines an image; of the second, its points, which may be empty, only the number of words is checked."""
+    lines = _read_lines(path)
     for number, line in lines:
         if not line or line.startswith("#"):
             continue
@@ -296,10 +305,10 @@ def _shots_text(path: Path) -> Iterator[_Shot]:
             camera = int(words[8])
             name = words[9]
         except (ValueError, IndexError):
-            raise _bad_line(path, number, "expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME") from None
-        yield _Shot(values[:4], values[4:], camera, name)
+            raise _line_error(path, number, "expected IMAGE_ID QW QX QY QZ TX TY TZ CAMERA_ID NAME") from None
+        yield _ImageRecord(values[:4], values[4:], camera, name)
         number, line = next(lines, (number + 1, ""))
         if len(line.split()) % 3:
-            raise _bad_line(
+            raise _line_error(
                 path, number, "expected POINTS2D of the image above, as X Y POINT3D_ID (an empty line if none)"
             )

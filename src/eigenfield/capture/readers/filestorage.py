@@ -17,20 +17,20 @@ from xml.etree.ElementTree import Element
 import numpy as np
 import yaml
 
-from eigenfield.capture.calibration import printable
-from eigenfield.capture.readers.text import damaged, shown, text
+from eigenfield.capture.calibration import escape_name
+from eigenfield.capture.readers.text import damaged_error, excerpt, read_text
 from eigenfield.capture.readers.xml_tree import load_xml
 
 Tree = dict[str, Any]
-EXTENSIONS = (".yml", ".yaml", ".xml", ".json")
-DEPTH_LIMIT = 32
-STORAGE_LIMIT = 8 * 2**20  # bytes: the points of a thousand charts fit
-HEAD = re.compile(r"\A%YAML[^\n]*")  # OpenCV writes %YAML:1.0, which is no directive of YAML
-FLOW_KEY = re.compile(r"(?<=[{,])(\s*\w+:)(?=\S)")
-QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"', re.DOTALL)
-SPECIAL = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
-TYPE = re.compile(r"\(?(\d*)[ucswifdhnblI]\)?")
-YAML_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same by libyaml, ten times as fast
+STORAGE_EXTENSIONS = (".yml", ".yaml", ".xml", ".json")
+STORAGE_MAX_DEPTH = 32
+STORAGE_MAX_BYTES = 8 * 2**20  # the points of a thousand charts fit
+STORAGE_YAML_HEAD = re.compile(r"\A%YAML[^\n]*")  # OpenCV writes %YAML:1.0, which is no directive of YAML
+STORAGE_FLOW_KEY = re.compile(r"(?<=[{,])(\s*\w+:)(?=\S)")
+STORAGE_QUOTED = re.compile(r'"((?:[^"\\]|\\.)*)"', re.DOTALL)
+STORAGE_SPECIAL_NUMBERS = {".nan": math.nan, ".inf": math.inf, "+.inf": math.inf, "-.inf": -math.inf}
+STORAGE_MATRIX_TYPE = re.compile(r"\(?(\d*)[ucswifdhnblI]\)?")
+STORAGE_YAML_LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # the same by libyaml, ten times as fast
 
 
 class _BadStorageError(Exception):
@@ -45,16 +45,16 @@ def load_storage(path: Path) -> Tree:
     suffix = path.suffix.lower()
     try:
         if suffix == ".xml":
-            tree = _from_xml(load_xml(path, STORAGE_LIMIT))
+            tree = _from_xml(load_xml(path, STORAGE_MAX_BYTES))
         elif suffix == ".json":
-            tree = _from_json(text(path, STORAGE_LIMIT), path)
+            tree = _from_json(read_text(path, STORAGE_MAX_BYTES), path)
         else:
-            tree = _from_yaml(text(path, STORAGE_LIMIT))
-        found = _matrices(tree, 0)
+            tree = _from_yaml(read_text(path, STORAGE_MAX_BYTES))
+        found = _with_matrices(tree, 0)
     except _BadStorageError as error:
-        raise damaged(path, f"is no OpenCV storage: {error}") from None
+        raise damaged_error(path, f"is no OpenCV storage: {error}") from None
     if not isinstance(found, dict):
-        raise damaged(path, "is no OpenCV storage: it has no names at the top")
+        raise damaged_error(path, "is no OpenCV storage: it has no names at the top")
     return found
 
 
@@ -68,36 +68,36 @@ def is_storage(path: Path) -> bool:
     return head.removeprefix(b"\xef\xbb\xbf").startswith(b"%YAML") or b"<opencv_storage" in head
 
 
-def _matrices(node: Any, depth: int) -> Any:
+def _with_matrices(node: Any, depth: int) -> Any:
     """The tree with every mapping of rows, cols and data as an array."""
-    if depth > DEPTH_LIMIT:
+    if depth > STORAGE_MAX_DEPTH:
         raise _BadStorageError("nested too deep")
     if isinstance(node, list):
-        return node if all(isinstance(v, float) for v in node) else [_matrices(v, depth + 1) for v in node]
+        return node if all(isinstance(v, float) for v in node) else [_with_matrices(v, depth + 1) for v in node]
     if not isinstance(node, dict):
         return node
     if not {"rows", "cols", "data"} <= node.keys():
-        return {key: _matrices(value, depth + 1) for key, value in node.items()}
+        return {key: _with_matrices(value, depth + 1) for key, value in node.items()}
     rows, cols, data = node["rows"], node["cols"], node["data"]
     data = [data] if isinstance(data, float) else [] if data in (None, "") else data
-    kind = TYPE.fullmatch(str(node.get("dt", "d")).strip("\"'"))
+    kind = STORAGE_MATRIX_TYPE.fullmatch(str(node.get("dt", "d")).strip("\"'"))
     channels = int(kind[1] or 1) if kind and len(kind[1]) < 4 else 1
     if not (isinstance(data, list) and all(isinstance(v, float) for v in data)):
         raise _BadStorageError("a matrix holds something that is no number")
     if not all(isinstance(v, float) and 0 <= v < 2**31 and v == round(v) for v in (rows, cols)):
-        raise _BadStorageError(f"a matrix of {shown(rows)} x {shown(cols)}")
+        raise _BadStorageError(f"a matrix of {excerpt(rows)} x {excerpt(cols)}")
     if rows * cols * channels != len(data):
         raise _BadStorageError(f"a matrix of {rows:.0f} x {cols:.0f} x {channels} with {len(data)} numbers")
     shape = (int(rows), int(cols), channels) if channels > 1 else (int(rows), int(cols))
     return np.array(data, np.float64).reshape(shape)
 
 
-def _number(word: str) -> Any:
+def _parse_scalar(word: str) -> Any:
     """A number, or the word itself; None for nothing."""
     if word in ("", "~", "null"):
         return None
-    if word.lower() in SPECIAL:
-        return SPECIAL[word.lower()]
+    if word.lower() in STORAGE_SPECIAL_NUMBERS:
+        return STORAGE_SPECIAL_NUMBERS[word.lower()]
     try:
         return float(word)
     except ValueError:
@@ -108,66 +108,68 @@ def _from_json(source: str, path: Path) -> Any:
     try:
         return json.loads(source, parse_int=float)
     except (ValueError, RecursionError) as error:
-        raise damaged(path, f"is no valid JSON ({str(error)[:80]})") from error
+        raise damaged_error(path, f"is no valid JSON ({str(error)[:80]})") from error
 
 
 def _from_xml(root: Element) -> Any:
     if root.tag != "opencv_storage":
-        raise _BadStorageError(f"its root is <{shown(root.tag)}> and not <opencv_storage>")
+        raise _BadStorageError(f"its root is <{excerpt(root.tag)}> and not <opencv_storage>")
     return _from_element(root)
 
 
 def _from_element(element: Element) -> Any:
     children = list(element)
     if children and all(child.tag == "_" for child in children):  # a sequence: scalars stand between the elements
-        items = _words(element.text)
+        items = _parse_words(element.text)
         for child in children:
-            items += [_from_element(child), *_words(child.tail)]
+            items += [_from_element(child), *_parse_words(child.tail)]
         return items
     if children:
         return {child.tag: _from_element(child) for child in children}
-    words = _words(element.text)
+    words = _parse_words(element.text)
     return words if len(words) > 1 else words[0] if words else None
 
 
-def _words(source: str | None) -> list[Any]:
+def _parse_words(source: str | None) -> list[Any]:
     """Numbers, or quoted strings, or one string without quotes."""
     source = (source or "").strip()
     if '"' in source:
-        return QUOTED.findall(source)
-    words = [_number(word) for word in source.split()]
+        return STORAGE_QUOTED.findall(source)
+    words = [_parse_scalar(word) for word in source.split()]
     return [source] if len(words) > 1 and not all(isinstance(word, float) for word in words) else words
 
 
 def _from_yaml(source: str) -> Any:
     """The documents of a stream as one: OpenCV appends another to a file that is there."""
-    source = HEAD.sub("", source).encode("utf-8", "surrogateescape").decode("utf-8", "replace").expandtabs(4)
+    source = (
+        STORAGE_YAML_HEAD.sub("", source).encode("utf-8", "surrogateescape").decode("utf-8", "replace").expandtabs(4)
+    )
     try:
         try:
-            documents = _documents(FLOW_KEY.sub(r"\1 ", source))
+            documents = _parse_documents(STORAGE_FLOW_KEY.sub(r"\1 ", source))
         except yaml.YAMLError:
-            documents = _documents(source)  # a list of words outside braces may look the same
+            documents = _parse_documents(source)  # a list of words outside braces may look the same
     except yaml.YAMLError as error:
         mark, problem = getattr(error, "problem_mark", None), getattr(error, "problem", None)
         place = f"line {mark.line + 1}: " if mark else ""
-        raise _BadStorageError(place + printable(str(problem or "characters that no YAML has"))) from None
+        raise _BadStorageError(place + escape_name(str(problem or "characters that no YAML has"))) from None
     if len(documents) > 1 and all(isinstance(document, dict) for document in documents):
         return {key: value for document in documents for key, value in document.items()}
     return documents[0] if documents else None
 
 
-def _documents(source: str) -> list[Any]:
+def _parse_documents(source: str) -> list[Any]:
     """Every document of a YAML stream. Raises yaml.YAMLError and _BadStorageError."""
     documents: list[Any] = []
     open_nodes = [documents]  # a mapping's keys and values alternate in its list
     kinds: list[type[list[Any] | dict[str, Any]]] = [list]
-    for event in yaml.parse(source, Loader=YAML_LOADER):
+    for event in yaml.parse(source, Loader=STORAGE_YAML_LOADER):
         is_key = kinds[-1] is dict and len(open_nodes[-1]) % 2 == 0
         if isinstance(event, yaml.ScalarEvent):
             is_word = is_key or event.style not in ("", None)
-            open_nodes[-1].append(event.value if is_word else _number(event.value))
+            open_nodes[-1].append(event.value if is_word else _parse_scalar(event.value))
         elif isinstance(event, yaml.CollectionStartEvent):
-            if is_key or len(kinds) > DEPTH_LIMIT:
+            if is_key or len(kinds) > STORAGE_MAX_DEPTH:
                 raise _BadStorageError("a collection for a name" if is_key else "nested too deep")
             open_nodes.append([])
             kinds.append(dict if isinstance(event, yaml.MappingStartEvent) else list)

@@ -2,8 +2,8 @@
 
 The two numbers that differ between the names are row and column, in this order, with one underscore between them.
 Which way rows and columns run is not said. A date and time (`20210430_080617`) also looks like this: numbers have three
-digits at most, and at least half of the nodes must hold a photograph. One row alone is not told from numbered frames:
-it must be asked for.
+digits at most, and at least half of the nodes must hold a photograph. One row alone looks like numbered frames: it must
+be asked for.
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ from collections.abc import Callable
 from pathlib import Path
 
 from eigenfield.capture.arrangement import (
-    FEWEST_NAMED,
-    SHARE,
+    NAMES_MIN_FRACTION,
+    NAMES_MIN_PHOTOGRAPHS,
     Arrangement,
-    Wanted,
-    nodes,
+    OpenOptions,
+    make_grid_layout,
     photographs_of,
-    refuse_nothing,
+    require_photographs,
 )
-from eigenfield.capture.calibration import printable
+from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.readers.stanford import find_stanford
 from eigenfield.core.errors import CaptureError
 
-LARGEST_NODE = 999
-FILLED = 0.5  # of the nodes must hold a photograph for the names to be taken for a grid
+GRID_MAX_NODE_NUMBER = 999
+GRID_MIN_FILLED_FRACTION = 0.5  # of the nodes must hold a photograph for the names to be taken for a grid
 
 
 def find_grid_names(folder: Path) -> Path | None:
@@ -37,42 +37,49 @@ def find_grid_names(folder: Path) -> Path | None:
     """
     if find_stanford(folder):
         return None
-    files, others, fields = alike(folder, _pair)
-    if len(files) < FEWEST_NAMED or len(files) < SHARE * (len(files) + len(others)):
+    files, others, fields = largest_name_group(folder, _row_and_column)
+    if len(files) < NAMES_MIN_PHOTOGRAPHS or len(files) < NAMES_MIN_FRACTION * (len(files) + len(others)):
         return None
-    pair = _pair(fields)
-    if pair is None or max(max(int(f[i]) for i in pair) for f in fields) > LARGEST_NODE:
+    pair = _row_and_column(fields)
+    if pair is None or max(max(int(f[i]) for i in pair) for f in fields) > GRID_MAX_NODE_NUMBER:
         return None
     rows, columns = ({int(f[i]) for f in fields} for i in pair)
-    if len(files) < FILLED * len(rows) * len(columns):
+    if len(files) < GRID_MIN_FILLED_FRACTION * len(rows) * len(columns):
         return None
     if min(len(rows), len(columns)) == 1:
         line = "row" if len(rows) == 1 else "column"
         raise CaptureError(
             "format-ambiguous",
-            f"{printable(files[0].name)} and the like may be one {line} of a grid, or just numbered",
+            f"{escape_name(files[0].name)} and the like may be one {line} of a grid, or just numbered",
             path=folder,
             remedy="say --format grid, or --format folder",
         )
     return folder
 
 
-def read_grid_names(folder: Path, wanted: Wanted) -> Arrangement:
+def read_grid_names(folder: Path, options: OpenOptions) -> Arrangement:
     """The grid of a folder with grid names. Raises CaptureError: `names-unknown`, `node-twice`, `grid-size`."""
-    files, others, fields = alike(folder, _pair)
-    pair = _pair(fields)
-    refuse_nothing(files if pair else [], folder, "*_RR_CC with two numbers that differ")
+    files, others, fields = largest_name_group(folder, _row_and_column)
+    pair = _row_and_column(fields)
+    require_photographs(files if pair else [], folder, "*_RR_CC with two numbers that differ")
     assert pair is not None
     rows, columns = ([int(f[i]) for f in fields] for i in pair)
-    layout, problems = nodes(files, rows, columns, wanted, folder)
+    layout, problems = make_grid_layout(files, rows, columns, options, folder)
     return Arrangement("grid", tuple(files), layout, tuple(problems), tuple(others))
 
 
-def alike(
+def largest_name_group(
     folder: Path, fits: Callable[[list[list[str]]], object] = bool
 ) -> tuple[list[Path], list[Path], list[list[str]]]:
-    """The photographs whose names are alike but for numbers: the largest such group that `fits`; the others; and the
-    group's names in pieces, text and numbers by turns."""
+    """The largest group of photographs whose names differ in numbers alone.
+
+    Args:
+        folder: Of the photographs.
+        fits: Whether a group counts, by its names in pieces.
+
+    Returns:
+        The group, the other photographs, and the group's names in pieces, text and numbers by turns.
+    """
     groups: dict[tuple[str, ...], list[tuple[Path, list[str]]]] = defaultdict(list)
     files = photographs_of(folder)
     for path in files:
@@ -84,8 +91,8 @@ def alike(
     return [path for path, _ in best], [p for p in files if p not in chosen], [pieces for _, pieces in best]
 
 
-def _pair(fields: list[list[str]]) -> tuple[int, int] | None:
-    """The places of row and column among the pieces: the two that vary, or one that does and its only neighbour."""
+def _row_and_column(fields: list[list[str]]) -> tuple[int, int] | None:
+    """Indices of row and column among the pieces: the two that vary, or one that does and its only neighbour."""
     if not fields:
         return None
     places = range(1, len(fields[0]), 2)

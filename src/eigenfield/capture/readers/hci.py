@@ -5,7 +5,7 @@ are row and column, and mostly run up). The scenes are rendered: the grid is exa
 focus. With the cfg the cameras are whole: f = focal length / sensor x the longer side, a step is the baseline b, and at
 the focus distance F the shifted pinholes have no parallax, so that a step moves a point at depth Z by b f (1/Z - 1/F)
 pixels to the left (HCI's disparity). World: metres, the middle of the grid at the origin, looking along +z; not
-Blender's frame, which the cfg also tells.
+Blender's frame, which the cfg also states.
 """
 
 from __future__ import annotations
@@ -20,34 +20,41 @@ import numpy as np
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    Wanted,
-    missing_line,
-    named_like,
-    nodes,
-    refuse_nothing,
-    told_by,
+    OpenOptions,
+    describe_missing_nodes,
+    find_by_names,
+    make_grid_layout,
+    match_names,
+    require_photographs,
 )
-from eigenfield.capture.calibration import LARGEST, Calibration, Entry, Intrinsics
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.readers.text import SIDE_LIMIT, text
+from eigenfield.capture.readers.text import CALIBRATION_MAX_SIDE_PIXELS, read_text
 from eigenfield.core.errors import CaptureError
 
 log = logging.getLogger(__name__)
 
-NAMES = re.compile(r"input_cam_?(\d{1,5})", re.IGNORECASE)
-PARAMETERS = "parameters.cfg"
-SIZE_LIMIT = 2**20  # bytes of a parameters.cfg
-GRID_LIMIT = 1000  # cameras along a side that a cfg may claim
+HCI_NAMES = re.compile(r"input_cam_?(\d{1,5})", re.IGNORECASE)
+HCI_PARAMETERS_FILE = "parameters.cfg"
+HCI_MAX_PARAMETERS_BYTES = 2**20
+HCI_MAX_SIDE_CAMERAS = 1000  # along a side of the grid of a cfg
 
-find_hci = told_by(NAMES)
+find_hci = find_by_names(HCI_NAMES)
 
 
 @dataclass(frozen=True)
-class Parameters:
-    """What a parameters.cfg says.
+class HciParameters:
+    """The contents of a parameters.cfg.
 
-    width, height: pixels. focal: pixels. columns, rows: cameras. baseline, focus: metres.
-    disparities: (lowest, highest) of the scene, pixels a step; None where it does not say.
+    Attributes:
+        width: Pixels.
+        height: Pixels.
+        focal: Pixels.
+        columns: Cameras.
+        rows: Cameras.
+        baseline: Metres between neighbouring cameras.
+        focus: Metres from the cameras to the plane without disparity.
+        disparities: (lowest, highest) of the scene, pixels a step; None where the file does not state them.
     """
 
     width: int
@@ -65,21 +72,23 @@ class Parameters:
         return 1 / inverse if inverse > 0 else math.inf
 
 
-def read_hci(folder: Path, wanted: Wanted) -> Arrangement:
-    """The grid of a folder with HCI's names, and its cameras where parameters.cfg says them.
+def read_hci(folder: Path, options: OpenOptions) -> Arrangement:
+    """The grid of a folder with HCI's names, and its cameras where parameters.cfg states them.
 
     A cfg that is absent, damaged or of another grid leaves the grid without cameras, and a line that says so. The grid
-    is then `wanted.grid`, or a square if the numbers fill one. Raises CaptureError: `names-unknown`, `node-twice`,
-    `grid-size`.
+    is then `options.grid`, or a square if the numbers fill one.
+
+    Raises:
+        CaptureError: `names-unknown`, `node-twice`, `grid-size`.
     """
-    fitting, others = named_like(folder, NAMES)
-    refuse_nothing(fitting, folder, "input_CamNNN")
+    fitting, others = match_names(folder, HCI_NAMES)
+    require_photographs(fitting, folder, "input_CamNNN")
     files = tuple(path for path, _ in fitting)
     numbers = [int(match[1]) for _, match in fitting]
-    parameters, problems = _parameters(files[0].parent, folder, max(numbers), wanted.grid)
-    shape = wanted.grid if parameters is None else (parameters.rows, parameters.columns)
+    parameters, problems = _find_parameters(files[0].parent, folder, max(numbers), options.grid)
+    shape = options.grid if parameters is None else (parameters.rows, parameters.columns)
     if shape is None:
-        shape = _square(numbers, folder)
+        shape = _square_grid(numbers, folder)
     if max(numbers) >= shape[0] * shape[1]:
         raise CaptureError(
             "grid-size",
@@ -89,30 +98,30 @@ def read_hci(folder: Path, wanted: Wanted) -> Arrangement:
             remedy="say the right --grid ROWSxCOLUMNS",
         )
     rows, columns = [n // shape[1] for n in numbers], [n % shape[1] for n in numbers]
-    layout, _ = nodes(files, rows, columns, Wanted(), folder)
+    layout, _ = make_grid_layout(files, rows, columns, OpenOptions(), folder)
     layout = replace(layout, signs=True, rectified=True, exact=True)
-    problems = [*problems, *missing_line(layout)]
+    problems = [*problems, *describe_missing_nodes(layout)]
     if parameters is None:
         return Arrangement("hci", files, layout, tuple(problems), tuple(others))
     layout = replace(layout, positions=layout.positions * parameters.baseline, measured=True)
-    entries = tuple(_entry(path, layout, i, parameters) for i, path in enumerate(files))
-    calibration = Calibration(files[0].parent / PARAMETERS, "hci", entries)
+    entries = tuple(_make_entry(path, layout, i, parameters) for i, path in enumerate(files))
+    calibration = Calibration(files[0].parent / HCI_PARAMETERS_FILE, "hci", entries)
     return Arrangement("hci", files, layout, tuple(problems), tuple(others), calibration)
 
 
-def _square(numbers: list[int], folder: Path) -> tuple[int, int]:
+def _square_grid(numbers: list[int], folder: Path) -> tuple[int, int]:
     side = math.isqrt(max(numbers) + 1)
     if side * side != max(numbers) + 1:
         raise CaptureError(
             "grid-size",
-            f"{PARAMETERS} says no grid, and numbers up to {max(numbers)} fill no square one",
+            f"{HCI_PARAMETERS_FILE} says no grid, and numbers up to {max(numbers)} fill no square one",
             path=folder,
             remedy="say --grid ROWSxCOLUMNS",
         )
     return side, side
 
 
-def _entry(path: Path, layout: GridLayout, index: int, parameters: Parameters) -> Entry:
+def _make_entry(path: Path, layout: GridLayout, index: int, parameters: HciParameters) -> Entry:
     x = (layout.columns[index] - (parameters.columns - 1) / 2) * parameters.baseline
     y = (layout.rows[index] - (parameters.rows - 1) / 2) * parameters.baseline
     f, width, height = parameters.focal, parameters.width, parameters.height
@@ -125,54 +134,54 @@ def _entry(path: Path, layout: GridLayout, index: int, parameters: Parameters) -
     return Entry(path.name, path.name, intrinsics, np.eye(3), np.array([x, y, 0.0]), bounds=bounds)
 
 
-def _parameters(
+def _find_parameters(
     inner: Path, folder: Path, last: int, grid: tuple[int, int] | None
-) -> tuple[Parameters | None, list[str]]:
-    """The cfg beside the photographs or in the folder above, if it can be used; else a line that says why not."""
-    path = next((p for p in (inner / PARAMETERS, folder / PARAMETERS) if p.is_file()), None)
+) -> tuple[HciParameters | None, list[str]]:
+    """The cfg beside the photographs or in the folder above, if it can be used; else a line with the reason."""
+    path = next((p for p in (inner / HCI_PARAMETERS_FILE, folder / HCI_PARAMETERS_FILE) if p.is_file()), None)
     if path is None:
-        return None, [f"no {PARAMETERS}: the grid is known, but neither focal length nor distance"]
+        return None, [f"no {HCI_PARAMETERS_FILE}: the grid is known, but neither focal length nor distance"]
     try:
         found = read_parameters(path)
     except CaptureError as error:
         log.warning("%s", error)
-        return None, [f"{PARAMETERS} cannot be used: {error.message}"]
+        return None, [f"{HCI_PARAMETERS_FILE} cannot be used: {error.message}"]
     size = (found.rows, found.columns)
     if last >= size[0] * size[1] or (grid is not None and grid != size):
         asked = f"--grid says {grid[0]}x{grid[1]}" if grid else f"there is a photograph with the number {last}"
-        return None, [f"{PARAMETERS} cannot be used: it is for {size[0]}x{size[1]} cameras, but {asked}"]
+        return None, [f"{HCI_PARAMETERS_FILE} cannot be used: it is for {size[0]}x{size[1]} cameras, but {asked}"]
     return found, []
 
 
-def read_parameters(path: Path) -> Parameters:
-    """A parameters.cfg; keys that are not known are passed over. CaptureError `calibration-damaged` and as `text`."""
-    values = _values(text(path, SIZE_LIMIT))
+def read_parameters(path: Path) -> HciParameters:
+    """A parameters.cfg; unknown keys are skipped. CaptureError `calibration-damaged` and as `read_text`."""
+    values = _parse_values(read_text(path, HCI_MAX_PARAMETERS_BYTES))
 
     def number(section: str, key: str) -> float:
         try:
             value = float(values[section, key])
         except (KeyError, ValueError):
-            raise _damaged(path, f"{key} in [{section}] is no number or absent") from None
-        if not abs(value) <= LARGEST:
-            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+            raise _damaged_error(path, f"{key} in [{section}] is no number or absent") from None
+        if not abs(value) <= CALIBRATION_MAX_MAGNITUDE:
+            raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
         return value
 
     def positive(section: str, key: str) -> float:
         value = number(section, key)
         if not value > 0:
-            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+            raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
         return value
 
     def whole(section: str, key: str, limit: int) -> int:
         value = number(section, key)
         if not (1 <= value <= limit and value == round(value)):
-            raise _damaged(path, f"{key} in [{section}] is {value:g}")
+            raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
         return int(value)
 
-    width = whole("intrinsics", "image_resolution_x_px", SIDE_LIMIT)
-    height = whole("intrinsics", "image_resolution_y_px", SIDE_LIMIT)
+    width = whole("intrinsics", "image_resolution_x_px", CALIBRATION_MAX_SIDE_PIXELS)
+    height = whole("intrinsics", "image_resolution_y_px", CALIBRATION_MAX_SIDE_PIXELS)
     focal = positive("intrinsics", "focal_length_mm") / positive("intrinsics", "sensor_size_mm") * max(width, height)
-    columns, rows = (whole("extrinsics", f"num_cams_{axis}", GRID_LIMIT) for axis in "xy")
+    columns, rows = (whole("extrinsics", f"num_cams_{axis}", HCI_MAX_SIDE_CAMERAS) for axis in "xy")
     baseline = positive("extrinsics", "baseline_mm") / 1000
     focus = positive("extrinsics", "focus_distance_m")
     try:
@@ -181,12 +190,12 @@ def read_parameters(path: Path) -> Parameters:
         disparities = None
     if disparities is not None and disparities[0] > disparities[1]:
         disparities = None
-    if not (LARGEST > focal * baseline > 1 / LARGEST):
-        raise _damaged(path, f"a focal length of {focal:g} pixels and a baseline of {baseline:g} m")
-    return Parameters(width, height, focal, columns, rows, baseline, focus, disparities)
+    if not (CALIBRATION_MAX_MAGNITUDE > focal * baseline > 1 / CALIBRATION_MAX_MAGNITUDE):
+        raise _damaged_error(path, f"a focal length of {focal:g} pixels and a baseline of {baseline:g} m")
+    return HciParameters(width, height, focal, columns, rows, baseline, focus, disparities)
 
 
-def _values(lines: str) -> dict[tuple[str, str], str]:
+def _parse_values(lines: str) -> dict[tuple[str, str], str]:
     """`key = value` lines by section and key; anything else is passed over."""
     values, section = {}, ""
     for line in lines.splitlines():
@@ -199,5 +208,5 @@ def _values(lines: str) -> dict[tuple[str, str], str]:
     return values
 
 
-def _damaged(path: Path, message: str) -> CaptureError:
+def _damaged_error(path: Path, message: str) -> CaptureError:
     return CaptureError("calibration-damaged", message, path=path, remedy="copy it again")

@@ -18,30 +18,38 @@ from xml.etree.ElementTree import Element
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import LARGEST, Calibration, Entry, Intrinsics, printable
-from eigenfield.capture.messages import count, some
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.skew import LARGEST as LARGEST_SKEW
-from eigenfield.capture.readers.skew import NEGLIGIBLE as NEGLIGIBLE_SKEW
-from eigenfield.capture.readers.text import check_finite, check_lens, damaged, numbers, shown, size_of
+from eigenfield.capture.readers.skew import SKEW_MAX_RATIO, SKEW_NEGLIGIBLE_RATIO
+from eigenfield.capture.readers.text import check_finite, check_lens, check_size, damaged_error, excerpt, parse_numbers
 from eigenfield.capture.readers.xml_tree import load_xml
 from eigenfield.core.errors import CaptureError
 
-USUAL = ("cameras.xml", "camera.xml", "metashape.xml")  # then any other, in name order
-HEAD = 4096  # bytes in which <document> and <chunk> must stand
-MODELS = {
+METASHAPE_FILES = ("cameras.xml", "camera.xml", "metashape.xml")  # then any other, in name order
+METASHAPE_HEAD_BYTES = 4096  # in which <document> and <chunk> must stand
+METASHAPE_LENS_MODELS = {
     "frame": "metashape",
     "fisheye": "metashape-equidistant",
     "equidistant_fisheye": "metashape-equidistant",
     "equisolid_fisheye": "metashape-equisolid",
 }
-FAR = 1000.0  # cameras this many times their extent from the origin are brought to it: a file keeps float32
-TOLERANCE = 1e-4
+METASHAPE_PARAMETERS = {
+    "f", "fx", "fy", "cx", "cy", "b1", "b2", "skew", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"
+}  # fmt: skip
+METASHAPE_FAR_EXTENTS = 1000.0  # cameras farther from the origin are shifted to it, because a file keeps float32
+METASHAPE_ROTATION_TOLERANCE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """x_world = scale rotation x_chunk + shift."""
+    """A similarity transform: x_world = scale rotation x_chunk + shift.
+
+    Attributes:
+        rotation: (3, 3).
+        shift: (3,) world units.
+        scale: World units in one unit of the chunk.
+    """
 
     rotation: NDArray[np.float64]
     shift: NDArray[np.float64]
@@ -50,7 +58,7 @@ class _Frame:
 
 def find_metashape(folder: Path) -> Path | None:
     """A Metashape camera file in a folder: `cameras.xml` first, then the first `*.xml` that begins as one."""
-    for path in (*(folder / name for name in USUAL), *sorted(folder.glob("*.xml"))):
+    for path in (*(folder / name for name in METASHAPE_FILES), *sorted(folder.glob("*.xml"))):
         if path.is_file() and _begins_as_document(path):
             return path
     return None
@@ -59,7 +67,7 @@ def find_metashape(folder: Path) -> Path | None:
 def _begins_as_document(path: Path) -> bool:
     try:
         with path.open("rb") as file:
-            head = file.read(HEAD)
+            head = file.read(METASHAPE_HEAD_BYTES)
     except OSError:
         return False
     return b"<document" in head and b"<chunk" in head
@@ -71,73 +79,78 @@ def read_metashape(path: Path) -> Calibration:
     Raises CaptureError (`calibration-missing`, `calibration-too-large`, `xml-doctype`, `calibration-damaged`,
     `calibration-empty`) where the file as a whole cannot be used; cameras that cannot become errors of their own.
     """
-    chunk, problems = _chunk(load_xml(path), path)
+    chunk, problems = _find_chunk(load_xml(path), path)
     cameras = [camera for camera in chunk.iterfind("cameras") for camera in camera.iter("camera")]
     if not cameras:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    frames = _frames(chunk, path)
-    usable, left_out = _usable(cameras, frames)
+    frames = _read_frames(chunk, path)
+    usable, left_out = _split_usable(cameras, frames)
     sensors = {sensor.get("id", ""): sensor for sensor in chunk.iterfind("sensors/sensor")}
     lenses: dict[str, tuple[Intrinsics, Lens | None] | CaptureError] = {}
     entries, errors = [], []
     for camera in usable:
         number = camera.get("sensor_id", next(iter(sensors)) if len(sensors) == 1 else "")
         if number not in lenses:
-            lenses[number] = _intrinsics(sensors.get(number), number, path)
+            lenses[number] = _read_intrinsics(sensors.get(number), number, path)
         try:
-            entries.append(_entry(camera, lenses[number], _frame_of(camera, frames), path))
+            entries.append(_make_entry(camera, lenses[number], _frame_of(camera, frames), path))
         except CaptureError as error:
             errors.append(error)
-    entries, moved = _near_origin(entries)
+    entries, moved = _shift_to_origin(entries)
     return Calibration(path, "metashape", tuple(entries), tuple(errors), (*problems, *left_out, *moved))
 
 
-def _chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
+def _find_chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
     chunks = [root] if root.tag == "chunk" else root.findall("chunk")
     if not chunks:
-        raise damaged(path, "has no <chunk>", "name the file of Metashape's Export Cameras, Agisoft XML")
+        raise damaged_error(path, "has no <chunk>", "name the file of Metashape's Export Cameras, Agisoft XML")
     chosen = max(chunks, key=lambda chunk: len(chunk.findall("cameras//camera")))
     others = len(chunks) - 1
     return chosen, [f"{others} other chunks of {path.name} are not read"] if others else []
 
 
-def _label(camera: Element) -> str:
-    return printable(camera.get("label") or f"camera {shown(camera.get('id', '?'))}")
+def _camera_label(camera: Element) -> str:
+    return escape_name(camera.get("label") or f"camera {excerpt(camera.get('id', '?'))}")
 
 
-def _usable(cameras: list[Element], frames: dict[str, _Frame]) -> tuple[list[Element], list[str]]:
+def _split_usable(cameras: list[Element], frames: dict[str, _Frame]) -> tuple[list[Element], list[str]]:
     """Enabled and aligned cameras that share a frame, and lines that name the others."""
     disabled = [c for c in cameras if c.get("enabled", "true").lower() in ("false", "0")]
     enabled = [c for c in cameras if c not in set(disabled)]
     lost = [c for c in enabled if c.find("transform") is None and c.get("master_id") is None]
     aligned = [c for c in enabled if c not in set(lost)]
-    problems = [*_named(disabled, "disabled"), *_named(lost, "not aligned")]
+    problems = [*_describe_cameras(disabled, "disabled"), *_describe_cameras(lost, "not aligned")]
     components = Counter(c.get("component_id", "") for c in aligned)
     if len(components) > 1 and not all(component in frames for component in components):
         largest = max(components, key=lambda component: components[component])
         apart = [c for c in aligned if c.get("component_id", "") != largest]
-        problems += _named(apart, f"in another component than the largest ({shown(largest)}) without a common frame")
+        problems += _describe_cameras(
+            apart, f"in another component than the largest ({excerpt(largest)}) without a common frame"
+        )
         aligned = [c for c in aligned if c.get("component_id", "") == largest]
     return aligned, problems
 
 
-def _named(cameras: list[Element], what: str) -> list[str]:
+def _describe_cameras(cameras: list[Element], what: str) -> list[str]:
     if not cameras:
         return []
-    return [f"{count(cameras, 'camera is', 'cameras are')} {what}: {some([_label(camera) for camera in cameras])}"]
+    return [
+        f"{count_phrase(cameras, 'camera is', 'cameras are')} {what}: "
+        f"{list_names([_camera_label(camera) for camera in cameras])}"
+    ]
 
 
-def _frames(chunk: Element, path: Path) -> dict[str, _Frame]:
+def _read_frames(chunk: Element, path: Path) -> dict[str, _Frame]:
     """The frame of each component that has one by its id, and the chunk's under the name "chunk"."""
     frames = {}
     for component in chunk.iterfind("components/component"):
         transform = component.find("transform")
         if transform is not None:
             number = component.get("id", "")
-            frames[number] = _frame(transform, f"component {shown(number)}", path)
+            frames[number] = _read_frame(transform, f"component {excerpt(number)}", path)
     transform = chunk.find("transform")
     if transform is not None:
-        frames["chunk"] = _frame(transform, "the chunk", path)
+        frames["chunk"] = _read_frame(transform, "the chunk", path)
     return frames
 
 
@@ -146,33 +159,41 @@ def _frame_of(camera: Element, frames: dict[str, _Frame]) -> _Frame:
     return frames.get(camera.get("component_id", ""), fallback)
 
 
-def _frame(transform: Element, label: str, path: Path) -> _Frame:
+def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
     words = (transform.text or "").split()
     if words:  # PhotoScan before 1.0 wrote one matrix
-        matrix = numbers(words, 16, f"the transform of {label}", path).reshape(4, 4)
+        matrix = parse_numbers(words, 16, f"the transform of {label}", path).reshape(4, 4)
         linear, shift = matrix[:3, :3], matrix[:3, 3]
         with np.errstate(all="ignore"):
             scale = float(np.cbrt(np.linalg.det(linear)))
     else:
         parts = {part.tag: (part.text or "").split() for part in transform}
-        linear = numbers(parts.get("rotation", list("100010001")), 9, f"the rotation of {label}", path).reshape(3, 3)
-        shift = numbers(parts.get("translation", list("000")), 3, f"the translation of {label}", path)
-        scale = float(numbers(parts.get("scale", ["1"]), 1, f"the scale of {label}", path)[0])
+        linear = parse_numbers(parts.get("rotation", list("100010001")), 9, f"the rotation of {label}", path).reshape(
+            3, 3
+        )
+        shift = parse_numbers(parts.get("translation", list("000")), 3, f"the translation of {label}", path)
+        scale = float(parse_numbers(parts.get("scale", ["1"]), 1, f"the scale of {label}", path)[0])
         with np.errstate(all="ignore"):
             linear = linear * scale
     check_finite([linear, shift], f"the transform of {label}", path)
     with np.errstate(all="ignore"):
         rotation = linear / scale
-        fits = 0 < scale < LARGEST and np.allclose(rotation @ rotation.T, np.eye(3), atol=TOLERANCE)
+        fits = 0 < scale < CALIBRATION_MAX_MAGNITUDE and np.allclose(
+            rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE
+        )
     if not fits:
-        raise damaged(path, f"the transform of {label} is not a rotation, a shift and a positive scale", "mend it")
+        raise damaged_error(
+            path, f"the transform of {label} is not a rotation, a shift and a positive scale", "mend it"
+        )
     return _Frame(rotation, shift, scale)
 
 
-def _entry(camera: Element, sensor: tuple[Intrinsics, Lens | None] | CaptureError, frame: _Frame, path: Path) -> Entry:
-    label, name = _label(camera), camera.get("label")
+def _make_entry(
+    camera: Element, sensor: tuple[Intrinsics, Lens | None] | CaptureError, frame: _Frame, path: Path
+) -> Entry:
+    label, name = _camera_label(camera), camera.get("label")
     if not name:
-        raise damaged(path, f"{label} has no label, which names its photograph", "mend or remove it")
+        raise damaged_error(path, f"{label} has no label, which names its photograph", "mend or remove it")
     transform = camera.find("transform")
     if transform is None:
         raise CaptureError(
@@ -183,10 +204,10 @@ def _entry(camera: Element, sensor: tuple[Intrinsics, Lens | None] | CaptureErro
         )
     if isinstance(sensor, CaptureError):
         raise CaptureError(sensor.code, f"{label}: {sensor.message}", path=path, remedy=sensor.remedy)
-    matrix = numbers((transform.text or "").split(), 16, f"the transform of {label}", path).reshape(4, 4)
+    matrix = parse_numbers((transform.text or "").split(), 16, f"the transform of {label}", path).reshape(4, 4)
     check_finite([matrix], label, path)
     if not np.allclose(matrix[3], [0, 0, 0, 1], atol=1e-6):
-        raise damaged(path, f"the last row of the transform of {label} is not 0 0 0 1", "mend or remove it")
+        raise damaged_error(path, f"the last row of the transform of {label} is not 0 0 0 1", "mend or remove it")
     axes = frame.rotation @ matrix[:3, :3]
     with np.errstate(over="ignore", invalid="ignore"):
         centre = frame.scale * (frame.rotation @ matrix[:3, 3]) + frame.shift
@@ -194,14 +215,14 @@ def _entry(camera: Element, sensor: tuple[Intrinsics, Lens | None] | CaptureErro
     return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1])
 
 
-def _near_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
-    """Georeferenced cameras stand millions of metres from the origin, where float32 knows half metres: moved there."""
+def _shift_to_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
+    """Shift georeferenced cameras, millions of metres from the origin, to it: there float32 resolves half metres."""
     if len(entries) < 2:
         return entries, []
     centres = np.array([entry.centre for entry in entries])
     middle = centres.mean(axis=0)
     extent = float(np.ptp(centres, axis=0).max())
-    if not 0 < extent * FAR < np.abs(middle).max():
+    if not 0 < extent * METASHAPE_FAR_EXTENTS < np.abs(middle).max():
         return entries, []
     shift = np.round(middle)
     moved = [replace(entry, centre=entry.centre - shift) for entry in entries]
@@ -212,40 +233,40 @@ def _near_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
     ]
 
 
-def _intrinsics(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None] | CaptureError:
+def _read_intrinsics(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None] | CaptureError:
     """Of one sensor, or why not: an error for each of its cameras."""
-    label = f"sensor {shown(number)}"
+    label = f"sensor {excerpt(number)}"
     try:
         if sensor is None:
-            raise damaged(path, f"{label} is not listed", "export the cameras again")
-        return _calibration(sensor, label, path)
+            raise damaged_error(path, f"{label} is not listed", "export the cameras again")
+        return _read_calibration(sensor, label, path)
     except CaptureError as error:
         return error
 
 
-def _calibrations(sensor: Element) -> Iterator[Element]:
+def _adjusted_first(sensor: Element) -> Iterator[Element]:
     """The adjusted one first."""
     calibrations = sensor.findall("calibration")
     yield from (c for c in calibrations if c.get("class") == "adjusted")
     yield from (c for c in calibrations if c.get("class") != "adjusted")
 
 
-def _calibration(sensor: Element, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
-    calibration = next(_calibrations(sensor), None)
+def _read_calibration(sensor: Element, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
+    calibration = next(_adjusted_first(sensor), None)
     if calibration is None:
         raise CaptureError(
             "camera-model", f"{label} has no calibration", path=path, remedy="align the photographs in Metashape first"
         )
     kind = calibration.get("type", sensor.get("type", "frame")).lower()
-    if kind not in MODELS:
+    if kind not in METASHAPE_LENS_MODELS:
         raise CaptureError(
             "camera-model",
-            f"{label} has the camera type {shown(kind)!r}, which is not read",
+            f"{label} has the camera type {excerpt(kind)!r}, which is not read",
             path=path,
-            remedy=f"use one of {', '.join(MODELS)}, or undistort the photographs",
+            remedy=f"use one of {', '.join(METASHAPE_LENS_MODELS)}, or undistort the photographs",
         )
-    width, height = _size(calibration, sensor, label, path)
-    values = {part.tag: _number(part, label, path) for part in calibration if part.tag in _PARAMETERS}
+    width, height = _read_size(calibration, sensor, label, path)
+    values = {part.tag: _read_number(part, label, path) for part in calibration if part.tag in METASHAPE_PARAMETERS}
     if "f" in values:
         fx, fy = values["f"] + values.get("b1", 0.0), values["f"]
         cx, cy = width / 2 + values.get("cx", 0.0), height / 2 + values.get("cy", 0.0)
@@ -255,9 +276,9 @@ def _calibration(sensor: Element, label: str, path: Path) -> tuple[Intrinsics, L
         cx, cy = values.get("cx", width / 2), values.get("cy", height / 2)
         skew, p1, p2 = values.get("skew", 0.0), values.get("p2", 0.0), values.get("p1", 0.0)
     else:
-        raise damaged(path, f"{label} has no focal length <f>", "export the cameras again")
+        raise damaged_error(path, f"{label} has no focal length <f>", "export the cameras again")
     check_finite([fx, fy, cx, cy, skew], label, path)
-    if not (fx > 0 and fy > 0 and abs(skew) <= LARGEST_SKEW * fx):
+    if not (fx > 0 and fy > 0 and abs(skew) <= SKEW_MAX_RATIO * fx):
         raise CaptureError(
             "camera-focal",
             f"{label} has a focal length of {fx:g} x {fy:g} and a skew of {skew:g}",
@@ -267,35 +288,30 @@ def _calibration(sensor: Element, label: str, path: Path) -> tuple[Intrinsics, L
     radial = [values.get(key, 0.0) for key in ("k1", "k2", "k3", "k4")]
     coefficients = (*radial, p1, p2, values.get("p3", 0.0), values.get("p4", 0.0), skew / fx)
     check_lens(coefficients, label, path)
-    return Intrinsics(width, height, (fx, fy), None, (cx, cy)), _lens(MODELS[kind], coefficients)
+    return Intrinsics(width, height, (fx, fy), None, (cx, cy)), _make_lens(METASHAPE_LENS_MODELS[kind], coefficients)
 
 
-_PARAMETERS = {
-    "f", "fx", "fy", "cx", "cy", "b1", "b2", "skew", "k1", "k2", "k3", "k4", "p1", "p2", "p3", "p4"
-}  # fmt: skip
+def _read_number(part: Element, label: str, path: Path) -> float:
+    return float(parse_numbers((part.text or "").split(), 1, f"<{part.tag}> of {label}", path)[0])
 
 
-def _number(part: Element, label: str, path: Path) -> float:
-    return float(numbers((part.text or "").split(), 1, f"<{part.tag}> of {label}", path)[0])
-
-
-def _size(calibration: Element, sensor: Element, label: str, path: Path) -> tuple[int, int]:
+def _read_size(calibration: Element, sensor: Element, label: str, path: Path) -> tuple[int, int]:
     for owner in (calibration, sensor):
         resolution = owner.find("resolution")
         if resolution is not None:
             words = [resolution.get("width", ""), resolution.get("height", "")]
-            width, height = numbers(words, 2, f"the resolution of {label}", path)
-            return size_of(width, height, label, path)
-    raise damaged(path, f"{label} has no <resolution>", "export the cameras again")
+            width, height = parse_numbers(words, 2, f"the resolution of {label}", path)
+            return check_size(width, height, label, path)
+    raise damaged_error(path, f"{label} has no <resolution>", "export the cameras again")
 
 
-def _lens(model: str, coefficients: tuple[float, ...]) -> Lens | None:
+def _make_lens(model: str, coefficients: tuple[float, ...]) -> Lens | None:
     """As OpenCV's model where it is one, since other tools know that."""
     k1, k2, k3, k4, p1, p2, p3, p4, skew = coefficients
-    plain = abs(skew) < NEGLIGIBLE_SKEW
+    plain = abs(skew) < SKEW_NEGLIGIBLE_RATIO
     if model == "metashape" and plain and not (k4 or ((p1 or p2) and (p3 or p4))):
         lens = Lens("brown", (k1, k2, p2, p1, k3))
-        return None if lens.does_nothing else lens
+        return None if lens.is_identity else lens
     if model == "metashape-equidistant" and plain and not (p1 or p2):
         return Lens("fisheye", (k1, k2, k3, k4))
     return Lens(model, coefficients)  # type: ignore[arg-type]

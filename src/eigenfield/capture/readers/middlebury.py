@@ -11,19 +11,19 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
-from eigenfield.capture.readers.skew import without_skew
-from eigenfield.capture.readers.text import check_finite, damaged, numbers, shown, text
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.readers.skew import remove_skew
+from eigenfield.capture.readers.text import check_finite, damaged_error, excerpt, parse_numbers, read_text
 from eigenfield.core.errors import CaptureError
 
-SUFFIX = "_par.txt"
-NUMBERS = 9 + 9 + 3
-HEAD = 32  # bytes in which the count must stand
+MIDDLEBURY_SUFFIX = "_par.txt"
+MIDDLEBURY_NUMBERS = 9 + 9 + 3  # in a line: K, R, t
+MIDDLEBURY_HEAD_BYTES = 32  # in which the count must stand
 
 
 def find_middlebury(folder: Path) -> Path | None:
     """The first `*_par.txt` of a folder that begins with a count."""
-    for path in sorted(folder.glob(f"*{SUFFIX}")):
+    for path in sorted(folder.glob(f"*{MIDDLEBURY_SUFFIX}")):
         if path.is_file() and _begins_with_count(path):
             return path
     return None
@@ -32,7 +32,7 @@ def find_middlebury(folder: Path) -> Path | None:
 def _begins_with_count(path: Path) -> bool:
     try:
         with path.open("rb") as file:
-            return file.read(HEAD).removeprefix(b"\xef\xbb\xbf").split(b"\n")[0].strip().isdigit()
+            return file.read(MIDDLEBURY_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf").split(b"\n")[0].strip().isdigit()
     except OSError:
         return False
 
@@ -43,9 +43,9 @@ def read_middlebury(path: Path) -> Calibration:
     Raises CaptureError (`calibration-missing`, `calibration-too-large`, `calibration-damaged`, `calibration-count`,
     `calibration-empty`) where the file as a whole cannot be used.
     """
-    lines = [(i, line.strip()) for i, line in enumerate(text(path).split("\n"), 1) if line.strip()]
+    lines = [(i, line.strip()) for i, line in enumerate(read_text(path).split("\n"), 1) if line.strip()]
     if not lines or not (lines[0][1].isascii() and lines[0][1].isdigit() and len(lines[0][1]) < 10):
-        raise damaged(path, "does not begin with the number of cameras", "name a *_par.txt of a Middlebury set")
+        raise damaged_error(path, "does not begin with the number of cameras", "name a *_par.txt of a Middlebury set")
     count = int(lines[0][1])
     if count != len(lines) - 1:
         raise CaptureError(
@@ -56,20 +56,20 @@ def read_middlebury(path: Path) -> Calibration:
         )
     if not count:
         raise CaptureError("calibration-empty", "lists no camera", path=path, remedy="name another calibration")
-    entries, errors = read_each(lambda item: _entry(item[1], item[0], path), lines[1:])
+    entries, errors = read_each(lambda item: _parse_entry(item[1], item[0], path), lines[1:])
     return Calibration(path, "middlebury", entries, errors)
 
 
-def _entry(line: str, number: int, path: Path) -> Entry:
-    words = line.rsplit(maxsplit=NUMBERS)  # names may hold spaces
-    if len(words) != NUMBERS + 1:
-        raise damaged(path, f"line {number} is not a name and {NUMBERS} numbers ({shown(line)})")
+def _parse_entry(line: str, number: int, path: Path) -> Entry:
+    words = line.rsplit(maxsplit=MIDDLEBURY_NUMBERS)  # names may hold spaces
+    if len(words) != MIDDLEBURY_NUMBERS + 1:
+        raise damaged_error(path, f"line {number} is not a name and {MIDDLEBURY_NUMBERS} numbers ({excerpt(line)})")
     name = words[0]
-    label = f"line {number} ({printable(name)})"
-    values = numbers(words[1:], NUMBERS, label, path)
+    label = f"line {number} ({escape_name(name)})"
+    values = parse_numbers(words[1:], MIDDLEBURY_NUMBERS, label, path)
     check_finite([values], label, path)
     K, R, t = values[:9].reshape(3, 3), values[9:18].reshape(3, 3), values[18:]
-    K, lens = without_skew(K, label, path)
+    K, lens = remove_skew(K, label, path)
     intrinsics = Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2]))
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t

@@ -4,26 +4,26 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from eigenfield.capture.arrangement import Arrangement, Wanted, nodes, refuse_nothing
-from eigenfield.capture.calibration import printable
-from eigenfield.capture.readers.grid_names import alike
+from eigenfield.capture.arrangement import Arrangement, OpenOptions, make_grid_layout, require_photographs
+from eigenfield.capture.calibration import escape_name
+from eigenfield.capture.readers.grid_names import largest_name_group
 from eigenfield.core.errors import CaptureError, OptionError
 
 
-def read_numbered(folder: Path, wanted: Wanted) -> Arrangement:
+def read_numbered(folder: Path, options: OpenOptions) -> Arrangement:
     """The grid of numbered photographs, in row-major order of their numbers.
 
     As many photographs as nodes are taken in order, whatever the numbers. With fewer, the numbers must span the grid
     exactly: those that are not there are missing nodes. Raises CaptureError: `names-unknown`, `node-twice`,
     `grid-size`; OptionError `grid-missing`.
     """
-    if wanted.grid is None:
+    if options.grid is None:
         raise OptionError(
             "grid-missing", "numbered frames do not say how many rows and columns there are", remedy="say --grid RxC"
         )
-    files, others, fields = alike(folder)
+    files, others, fields = largest_name_group(folder)
     varying = [i for i in range(1, len(fields[0]) if fields else 0, 2) if len({int(f[i]) for f in fields}) > 1]
-    refuse_nothing(files if len(varying) == 1 else [], folder, "with one number that differs")
+    require_photographs(files if len(varying) == 1 else [], folder, "with one number that differs")
     numbers = [int(f[varying[0]]) for f in fields]
     order = sorted(range(len(files)), key=lambda i: (numbers[i], files[i].name))
     files, numbers = [files[i] for i in order], [numbers[i] for i in order]
@@ -31,23 +31,23 @@ def read_numbered(folder: Path, wanted: Wanted) -> Arrangement:
         if number == following:
             raise CaptureError(
                 "node-twice",
-                f"{printable(first.name)} and {printable(second.name)} have the same number",
+                f"{escape_name(first.name)} and {escape_name(second.name)} have the same number",
                 path=folder,
                 remedy="take one of them out",
             )
-    total = wanted.grid[0] * wanted.grid[1]
+    total = options.grid[0] * options.grid[1]
     if len(files) == total:
         places = list(range(total))
     elif len(files) < total and numbers[-1] - numbers[0] + 1 == total:
         places = [number - numbers[0] for number in numbers]
     else:
-        raise wrong_size(len(files), wanted.grid, folder)
-    rows, columns = [p // wanted.grid[1] for p in places], [p % wanted.grid[1] for p in places]
-    layout, problems = nodes(files, rows, columns, Wanted(), folder)
+        raise grid_size_error(len(files), options.grid, folder)
+    rows, columns = [p // options.grid[1] for p in places], [p % options.grid[1] for p in places]
+    layout, problems = make_grid_layout(files, rows, columns, OpenOptions(), folder)
     return Arrangement("numbered", tuple(files), layout, tuple(problems), tuple(others))
 
 
-def wrong_size(photographs: int, grid: tuple[int, int], folder: Path) -> CaptureError:
+def grid_size_error(photographs: int, grid: tuple[int, int], folder: Path) -> CaptureError:
     """The error for a grid that does not hold as many photographs as there are; its remedy states those that would."""
     fitting = [f"{a}x{photographs // a}" for a in range(1, photographs + 1) if photographs % a == 0]
     return CaptureError(

@@ -19,17 +19,17 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable
-from eigenfield.capture.messages import count, some
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
-from eigenfield.capture.readers.filestorage import EXTENSIONS, Tree, is_storage, load_storage
-from eigenfield.capture.readers.skew import without_skew
-from eigenfield.capture.readers.text import check_finite, check_lens, damaged, files_in, shown, size_of
+from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
+from eigenfield.capture.readers.skew import remove_skew
+from eigenfield.capture.readers.text import check_finite, check_lens, check_size, damaged_error, excerpt, files_in
 from eigenfield.core.errors import CaptureError
 
-FOLDERS = ("", "calibration", "calib", "cameras", "intri_extri")
-ROLES = {
+OPENCV_FOLDERS = ("", "calibration", "calib", "cameras", "intri_extri")
+OPENCV_ROLES = {
     "matrix": ("camera_matrix", "cameramatrix", "intrinsic_matrix", "intrinsics", "intrinsic", "mtx", "k", "m"),
     "distortion": ("distortion_coefficients", "distortion_coeffs", "distcoeffs", "dist_coeffs", "dist", "d"),
     "rotation": ("rotation_matrix", "rotation_vector", "rotation", "rvec", "rot", "r"),
@@ -41,17 +41,32 @@ ROLES = {
     "size": ("image_size", "imagesize", "img_size", "resolution"),
     "model": ("distortion_model", "camera_model", "fisheye_model", "fisheye"),
 }  # fmt: skip
-WORDS = sorted(((word, role) for role, words in ROLES.items() for word in words), key=lambda pair: -len(pair[0]))
-PAIRS = ({"1", "2"}, {"0", "1"}, {"left", "right"}, {"l", "r"})
-BROWN = ("plumb_bob", "brown", "radtan", "pinhole", "rational_polynomial", "rational", "opencv", "perspective")
-FISHEYE = ("equidistant", "fisheye", "kannala_brandt", "kannala_brandt4", "opencv_fisheye")
-POSE = ("rotation", "translation", "extrinsic")
-FILES_LIMIT = 2000
+OPENCV_WORDS = sorted(
+    ((word, role) for role, words in OPENCV_ROLES.items() for word in words), key=lambda pair: -len(pair[0])
+)
+OPENCV_STEREO_PAIRS = ({"1", "2"}, {"0", "1"}, {"left", "right"}, {"l", "r"})
+OPENCV_BROWN_MODELS = (
+    "plumb_bob",
+    "brown",
+    "radtan",
+    "pinhole",
+    "rational_polynomial",
+    "rational",
+    "opencv",
+    "perspective",
+)
+OPENCV_FISHEYE_MODELS = ("equidistant", "fisheye", "kannala_brandt", "kannala_brandt4", "opencv_fisheye")
+OPENCV_POSE_ROLES = ("rotation", "translation", "extrinsic")
+OPENCV_MAX_FILES = 2000
 
 
 @dataclass
-class _Found:
-    """What a file says of one camera; poses as they stand."""
+class _CameraValues:
+    """The values of one camera in a file.
+
+    Attributes:
+        values: By role, as they stand.
+    """
 
     values: dict[str, Any] = field(default_factory=dict)
 
@@ -63,11 +78,11 @@ class _Found:
 def find_opencv(folder: Path) -> Path | None:
     """An OpenCV file in a folder (or `calibration/`, `calib/`, `cameras/`) that holds cameras *with poses* and names:
     one file, one of intrinsics with its extrinsics beside it, or the folder where each camera has a file."""
-    for name in FOLDERS:
+    for name in OPENCV_FOLDERS:
         alone = []
-        for path in _storages(folder / name):
+        for path in _find_storages(folder / name):
             try:
-                cameras = _cameras(path)
+                cameras = _load_cameras(path)
             except CaptureError:
                 continue
             posed = [key for key, found in cameras.items() if found.has_pose and "matrix" in found.values]
@@ -80,21 +95,26 @@ def find_opencv(folder: Path) -> Path | None:
     return None
 
 
-def _storages(folder: Path) -> list[Path]:
-    paths = [path for path in files_in(folder) if path.suffix.lower() in EXTENSIONS][:FILES_LIMIT]
+def _find_storages(folder: Path) -> list[Path]:
+    paths = [path for path in files_in(folder) if path.suffix.lower() in STORAGE_EXTENSIONS][:OPENCV_MAX_FILES]
     return [path for path in paths if is_storage(path)]
 
 
 def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
     """Every camera with a pose as an entry, named by its ending or mapping; without a name, as its file.
 
-    path: a file, or a folder with a file a camera. photographs: their folder, default the file's own: the two of a
-    stereo pair and the views of one camera before a chart (`extrinsic_parameters`) have no names and go in name order.
-    Raises CaptureError (`calibration-missing`, `calibration-too-large`, `calibration-damaged`, `xml-doctype`,
-    `calibration-empty`, `calibration-count`, `opencv-poses` (intrinsics only)); cameras that cannot be used become
-    errors of their own.
+    The two cameras of a stereo pair and the views of one camera before a chart (`extrinsic_parameters`) have no names:
+    they go with the photographs in name order. Cameras that cannot be used become errors of their own.
+
+    Args:
+        path: A file, or a folder with a file a camera.
+        photographs: Folder of the photographs; by default the file's own.
+
+    Raises:
+        CaptureError: `calibration-missing`, `calibration-too-large`, `calibration-damaged`, `xml-doctype`,
+            `calibration-empty`, `calibration-count`, `opencv-poses` (intrinsics only).
     """
-    files = _apart(_storages(path)) if path.is_dir() else [path]
+    files = _without_companions(_find_storages(path)) if path.is_dir() else [path]
     if not files:
         raise CaptureError("calibration-empty", "holds no OpenCV file", path=path, remedy="name another calibration")
     entries: list[Entry] = []
@@ -103,10 +123,10 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
     posed = 0
     for file in files:
         try:
-            cameras = _cameras(file)
+            cameras = _load_cameras(file)
             posed += sum("views" in found.values or found.has_pose for found in cameras.values())
             root = photographs or (path if path.is_dir() else path.parent)
-            poses = list(_poses(cameras, file, root))
+            poses = list(_posed_cameras(cameras, file, root))
         except CaptureError as error:
             if len(files) == 1:
                 raise
@@ -114,12 +134,14 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
             continue
         for name, found in poses:
             try:
-                entries.append(_entry(name, found, file))
+                entries.append(_make_entry(name, found, file))
             except CaptureError as error:
                 errors.append(error)
         without = [key for key, found in cameras.items() if not found.has_pose and "matrix" in found.values]
         if poses and without and not _is_stereo(cameras) and not any("views" in f.values for f in cameras.values()):
-            problems.append(f"{count(without, 'camera has', 'cameras have')} no pose in {file.name}: {some(without)}")
+            problems.append(
+                f"{count_phrase(without, 'camera has', 'cameras have')} no pose in {file.name}: {list_names(without)}"
+            )
     if not entries and not errors and not posed:
         raise CaptureError(
             "opencv-poses",
@@ -136,7 +158,7 @@ def read_opencv_intrinsics(path: Path) -> dict[str, tuple[Intrinsics, Lens | Non
     Pixel centres at +0.5. Raises CaptureError: as `read_opencv` for a file that is damaged, `calibration-empty` where
     it holds no camera matrix, and `camera-...` and `lens` for a camera that cannot be.
     """
-    cameras = _cameras(path)
+    cameras = _load_cameras(path)
     found = {name: camera for name, camera in cameras.items() if "matrix" in camera.values}
     if not found:
         raise CaptureError(
@@ -145,33 +167,36 @@ def read_opencv_intrinsics(path: Path) -> dict[str, tuple[Intrinsics, Lens | Non
             path=path,
             remedy="name the file of a calibration",
         )
-    return {name: _intrinsics(camera, f"camera {printable(name) or path.stem}", path) for name, camera in found.items()}
+    return {
+        name: _read_intrinsics(camera, f"camera {escape_name(name) or path.stem}", path)
+        for name, camera in found.items()
+    }
 
 
 # what belongs together
 
 
-def _apart(files: list[Path]) -> list[Path]:
+def _without_companions(files: list[Path]) -> list[Path]:
     """Without those that another one is read together with."""
     kept: list[Path] = []
     for file in files:
-        if _companion(file) not in kept:
+        if _find_companion(file) not in kept:
             kept.append(file)
     return kept
 
 
-def _cameras(path: Path) -> dict[str, _Found]:
+def _load_cameras(path: Path) -> dict[str, _CameraValues]:
     """By name, in the file's order; of the file itself and the one that holds the other half (intri and extri)."""
-    cameras = _named(load_storage(path))
-    other = _companion(path)
+    cameras = _cameras_by_name(load_storage(path))
+    other = _find_companion(path)
     if other is not None and not (cameras and all(c.has_pose and "matrix" in c.values for c in cameras.values())):
-        for name, found in _named(load_storage(other)).items():
-            values = cameras.setdefault(name, _Found()).values
+        for name, found in _cameras_by_name(load_storage(other)).items():
+            values = cameras.setdefault(name, _CameraValues()).values
             cameras[name].values = {**found.values, **values}
     return cameras
 
 
-def _companion(path: Path) -> Path | None:
+def _find_companion(path: Path) -> Path | None:
     for one, two in (("intri", "extri"), ("extri", "intri"), ("Intri", "Extri"), ("Extri", "Intri")):
         if one in path.stem:
             other = path.with_name(path.name.replace(one, two, 1))
@@ -179,15 +204,15 @@ def _companion(path: Path) -> Path | None:
     return None
 
 
-def _named(tree: Tree) -> dict[str, _Found]:
-    cameras: dict[str, _Found] = {}
-    for name, mapping in _mappings(tree, ""):
+def _cameras_by_name(tree: Tree) -> dict[str, _CameraValues]:
+    cameras: dict[str, _CameraValues] = {}
+    for name, mapping in _walk_mappings(tree, ""):
         for key, value in mapping.items():
-            role, ending = _role(key, value)
+            role, ending = _match_role(key, value)
             if role is not None:
                 place = f"{name}_{ending}" if name and ending else name or ending
-                cameras.setdefault(place, _Found()).values.setdefault(role, value)
-    shared = cameras.get("", _Found()).values
+                cameras.setdefault(place, _CameraValues()).values.setdefault(role, value)
+    shared = cameras.get("", _CameraValues()).values
     for found in cameras.values():
         for role in ("width", "height", "size", "model"):
             if role in shared:
@@ -199,28 +224,28 @@ def _named(tree: Tree) -> dict[str, _Found]:
     }
 
 
-def _mappings(node: Any, name: str, depth: int = 0) -> Iterator[tuple[str, Mapping[str, Any]]]:
-    """Every mapping of the tree by the name of the camera that it is."""
+def _walk_mappings(node: Any, name: str, depth: int = 0) -> Iterator[tuple[str, Mapping[str, Any]]]:
+    """Every mapping of the tree, with the name of its camera."""
     if isinstance(node, dict):
         own = next((node[k] for k in ("name", "camera_name", "image", "file") if isinstance(node.get(k), str)), None)
         yield (own if own and depth else name), node
         for key, value in node.items():
-            yield from _mappings(value, key, depth + 1)
+            yield from _walk_mappings(value, key, depth + 1)
     elif isinstance(node, list) and not all(isinstance(v, float) for v in node):
         for i, value in enumerate(node):
-            yield from _mappings(value, f"{i}", depth + 1)
+            yield from _walk_mappings(value, f"{i}", depth + 1)
 
 
-def _role(key: str, value: Any) -> tuple[str | None, str]:
-    """What a name means and the camera that its ending stands for; None where name or value do not fit."""
+def _match_role(key: str, value: Any) -> tuple[str | None, str]:
+    """The role of a name, and the camera that its ending names; None where name or value do not fit."""
     low = key.lower()
-    for word, role in WORDS:
+    for word, role in OPENCV_WORDS:
         ending = key[len(word) :]
         if not low.startswith(word) or not (not ending or ending[0] == "_" or ending.isdigit()):
             continue
         if role in ("matrix", "distortion", "rotation", "translation", "extrinsic", "views"):
-            shape = _array(value)
-            if shape is None or not _fits(role, shape):
+            shape = _as_array(value)
+            if shape is None or not _has_role_shape(role, shape):
                 continue
             return role, ending.removeprefix("_")
         return (role, ending.removeprefix("_")) if _is_plain(role, value) else (None, "")
@@ -231,12 +256,12 @@ def _is_plain(role: str, value: Any) -> bool:
     if role in ("width", "height"):
         return isinstance(value, float)
     if role == "size":
-        array = _array(value)
+        array = _as_array(value)
         return array is not None and array.size == 2
     return isinstance(value, (float, str, bool))
 
 
-def _array(value: Any) -> NDArray[np.float64] | None:
+def _as_array(value: Any) -> NDArray[np.float64] | None:
     """A matrix, or numbers in (nested) lists."""
     if isinstance(value, np.ndarray):
         return value[..., 0] if value.ndim == 3 and value.shape[2] == 1 else value
@@ -244,13 +269,13 @@ def _array(value: Any) -> NDArray[np.float64] | None:
         return None
     if all(isinstance(v, float) for v in value):
         return np.array(value)
-    rows = [_array(v) for v in value]
+    rows = [_as_array(v) for v in value]
     if any(row is None or row.ndim != 1 or row.shape != rows[0].shape for row in rows):  # type: ignore[union-attr]
         return None
     return np.array(rows)
 
 
-def _fits(role: str, array: NDArray[np.float64]) -> bool:
+def _has_role_shape(role: str, array: NDArray[np.float64]) -> bool:
     if role == "matrix":
         return array.shape == (3, 3) or array.size == 9
     if role == "rotation":
@@ -264,28 +289,33 @@ def _fits(role: str, array: NDArray[np.float64]) -> bool:
     return array.size in (0, 4, 5, 8, 12, 14)
 
 
-def _is_stereo(cameras: Mapping[str, _Found]) -> bool:
+def _is_stereo(cameras: Mapping[str, _CameraValues]) -> bool:
     """Two camera matrices and one R, T from the first to the second (whose own R1, R2 are rectifying rotations)."""
     matrices = {name.lower() for name, found in cameras.items() if "matrix" in found.values}
-    return matrices in PAIRS and "" in cameras and cameras[""].has_pose
+    return matrices in OPENCV_STEREO_PAIRS and "" in cameras and cameras[""].has_pose
 
 
-def _poses(cameras: dict[str, _Found], path: Path, root: Path) -> Iterator[tuple[str, _Found]]:
+def _posed_cameras(cameras: dict[str, _CameraValues], path: Path, root: Path) -> Iterator[tuple[str, _CameraValues]]:
     """The photograph's name and the camera, for each that has a pose."""
     if _is_stereo(cameras):
         pair = sorted((name for name in cameras if name), key=str.lower)
         names = photographs_in_order(root, 2, path)
         still = {"rotation": np.eye(3), "translation": np.zeros(3)}
         for name, file, pose in zip(pair, names, (still, cameras[""].values), strict=True):
-            intrinsics = {role: value for role, value in cameras[name].values.items() if role not in POSE}
-            yield file, _Found({**intrinsics, **{role: value for role, value in pose.items() if role in POSE}})
+            intrinsics = {role: value for role, value in cameras[name].values.items() if role not in OPENCV_POSE_ROLES}
+            yield (
+                file,
+                _CameraValues(
+                    {**intrinsics, **{role: value for role, value in pose.items() if role in OPENCV_POSE_ROLES}}
+                ),
+            )
         return
     for name, found in cameras.items():
         if "views" in found.values and not found.has_pose and "matrix" in found.values:
-            views = _array(found.values["views"])
+            views = _as_array(found.values["views"])
             assert views is not None
             for file, row in zip(photographs_in_order(root, len(views), path), views, strict=True):
-                yield file, _Found({**found.values, "rotation": row[:3], "translation": row[3:]})
+                yield file, _CameraValues({**found.values, "rotation": row[:3], "translation": row[3:]})
         elif found.has_pose and "matrix" in found.values:
             yield name or path.stem, found
 
@@ -293,12 +323,12 @@ def _poses(cameras: dict[str, _Found], path: Path, root: Path) -> Iterator[tuple
 # one camera
 
 
-def _entry(name: str, found: _Found, path: Path) -> Entry:
-    label = f"camera {printable(name)}"
+def _make_entry(name: str, found: _CameraValues, path: Path) -> Entry:
+    label = f"camera {escape_name(name)}"
     if "\0" in name:
-        raise damaged(path, f"{label} is no name of a file", "mend or remove it")
-    intrinsics, lens = _intrinsics(found, label, path)
-    R, t = _pose(found, label, path)
+        raise damaged_error(path, f"{label} is no name of a file", "mend or remove it")
+    intrinsics, lens = _read_intrinsics(found, label, path)
+    R, t = _read_pose(found, label, path)
     check_finite([R, t], label, path)
     with np.errstate(over="ignore", invalid="ignore"):
         centre = -R.T @ t
@@ -306,28 +336,30 @@ def _entry(name: str, found: _Found, path: Path) -> Entry:
     return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)
 
 
-def _pose(found: _Found, label: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _read_pose(found: _CameraValues, label: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if {"rotation", "translation"} <= found.values.keys():
-        rotation, translation = _array(found.values["rotation"]), _array(found.values["translation"])
+        rotation, translation = _as_array(found.values["rotation"]), _as_array(found.values["translation"])
         assert rotation is not None and translation is not None
         check_finite([rotation, translation], label, path)
         if rotation.size == 3:
             rotation = np.asarray(cv2.Rodrigues(rotation.reshape(3))[0], np.float64)
         return rotation.reshape(3, 3), translation.reshape(3)
-    extrinsic = _array(found.values["extrinsic"])
+    extrinsic = _as_array(found.values["extrinsic"])
     assert extrinsic is not None
     if len(extrinsic) == 4 and not np.allclose(extrinsic[3], [0, 0, 0, 1], atol=1e-6):
-        raise damaged(path, f"the last row of the extrinsic matrix of {label} is not 0 0 0 1", "mend or remove it")
+        raise damaged_error(
+            path, f"the last row of the extrinsic matrix of {label} is not 0 0 0 1", "mend or remove it"
+        )
     return extrinsic[:3, :3], extrinsic[:3, 3]
 
 
-def _intrinsics(found: _Found, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
-    matrix = _array(found.values["matrix"])
+def _read_intrinsics(found: _CameraValues, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
+    matrix = _as_array(found.values["matrix"])
     assert matrix is not None
     K = matrix.reshape(3, 3)
     check_finite([K], label, path)
-    K, skewed = without_skew(K, label, path)
-    lens = _lens(found, label, path)
+    K, skewed = remove_skew(K, label, path)
+    lens = _make_lens(found, label, path)
     if skewed is not None and lens is not None:
         raise CaptureError(
             "camera-skew",
@@ -337,24 +369,24 @@ def _intrinsics(found: _Found, label: str, path: Path) -> tuple[Intrinsics, Lens
         )
     principal = (float(K[0, 2]) + 0.5, float(K[1, 2]) + 0.5)
     focal = (float(K[0, 0]), float(K[1, 1]))
-    width, height = _size(found, label, path)
+    width, height = _read_size(found, label, path)
     return Intrinsics(width, height, focal, None, principal), lens or skewed
 
 
-def _size(found: _Found, label: str, path: Path) -> tuple[int | None, int | None]:
+def _read_size(found: _CameraValues, label: str, path: Path) -> tuple[int | None, int | None]:
     values = found.values
     if "width" in values and "height" in values:
-        return size_of(values["width"], values["height"], label, path)
+        return check_size(values["width"], values["height"], label, path)
     if "size" in values:
-        size = _array(values["size"])
+        size = _as_array(values["size"])
         assert size is not None
         width, height = size.reshape(2).tolist()
-        return size_of(width, height, label, path)
+        return check_size(width, height, label, path)
     return None, None
 
 
-def _lens(found: _Found, label: str, path: Path) -> Lens | None:
-    array = _array(found.values["distortion"]) if "distortion" in found.values else None
+def _make_lens(found: _CameraValues, label: str, path: Path) -> Lens | None:
+    array = _as_array(found.values["distortion"]) if "distortion" in found.values else None
     c = () if array is None else tuple(array.reshape(-1).tolist())
     check_lens(c, label, path)
     if _is_fisheye(found.values.get("model"), label, path):
@@ -372,13 +404,14 @@ def _is_fisheye(model: Any, label: str, path: Path) -> bool:
     if model is None or isinstance(model, (float, bool)):
         return bool(model)
     word = re.sub(r"[\s-]+", "_", str(model).strip().lower())
-    if word in FISHEYE:
+    if word in OPENCV_FISHEYE_MODELS:
         return True
-    if word not in BROWN:
+    if word not in OPENCV_BROWN_MODELS:
         raise CaptureError(
             "camera-model",
-            f"{label} has the distortion model {shown(model)!r}, which is not read",
+            f"{label} has the distortion model {excerpt(model)!r}, which is not read",
             path=path,
-            remedy=f"use one of {', '.join((*BROWN[:3], *FISHEYE[:2]))}, or undistort the photographs",
+            remedy=f"use one of {', '.join((*OPENCV_BROWN_MODELS[:3], *OPENCV_FISHEYE_MODELS[:2]))}, "
+            "or undistort the photographs",
         )
     return False

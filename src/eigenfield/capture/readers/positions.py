@@ -17,37 +17,41 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    Wanted,
-    measured,
-    named_like,
-    nodes,
-    refuse_nothing,
-    told_by,
+    OpenOptions,
+    find_by_names,
+    make_grid_layout,
+    match_names,
+    require_photographs,
+    with_measured_positions,
 )
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.errors import CaptureError
 
-NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,12})?"
-NAMES = re.compile(rf"(?:.*_)?(\d{{1,4}})_(\d{{1,4}})_({NUMBER})_({NUMBER})_({NUMBER})_({NUMBER})")
+POSITIONS_NUMBER = r"[-+]?\d{1,9}(?:\.\d{1,12})?"
+POSITIONS_NAMES = re.compile(
+    rf"(?:.*_)?(\d{{1,4}})_(\d{{1,4}})_({POSITIONS_NUMBER})_({POSITIONS_NUMBER})_({POSITIONS_NUMBER})_({POSITIONS_NUMBER})"
+)
 
-find_positions = told_by(NAMES)
+find_positions = find_by_names(POSITIONS_NAMES)
 
 
-def read_positions(folder: Path, wanted: Wanted) -> Arrangement:
+def read_positions(folder: Path, options: OpenOptions) -> Arrangement:
     """The array and its cameras from names alone (and the pictures' sizes).
 
     Raises CaptureError: `names-unknown`, `node-twice`, `grid-size`, `names-lens` (a lens or sensor that cannot be).
     """
-    fitting, others = named_like(folder, NAMES)
-    refuse_nothing(fitting, folder, "NAME_RR_CC_A_B_LENS_SENSOR")
+    fitting, others = match_names(folder, POSITIONS_NAMES)
+    require_photographs(fitting, folder, "NAME_RR_CC_A_B_LENS_SENSOR")
     files = tuple(path for path, _ in fitting)
     values = np.array([[float(word) for word in match.groups()[2:]] for _, match in fitting])
-    layout, problems = nodes(
-        files, [int(m[1]) for _, m in fitting], [int(m[2]) for _, m in fitting], wanted, folder
+    layout, problems = make_grid_layout(
+        files, [int(m[1]) for _, m in fitting], [int(m[2]) for _, m in fitting], options, folder
     )  # fmt: skip
     down, right = values[:, 0] / 1000, values[:, 1] / 1000
-    layout = replace(measured(layout, right.tolist(), (-down).tolist()), signs=True, rectified=False, exact=True)
+    layout = replace(
+        with_measured_positions(layout, right.tolist(), (-down).tolist()), signs=True, rectified=False, exact=True
+    )
     for path, (lens, sensor) in zip(files, values[:, 2:], strict=True):
         if not (lens > 0 and sensor > 0):
             raise CaptureError(
@@ -57,17 +61,17 @@ def read_positions(folder: Path, wanted: Wanted) -> Arrangement:
                 remedy="rename it, or say --format folder",
             )
     entries = tuple(
-        _entry(path, lens / sensor, np.array([x, y, 0.0]))
+        _make_entry(path, lens / sensor, np.array([x, y, 0.0]))
         for path, x, y, (lens, sensor) in zip(files, right, down, values[:, 2:], strict=True)
     )
     calibration = Calibration(files[0].parent, "positions", entries)
     return Arrangement("positions", files, layout, tuple(problems), tuple(others), calibration)
 
 
-def _entry(path: Path, ratio: float, centre: NDArray[np.float64]) -> Entry:
-    """ratio: focal length over the sensor's side."""
+def _make_entry(path: Path, ratio: float, centre: NDArray[np.float64]) -> Entry:
+    """The camera of a photograph; `ratio` is the focal length over the sensor's side."""
     try:
-        width, height = read_header(path).upright
+        width, height = read_header(path).upright_size
     except CaptureError:  # opening the capture reports it
         width = height = 1
     focal = ratio * max(width, height)

@@ -3,8 +3,8 @@
 Files `NAME_P.txt` or `NAME.P` beside the photographs or in a folder, or `NAME.txt` in a folder named for it (PMVS's
 `txt/`, with its first line CONTOUR and photographs in `visualize/`). P is taken apart by RQ decomposition with
 positive focal lengths and a right-handed rotation, which makes it unique: of P and -P, the one whose left 3 x 3 has
-a positive determinant. What is left of skew goes the way of a lens. Nothing says where a pixel's centre is: P is taken
-as it stands. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
+a positive determinant. Remaining skew is removed as a lens. The format does not specify a pixel's centre: P is used
+as it is. R. Hartley and A. Zisserman, "Multiple View Geometry", section 6.2.4.
 """
 
 from __future__ import annotations
@@ -14,46 +14,47 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
-from eigenfield.capture.readers.skew import without_skew
-from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, text
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.readers.skew import remove_skew
+from eigenfield.capture.readers.text import check_finite, damaged_error, files_in, parse_numbers, read_text
 from eigenfield.core.errors import CaptureError
 
-SUFFIXES = ("_P.txt", "_p.txt", ".P")
-FOLDERS = ("", "P", "projections", "projection", "calib", "calibration", "cameras", "txt", "images")
-PLAIN = ("P", "projections", "projection", "txt")  # folders where NAME.txt is a matrix too, if it looks like one
-CONTOUR = "CONTOUR"
-VISUALIZE = "visualize"
-FILE_LIMIT = 64 * 1024
-SINGULAR = 1e-9
+PROJECTION_SUFFIXES = ("_P.txt", "_p.txt", ".P")
+PROJECTION_FOLDERS = ("", "P", "projections", "projection", "calib", "calibration", "cameras", "txt", "images")
+# folders where NAME.txt is a matrix too, if it looks like one
+PROJECTION_PLAIN_FOLDERS = ("P", "projections", "projection", "txt")
+PROJECTION_PMVS_HEAD = "CONTOUR"
+PROJECTION_PMVS_FOLDER = "visualize"
+PROJECTION_MAX_BYTES = 64 * 1024
+PROJECTION_MIN_DETERMINANT = 1e-9
 
 
 def find_projections(folder: Path) -> Path | None:
     """The folder itself or a usual one in it that holds projection matrices, at least the first of which is one."""
-    for name in FOLDERS:
-        files = _files(folder / name, name in PLAIN)
+    for name in PROJECTION_FOLDERS:
+        files = _matrix_files(folder / name, name in PROJECTION_PLAIN_FOLDERS)
         if files and _is_matrix(files[0]):
             return folder / name
     return None
 
 
-def _files(folder: Path, plain: bool) -> list[Path]:
+def _matrix_files(folder: Path, plain: bool) -> list[Path]:
     """`NAME_P.txt` and the like, in name order; only where there is none and `plain`, `NAME.txt`."""
     paths = files_in(folder)
-    named = [path for path in paths if path.name.endswith(SUFFIXES) and _photograph(path)]
+    named = [path for path in paths if path.name.endswith(PROJECTION_SUFFIXES) and _photograph_name(path)]
     return named or [path for path in paths if plain and path.suffix == ".txt"]
 
 
 def _is_matrix(path: Path) -> bool:
     try:
-        _matrix(path)
+        _read_matrix(path)
     except CaptureError:
         return False
     return True
 
 
-def _photograph(path: Path) -> str:
-    for suffix in SUFFIXES:
+def _photograph_name(path: Path) -> str:
+    for suffix in PROJECTION_SUFFIXES:
         if path.name.endswith(suffix):
             return path.name.removesuffix(suffix)
     return path.stem
@@ -62,41 +63,43 @@ def _photograph(path: Path) -> str:
 def read_projections(path: Path) -> Calibration:
     """Every matrix of a folder (or of the folder of the file that is named) as an entry, named as its file.
 
-    Files that cannot be used become errors of their own; `*.txt` beside matrices that are none are passed over only
-    where files are told by `_P.txt`. Raises CaptureError `calibration-empty` where there is no such file.
+    Files that cannot be used become errors of their own; so do other `*.txt`, unless the matrices are named `_P.txt`.
+
+    Raises:
+        CaptureError: `calibration-empty` where there is no such file.
     """
     folder = path.parent if path.is_file() else path
-    files = _files(folder, True)
+    files = _matrix_files(folder, True)
     if not files:
         raise CaptureError(
             "calibration-empty", "holds no NAME_P.txt and no NAME.txt", path=folder, remedy="name another folder"
         )
-    entries, errors = read_each(_entry, files)
+    entries, errors = read_each(_read_entry, files)
     return Calibration(folder, "projections", entries, errors)
 
 
-def _matrix(path: Path) -> NDArray[np.float64]:
-    words = text(path, FILE_LIMIT).split()
-    if words[:1] == [CONTOUR]:
+def _read_matrix(path: Path) -> NDArray[np.float64]:
+    words = read_text(path, PROJECTION_MAX_BYTES).split()
+    if words[:1] == [PROJECTION_PMVS_HEAD]:
         words = words[1:]
-    return numbers(words, 12, "the projection matrix", path).reshape(3, 4)
+    return parse_numbers(words, 12, "the projection matrix", path).reshape(3, 4)
 
 
-def _entry(path: Path) -> Entry:
-    name = _photograph(path)
-    label = printable(name)
-    P = _matrix(path)
+def _read_entry(path: Path) -> Entry:
+    name = _photograph_name(path)
+    label = escape_name(name)
+    P = _read_matrix(path)
     check_finite([P], label, path)
-    K, R, centre = decompose(P, label, path)
+    K, R, centre = decompose_projection(P, label, path)
     check_finite([K, centre], label, path)
-    K, lens = without_skew(K, label, path)
+    K, lens = remove_skew(K, label, path)
     focal, principal = (float(K[0, 0]), float(K[1, 1])), (float(K[0, 2]), float(K[1, 2]))
-    visualised = path.parent.name == "txt" and (path.parent.parent / VISUALIZE).is_dir()
-    file = f"{VISUALIZE}/{name}" if visualised else name
+    visualised = path.parent.name == "txt" and (path.parent.parent / PROJECTION_PMVS_FOLDER).is_dir()
+    file = f"{PROJECTION_PMVS_FOLDER}/{name}" if visualised else name
     return Entry(file, label, Intrinsics(None, None, focal, None, principal), R, centre, lens)
 
 
-def decompose(
+def decompose_projection(
     P: NDArray[np.float64], label: str, path: Path
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """K (3, 3) upper triangular with a positive diagonal and last entry 1, R (3, 3) a rotation, and the centre (3,) of
@@ -104,8 +107,8 @@ def decompose(
     P = P / max(np.abs(P).max(), np.finfo(float).tiny)
     M = P[:, :3]
     scales = np.linalg.norm(M, axis=1)
-    # rows of a projection differ by the focal length: their directions, not their lengths, tell whether it is singular
-    if scales.min() == 0 or abs(np.linalg.det(M / scales[:, None])) < SINGULAR:
+    # rows of a projection differ by the focal length: whether it is singular depends on their directions alone
+    if scales.min() == 0 or abs(np.linalg.det(M / scales[:, None])) < PROJECTION_MIN_DETERMINANT:
         raise CaptureError(
             "camera-singular",
             f"the projection matrix of {label} is singular: a camera at infinity, or none",
@@ -122,5 +125,5 @@ def decompose(
     signs = np.sign(np.diag(K))
     K, R = K * signs, signs[:, None] * R
     if not K[2, 2] > 0:
-        raise damaged(path, f"the projection matrix of {label} cannot be taken apart")
+        raise damaged_error(path, f"the projection matrix of {label} cannot be taken apart")
     return K / K[2, 2], R, np.asarray(-np.linalg.solve(M, P[:, 3]), np.float64)

@@ -18,37 +18,39 @@ from numpy.typing import NDArray
 
 from eigenfield.capture.arrangement import (
     Arrangement,
-    Wanted,
-    measured,
-    named_like,
-    nodes,
-    refuse_nothing,
-    told_by,
+    OpenOptions,
+    find_by_names,
+    make_grid_layout,
+    match_names,
+    require_photographs,
+    with_measured_positions,
 )
 from eigenfield.core.errors import CaptureError
 
-NUMBER = r"[-+]?\d{1,9}(?:\.\d{0,12})?"
+STANFORD_NUMBER = r"[-+]?\d{1,9}(?:\.\d{0,12})?"
 # "out" with or without positions; any other name only with positions that have decimals
-NAMES = re.compile(
-    rf"(?:(?:.*[^a-z])?out_(\d{{1,4}})_(\d{{1,4}})(?:_({NUMBER})_({NUMBER}))?_?"
+STANFORD_NAMES = re.compile(
+    rf"(?:(?:.*[^a-z])?out_(\d{{1,4}})_(\d{{1,4}})(?:_({STANFORD_NUMBER})_({STANFORD_NUMBER}))?_?"
     r"|(?:.*_)?(\d{1,4})_(\d{1,4})_([-+]?\d{1,9}\.\d{1,12})_([-+]?\d{1,9}\.\d{1,12})_?)",
     re.IGNORECASE,
 )
 
-find_stanford = told_by(NAMES)
+find_stanford = find_by_names(STANFORD_NAMES)
 
 
-def read_stanford(folder: Path, wanted: Wanted) -> Arrangement:
+def read_stanford(folder: Path, options: OpenOptions) -> Arrangement:
     """The grid of a folder with Stanford's names, with measured positions where all names have them.
 
     Raises CaptureError: `names-unknown`, `node-twice`, `grid-size`, `grid-positions` (V does not follow the rows, or U
     the columns).
     """
-    fitting, others = named_like(folder, NAMES)
-    refuse_nothing(fitting, folder, "out_RR_CC or out_RR_CC_V_U")
+    fitting, others = match_names(folder, STANFORD_NAMES)
+    require_photographs(fitting, folder, "out_RR_CC or out_RR_CC_V_U")
     files = tuple(path for path, _ in fitting)
     fields = [match.groups()[:4] if match[1] else match.groups()[4:] for _, match in fitting]
-    layout, problems = nodes(files, [int(f[0]) for f in fields], [int(f[1]) for f in fields], wanted, folder)
+    layout, problems = make_grid_layout(
+        files, [int(f[0]) for f in fields], [int(f[1]) for f in fields], options, folder
+    )
     layout = replace(layout, rectified=True)
     bare = [path.name for path, f in zip(files, fields, strict=True) if f[2] is None]
     if len(bare) < len(files):
@@ -57,7 +59,7 @@ def read_stanford(folder: Path, wanted: Wanted) -> Arrangement:
         else:
             v, u = (np.array([float(f[i]) for f in fields]) for i in (2, 3))
             _check_order(layout.rows, layout.columns, v, u, folder)
-            layout = replace(measured(layout, u.tolist(), (-v).tolist()), signs=True)
+            layout = replace(with_measured_positions(layout, u.tolist(), (-v).tolist()), signs=True)
     return Arrangement("stanford", files, layout, tuple(problems), tuple(others))
 
 
@@ -66,7 +68,7 @@ def _check_order(
 ) -> None:
     """V must go with the rows and U with the columns, up or down, and not the other way round."""
     for values, along, across, names in ((v, rows, columns, "V rows"), (u, columns, rows, "U columns")):
-        if len(np.unique(along)) > 1 and _follows(values, along) < _follows(values, across):
+        if len(np.unique(along)) > 1 and _index_correlation(values, along) < _index_correlation(values, across):
             letter, axis = names.split()
             raise CaptureError(
                 "grid-positions",
@@ -76,7 +78,7 @@ def _check_order(
             )
 
 
-def _follows(values: NDArray[np.float64], index: NDArray[np.int64]) -> float:
+def _index_correlation(values: NDArray[np.float64], index: NDArray[np.int64]) -> float:
     """The absolute correlation of positions with node numbers; 0 where one of them does not change."""
     a, b = values - values.mean(), index - index.mean()
     scale = float(np.sqrt((a @ a) * (b @ b)))

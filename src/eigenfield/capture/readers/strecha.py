@@ -11,38 +11,38 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, printable, read_each
-from eigenfield.capture.readers.skew import without_skew
-from eigenfield.capture.readers.text import check_finite, damaged, files_in, numbers, size_of, text
+from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
+from eigenfield.capture.readers.skew import remove_skew
+from eigenfield.capture.readers.text import check_finite, check_size, damaged_error, files_in, parse_numbers, read_text
 from eigenfield.core.errors import CaptureError
 
-SUFFIX = ".camera"
-FOLDERS = ("", "gt_dense_cameras", "cameras", "images")  # then any other, in name order
-NUMBERS = 9 + 3 + 9 + 3 + 2
-FILE_LIMIT = 64 * 1024
-LOOKED_AT = 1000  # folders beside the photographs that are looked into
+STRECHA_SUFFIX = ".camera"
+STRECHA_FOLDERS = ("", "gt_dense_cameras", "cameras", "images")  # then any other, in name order
+STRECHA_NUMBERS = 9 + 3 + 9 + 3 + 2  # in a file: K, distortion, R, centre, size
+STRECHA_MAX_BYTES = 64 * 1024
+STRECHA_MAX_FOLDERS = 1000  # beside the photographs that are searched
 
 
 def find_strecha(folder: Path) -> Path | None:
     """The folder itself or one directly in it that holds `*.camera` files, usual names first."""
-    for name in FOLDERS:
-        if _files(folder / name):
+    for name in STRECHA_FOLDERS:
+        if _camera_files(folder / name):
             return folder / name
-    for inner in _inner(folder):
-        if _files(inner):
+    for inner in _inner_folders(folder):
+        if _camera_files(inner):
             return inner
     return None
 
 
-def _inner(folder: Path) -> list[Path]:
+def _inner_folders(folder: Path) -> list[Path]:
     if not folder.is_dir():
         return []
     with os.scandir(folder) as entries:
-        return sorted(Path(e.path) for e in entries if not e.name.startswith(".") and e.is_dir())[:LOOKED_AT]
+        return sorted(Path(e.path) for e in entries if not e.name.startswith(".") and e.is_dir())[:STRECHA_MAX_FOLDERS]
 
 
-def _files(folder: Path) -> list[Path]:
-    return [path for path in files_in(folder) if path.name.endswith(SUFFIX)]
+def _camera_files(folder: Path) -> list[Path]:
+    return [path for path in files_in(folder) if path.name.endswith(STRECHA_SUFFIX)]
 
 
 def read_strecha(path: Path) -> Calibration:
@@ -51,17 +51,19 @@ def read_strecha(path: Path) -> Calibration:
     Files that cannot be used become errors of their own. Raises CaptureError `calibration-empty` where there is none.
     """
     folder = path.parent if path.is_file() else path
-    files = _files(folder)
+    files = _camera_files(folder)
     if not files:
-        raise CaptureError("calibration-empty", f"holds no *{SUFFIX}", path=folder, remedy="name another folder")
-    entries, errors = read_each(_entry, files)
+        raise CaptureError(
+            "calibration-empty", f"holds no *{STRECHA_SUFFIX}", path=folder, remedy="name another folder"
+        )
+    entries, errors = read_each(_read_entry, files)
     return Calibration(folder, "strecha", entries, errors)
 
 
-def _entry(path: Path) -> Entry:
-    name = path.name.removesuffix(SUFFIX)
-    label = printable(name)
-    values = numbers(text(path, FILE_LIMIT).split(), NUMBERS, "it", path)
+def _read_entry(path: Path) -> Entry:
+    name = path.name.removesuffix(STRECHA_SUFFIX)
+    label = escape_name(name)
+    values = parse_numbers(read_text(path, STRECHA_MAX_BYTES).split(), STRECHA_NUMBERS, "it", path)
     check_finite([values], label, path)
     K, distortion, R, centre, size = values[:9], values[9:12], values[12:21], values[21:24], values[24:]
     if distortion.any():
@@ -71,10 +73,10 @@ def _entry(path: Path) -> Entry:
             path=path,
             remedy="undistort the photographs and write zeros",
         )
-    straight, lens = without_skew(K.reshape(3, 3), label, path)
-    width, height = size_of(size[0], size[1], label, path)
+    straight, lens = remove_skew(K.reshape(3, 3), label, path)
+    width, height = check_size(size[0], size[1], label, path)
     if straight[0, 2] > 10 * width or straight[1, 2] > 10 * height:
-        raise damaged(path, f"the principal point of {label} is far outside its {width}x{height} pixels")
+        raise damaged_error(path, f"the principal point of {label} is far outside its {width}x{height} pixels")
     principal = (float(straight[0, 2]), float(straight[1, 2]))
     intrinsics = Intrinsics(width, height, (float(straight[0, 0]), float(straight[1, 1])), None, principal)
     return Entry(name, label, intrinsics, R.reshape(3, 3).T, centre, lens)

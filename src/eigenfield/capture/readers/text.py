@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eigenfield.capture.calibration import LARGEST, printable
+from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, escape_name
 from eigenfield.core.errors import CaptureError
 
-TEXT_LIMIT = 64 * 2**20  # bytes of one calibration file that is read whole
-SIDE_LIMIT = 1_000_000  # pixels along a side that a calibration may claim
-LENS_LIMIT = 1e6  # of lens coefficients, which belong to coordinates around 1
-SHOWN = 40  # characters of a bad word that a message repeats
+CALIBRATION_MAX_BYTES = 64 * 2**20  # of one file that is read whole
+CALIBRATION_MAX_SIDE_PIXELS = 1_000_000  # of a photograph in a calibration
+CALIBRATION_MAX_LENS_COEFFICIENT = 1e6  # for normalised coordinates, which are around 1
+EXCERPT_MAX_CHARACTERS = 40  # of a bad word that a message repeats
 
 
-def contents(path: Path, limit: int = TEXT_LIMIT) -> bytes:
+def read_contents(path: Path, limit: int = CALIBRATION_MAX_BYTES) -> bytes:
     """The bytes of a file. CaptureError: `calibration-missing`, `calibration-too-large`."""
     try:
         size = path.stat().st_size
@@ -32,12 +32,12 @@ def contents(path: Path, limit: int = TEXT_LIMIT) -> bytes:
         with path.open("rb") as file:
             return file.read(limit)
     except OSError as error:
-        raise unreadable(path, error) from error
+        raise unreadable_error(path, error) from error
 
 
-def text(path: Path, limit: int = TEXT_LIMIT) -> str:
+def read_text(path: Path, limit: int = CALIBRATION_MAX_BYTES) -> str:
     """The file as text with \\n line ends: UTF-8, or UTF-16 where a byte order mark says so; odd bytes stay."""
-    data = contents(path, limit)
+    data = read_contents(path, limit)
     if data[:2] in (b"\xff\xfe", b"\xfe\xff"):
         decoded = data.decode("utf-16", "replace")
     else:
@@ -54,37 +54,53 @@ def files_in(folder: Path) -> list[Path]:
         return []
 
 
-def unreadable(path: Path, error: OSError) -> CaptureError:
+def unreadable_error(path: Path, error: OSError) -> CaptureError:
+    """The error for a calibration that the operating system does not read."""
     return CaptureError("calibration-missing", error.strerror or "cannot be read", path=path, remedy="check the path")
 
 
-def damaged(path: Path, message: str, remedy: str = "copy or export it again") -> CaptureError:
+def damaged_error(path: Path, message: str, remedy: str = "copy or export it again") -> CaptureError:
     """Something in a calibration that is not as its format has it."""
     return CaptureError("calibration-damaged", message, path=path, remedy=remedy)
 
 
-def shown(word: object) -> str:
+def excerpt(word: object) -> str:
     """A word from a file as a message repeats it: one short line."""
-    line = printable(str(word)[: SHOWN + 1])
-    return line if len(line) <= SHOWN else f"{line[:SHOWN]}..."
+    line = escape_name(str(word)[: EXCERPT_MAX_CHARACTERS + 1])
+    return line if len(line) <= EXCERPT_MAX_CHARACTERS else f"{line[:EXCERPT_MAX_CHARACTERS]}..."
 
 
-def numbers(words: Sequence[str], count: int, what: str, path: Path) -> NDArray[np.float64]:
-    """(count,) from words, NaN and infinities allowed; CaptureError `calibration-damaged`."""
+def parse_numbers(words: Sequence[str], count: int, what: str, path: Path) -> NDArray[np.float64]:
+    """Numbers from words.
+
+    Args:
+        words: As a file has them; NaN and infinities are allowed.
+        count: How many there must be.
+        what: Names them in errors.
+        path: The calibration, named in errors.
+
+    Returns:
+        (count,) float64.
+
+    Raises:
+        CaptureError: `calibration-damaged`.
+    """
     if len(words) != count:
-        raise damaged(path, f"{what} has {len(words)} numbers, not {count}")
+        raise damaged_error(path, f"{what} has {len(words)} numbers, not {count}")
     values = np.empty(count)
     for i, word in enumerate(words):
         try:
             values[i] = float(word)
         except ValueError:
-            raise damaged(path, f"{what} holds {shown(word)!r}, which is no number") from None
+            raise damaged_error(path, f"{what} holds {excerpt(word)!r}, which is no number") from None
     return values
 
 
 def check_finite(values: Iterable[ArrayLike], label: str, path: Path) -> None:
     """CaptureError `camera-not-finite` where a camera holds NaN, infinities, or numbers beyond LARGEST."""
-    if not all(np.isfinite(v).all() and (np.abs(v) <= LARGEST).all() for v in map(np.asarray, values)):
+    if not all(
+        np.isfinite(v).all() and (np.abs(v) <= CALIBRATION_MAX_MAGNITUDE).all() for v in map(np.asarray, values)
+    ):
         raise CaptureError(
             "camera-not-finite",
             f"{label} has NaN, infinite or huge entries",
@@ -95,15 +111,15 @@ def check_finite(values: Iterable[ArrayLike], label: str, path: Path) -> None:
 
 def check_lens(coefficients: Iterable[float], label: str, path: Path) -> None:
     """CaptureError `lens` where coefficients are no distortion that a lens could have."""
-    if not all(abs(c) <= LENS_LIMIT for c in coefficients):  # False for NaN
+    if not all(abs(c) <= CALIBRATION_MAX_LENS_COEFFICIENT for c in coefficients):  # False for NaN
         raise CaptureError(
             "lens", f"{label} has lens coefficients that are huge or not finite", path=path, remedy="mend them"
         )
 
 
-def size_of(width: float, height: float, label: str, path: Path) -> tuple[int, int]:
+def check_size(width: float, height: float, label: str, path: Path) -> tuple[int, int]:
     """Whole pixels from numbers; CaptureError `camera-size`."""
-    if not all(1 <= side <= SIDE_LIMIT and side == round(side) for side in (width, height)):
+    if not all(1 <= side <= CALIBRATION_MAX_SIDE_PIXELS and side == round(side) for side in (width, height)):
         raise CaptureError(
             "camera-size",
             f"{label} has a size of {width:g}x{height:g}",

@@ -21,24 +21,24 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.capture.arrangement import Arrangement, Wanted, refuse_nothing
-from eigenfield.capture.messages import natural
+from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
+from eigenfield.capture.messages import natural_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger(__name__)
 
-EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
-FOLDER = "videos"
-FEWEST = 2  # videos that make a rig
-SECONDS = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
+VIDEO_EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
+VIDEO_FOLDER = "videos"
+VIDEO_MIN_FILES = 2  # of a rig
+VIDEO_TIME_PATTERN = re.compile(r"(\d+(?:\.\d*)?|\.\d+)s")
 # red and blue of Y' by AVColorSpace: BT.709, BT.601 (three numbers), BT.2020
-LUMA = {1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 9: (0.2627, 0.0593)}
-FULL_RANGE = 2  # AVColorRange
-HIGH_DEFINITION = 576  # lines beyond which an unmarked video is BT.709, as players take it
+VIDEO_LUMA_WEIGHTS = {1: (0.2126, 0.0722), 4: (0.30, 0.11), 5: (0.299, 0.114), 6: (0.299, 0.114), 9: (0.2627, 0.0593)}
+VIDEO_FULL_RANGE = 2  # AVColorRange
+VIDEO_MAX_SD_ROWS = 576  # an unmarked video of more rows is BT.709, as players take it
 
-_temporary: list[Stages] = []  # frames without a work folder: gone with the process
+_temporary: list[Stages] = []  # frames without a work folder: deleted with the process
 
 
 def videos_in(folder: Path) -> list[Path]:
@@ -49,28 +49,28 @@ def videos_in(folder: Path) -> list[Path]:
         found = [
             Path(e.path)
             for e in entries
-            if e.name.lower().endswith(EXTENSIONS) and not e.name.startswith(".") and e.is_file()
+            if e.name.lower().endswith(VIDEO_EXTENSIONS) and not e.name.startswith(".") and e.is_file()
         ]
-    return sorted(found, key=lambda path: (natural(path.name), path.name))
+    return sorted(found, key=lambda path: (natural_key(path.name), path.name))
 
 
 def videos_of(folder: Path) -> list[Path]:
     """The videos of a rig: those in the folder, or in its `videos/`, whichever are more."""
-    here, inner = videos_in(folder), videos_in(folder / FOLDER)
+    here, inner = videos_in(folder), videos_in(folder / VIDEO_FOLDER)
     return here if len(here) >= len(inner) else inner
 
 
 def find_videos(folder: Path) -> Path | None:
     """The folder, if it or its `videos/` holds at least two videos."""
-    return folder if len(videos_of(folder)) >= FEWEST else None
+    return folder if len(videos_of(folder)) >= VIDEO_MIN_FILES else None
 
 
 def parse_frame(frame: int | str | None) -> int | float:
-    """An index (int) or a time in seconds (float) from what a person says; OptionError `frame-unknown`."""
+    """An index (int) or a time in seconds (float) from the option's text; OptionError `frame-unknown`."""
     if frame is None:
         return 0
     word = str(frame).strip()
-    seconds = SECONDS.fullmatch(word)
+    seconds = VIDEO_TIME_PATTERN.fullmatch(word)
     if seconds:
         return float(seconds[1])
     if word.isascii() and word.isdecimal() and len(word) < 10:
@@ -80,46 +80,54 @@ def parse_frame(frame: int | str | None) -> int | float:
     )
 
 
-def read_videos(folder: Path, wanted: Wanted) -> Arrangement:
-    """One frame of each video as PNG, in `wanted.work` (taken up again if it is there) or in a temporary folder.
+def read_videos(folder: Path, options: OpenOptions) -> Arrangement:
+    """One frame of each video as PNG, in `options.work` (reused if it is there) or in a temporary folder.
 
     Raises CaptureError: `names-unknown`, `video-unreadable`, `video-short`; OptionError `frame-unknown`.
     """
     videos = videos_of(folder)
-    refuse_nothing(videos, folder, f"like a video ({', '.join(EXTENSIONS[:4])})")
-    frame = parse_frame(wanted.frame)
+    require_photographs(videos, folder, f"like a video ({', '.join(VIDEO_EXTENSIONS[:4])})")
+    frame = parse_frame(options.frame)
     times = Counter(path.stem for path in videos)
     names = [f"{path.stem if times[path.stem] == 1 else path.name}.png" for path in videos]
     described = [[str(p.resolve()), p.stat().st_size, p.stat().st_mtime_ns] for p in videos]
 
     def build(place: Path) -> None:
         def extract(index: int) -> None:
-            Image.fromarray(frame_of(videos[index], frame)).save(place / names[index], compress_level=3)
+            Image.fromarray(read_frame(videos[index], frame)).save(place / names[index], compress_level=3)
 
         parallel_map(extract, range(len(videos)))
 
-    stages = Stages(wanted.work)
-    if wanted.work is None:
+    stages = Stages(options.work)
+    if options.work is None:
         _temporary.append(stages)
     place = stages.run("frames", stage_key([described, frame]), build)
     shown = f"{frame:g} s" if isinstance(frame, float) else f"frame {frame}"
-    problems = [] if wanted.frame is not None else [f"{shown} of each video is used; --frame names another"]
+    problems = [] if options.frame is not None else [f"{shown} of each video is used; --frame names another"]
     return Arrangement("video", tuple(place / name for name in names), None, tuple(problems))
 
 
-def frame_of(path: Path, frame: int | float) -> NDArray[np.uint8]:
-    """(H, W, 3) uint8 sRGB-coded: the frame of an index (int) or the one shown at a time in seconds (float), upright.
+def read_frame(path: Path, frame: int | float) -> NDArray[np.uint8]:
+    """One frame of a video, upright.
 
-    Raises CaptureError: `video-unreadable`, `video-short`.
+    Args:
+        path: The video.
+        frame: Its index (int), or a time in seconds at which it is shown (float).
+
+    Returns:
+        (H, W, 3) uint8 sRGB-coded.
+
+    Raises:
+        CaptureError: `video-unreadable`, `video-short`.
     """
     last, number = None, -1
     try:
-        for number, shown in enumerate(_frames(path, frame)):
+        for number, shown in enumerate(_decode_frames(path, frame)):
             if isinstance(frame, int):
                 if number == frame:
-                    return _picture(shown)
+                    return _to_rgb(shown)
             elif last is not None and shown.time is not None and shown.time > frame + 1e-9:
-                return _picture(last)
+                return _to_rgb(last)
             last = shown
     except (av.error.FFmpegError, OSError) as error:
         raise CaptureError(
@@ -132,7 +140,7 @@ def frame_of(path: Path, frame: int | float) -> NDArray[np.uint8]:
         raise CaptureError("video-unreadable", "holds no frame", path=path, remedy="take it out of the folder")
     end = (last.time or 0.0) + (float(last.duration * last.time_base) if last.duration and last.time_base else 0.0)
     if isinstance(frame, float) and frame <= end:
-        return _picture(last)
+        return _to_rgb(last)
     length = f"{number + 1} frames" if isinstance(frame, int) else f"{end:.3g} s"
     raise CaptureError(
         "video-short",
@@ -142,7 +150,7 @@ def frame_of(path: Path, frame: int | float) -> NDArray[np.uint8]:
     )
 
 
-def _frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
+def _decode_frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
     """Decoded frames: all of them for an index, from the key frame before it for a time."""
     with av.open(str(path)) as container:
         if not container.streams.video:
@@ -162,14 +170,14 @@ def _frames(path: Path, frame: int | float) -> Iterator[av.VideoFrame]:
             yield shown
 
 
-def _picture(frame: av.VideoFrame) -> NDArray[np.uint8]:
-    pixels = _from_420(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
+def _to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
+    pixels = _yuv420_to_rgb(frame) if frame.format.name in ("yuv420p", "yuvj420p") else frame.to_ndarray(format="rgb24")
     return np.ascontiguousarray(np.rot90(pixels, round(frame.rotation / 90)))
 
 
-def _from_420(frame: av.VideoFrame) -> NDArray[np.uint8]:
+def _yuv420_to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
     """Y'CbCr 4:2:0 to R'G'B'; chroma, level with the left of two columns, between two rows, interpolated cubically."""
-    y, cb, cr = (_plane(plane) for plane in frame.planes)
+    y, cb, cr = (_plane_array(plane) for plane in frame.planes)
     height, width = y.shape
     place = np.array([[0.5, 0, 0], [0, 0.5, -0.25]])  # luma pixel to chroma pixel
     cubic = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
@@ -179,15 +187,15 @@ def _from_420(frame: av.VideoFrame) -> NDArray[np.uint8]:
         )
         for c in (cb, cr)
     )
-    unmarked = 1 if height > HIGH_DEFINITION else 6
-    red, blue = LUMA.get(int(frame.colorspace), LUMA[unmarked])
-    if int(frame.color_range) != FULL_RANGE and frame.format.name != "yuvj420p":
+    unmarked = 1 if height > VIDEO_MAX_SD_ROWS else 6
+    red, blue = VIDEO_LUMA_WEIGHTS.get(int(frame.colorspace), VIDEO_LUMA_WEIGHTS[unmarked])
+    if int(frame.color_range) != VIDEO_FULL_RANGE and frame.format.name != "yuvj420p":
         y, cb, cr = (y - 16) * (255 / 219), cb * (255 / 224), cr * (255 / 224)
     r, b = y + 2 * (1 - red) * cr, y + 2 * (1 - blue) * cb
     g = (y - red * r - blue * b) / (1 - red - blue)
     return np.clip(np.rint(np.stack([r, g, b], axis=-1)), 0, 255).astype(np.uint8)
 
 
-def _plane(plane: av.video.plane.VideoPlane) -> NDArray[np.float32]:
+def _plane_array(plane: av.video.plane.VideoPlane) -> NDArray[np.float32]:
     rows = np.frombuffer(plane, np.uint8).reshape(plane.height, plane.line_size)
     return rows[:, : plane.width].astype(np.float32)

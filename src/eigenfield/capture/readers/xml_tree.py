@@ -8,12 +8,12 @@ from xml.etree.ElementTree import Element, ParseError, TreeBuilder
 from defusedxml import DefusedXmlException
 from defusedxml.ElementTree import DefusedXMLParser
 
-from eigenfield.capture.readers.text import contents, damaged
+from eigenfield.capture.readers.text import damaged_error, read_contents
 from eigenfield.core.errors import CaptureError
 
-XML_LIMIT = 64 * 2**20  # bytes
-DEPTH_LIMIT = 64
-ELEMENT_LIMIT = 1_000_000
+XML_MAX_BYTES = 64 * 2**20
+XML_MAX_DEPTH = 64
+XML_MAX_ELEMENTS = 1_000_000
 
 
 class _BoundedBuilder(TreeBuilder):
@@ -24,8 +24,8 @@ class _BoundedBuilder(TreeBuilder):
     def start(self, tag: str, attributes: dict[str, str], /) -> Element:
         self.depth += 1
         self.elements += 1
-        if self.depth > DEPTH_LIMIT or self.elements > ELEMENT_LIMIT:
-            raise ValueError(f"more than {DEPTH_LIMIT} levels or {ELEMENT_LIMIT} elements")
+        if self.depth > XML_MAX_DEPTH or self.elements > XML_MAX_ELEMENTS:
+            raise ValueError(f"more than {XML_MAX_DEPTH} levels or {XML_MAX_ELEMENTS} elements")
         return super().start(tag, attributes)
 
     def end(self, tag: str, /) -> Element:
@@ -33,12 +33,12 @@ class _BoundedBuilder(TreeBuilder):
         return super().end(tag)
 
 
-def load_xml(path: Path, limit: int = XML_LIMIT) -> Element:
+def load_xml(path: Path, limit: int = XML_MAX_BYTES) -> Element:
     """The root of an XML file. CaptureError: `calibration-missing`, `calibration-too-large`, `xml-doctype` (there is a
     document type), `calibration-damaged` (no well-formed XML, nested or long beyond reason)."""
     parser = DefusedXMLParser(target=_BoundedBuilder(), forbid_dtd=True)
     try:
-        parser.feed(contents(path, limit))
+        parser.feed(read_contents(path, limit))
         return parser.close()
     except DefusedXmlException as error:
         raise CaptureError(
@@ -48,4 +48,4 @@ def load_xml(path: Path, limit: int = XML_LIMIT) -> Element:
             remedy="remove the DOCTYPE",
         ) from error
     except (ParseError, LookupError, ValueError, AssertionError) as error:
-        raise damaged(path, f"is no well-formed XML ({str(error)[:80]})") from error
+        raise damaged_error(path, f"is no well-formed XML ({str(error)[:80]})") from error

@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.points import SparsePoints
-from eigenfield.capture.readers.colmap import MODELS
+from eigenfield.capture.readers.colmap import COLMAP_MODELS
 from eigenfield.core.camera import Camera
 
-NO_POINT = 2**64 - 1
-FULL = 8  # coefficients of OpenCV's rational lens that COLMAP's FULL_OPENCV has
+COLMAP_FULL_COEFFICIENTS = 8  # of OpenCV's rational lens that COLMAP's FULL_OPENCV has
 
 
 def colmap_camera(camera: Camera, lens: Lens | None) -> tuple[str, tuple[float, ...]] | None:
@@ -33,8 +32,8 @@ def colmap_camera(camera: Camera, lens: Lens | None) -> tuple[str, tuple[float, 
     c = tuple(float(v) for v in lens.coefficients)
     if lens.model == "fisheye":
         return "OPENCV_FISHEYE", (fx, fy, cx, cy, *c)
-    if lens.model == "rational" and not any(c[FULL:]):
-        return "FULL_OPENCV", (fx, fy, cx, cy, *c[:FULL])
+    if lens.model == "rational" and not any(c[COLMAP_FULL_COEFFICIENTS:]):
+        return "FULL_OPENCV", (fx, fy, cx, cy, *c[:COLMAP_FULL_COEFFICIENTS])
     if lens.model != "brown":
         return None
     if c[4]:
@@ -56,17 +55,17 @@ def colmap_model(light_field: LightField, points: SparsePoints | None) -> dict[s
         if key not in numbers:
             numbers[key] = len(numbers) + 1
             model, parameters = described
-            head = struct.pack("<IiQQ", numbers[key], MODELS[model][0], view.camera.width, view.camera.height)
+            head = struct.pack("<IiQQ", numbers[key], COLMAP_MODELS[model][0], view.camera.width, view.camera.height)
             records.append(head + struct.pack(f"<{len(parameters)}d", *parameters))
         owner.append(numbers[key])
     return {
         "cameras.bin": struct.pack("<Q", len(records)) + b"".join(records),
-        "images.bin": _images(light_field, owner, points),
-        "points3D.bin": _points(light_field, points),
+        "images.bin": _pack_images(light_field, owner, points),
+        "points3D.bin": _pack_points(light_field, points),
     }
 
 
-def _images(light_field: LightField, owner: list[int], points: SparsePoints | None) -> bytes:
+def _pack_images(light_field: LightField, owner: list[int], points: SparsePoints | None) -> bytes:
     records = [struct.pack("<Q", len(light_field))]
     for index, (view, camera) in enumerate(zip(light_field.views, owner, strict=True)):
         record = np.zeros(0, np.dtype([("x", "<f8"), ("y", "<f8"), ("point", "<u8")]))
@@ -81,7 +80,7 @@ def _images(light_field: LightField, owner: list[int], points: SparsePoints | No
     return b"".join(records)
 
 
-def _points(light_field: LightField, points: SparsePoints | None) -> bytes:
+def _pack_points(light_field: LightField, points: SparsePoints | None) -> bytes:
     if points is None:
         return struct.pack("<Q", 0)
     place = np.zeros(len(points.view), np.int64)  # of each observation in its image's list

@@ -15,16 +15,16 @@ import numpy as np
 
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.points import SparsePoints
-from eigenfield.capture.readers.transforms import NAME
+from eigenfield.capture.readers.transforms import TRANSFORMS_FILE
 from eigenfield.capture.writers.colmap import colmap_model
 from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.errors import OutputError
-from eigenfield.runtime.files import mended
+from eigenfield.runtime.files import current_umask, output_errors
 
 log = logging.getLogger("eigenfield.capture")
 
-MODEL = "sparse/0"
-POINTS = "points.ply"
+COLMAP_MODEL_FOLDER = "sparse/0"
+POINTS_FILE = "points.ply"
 
 
 def save_calibration(
@@ -35,15 +35,21 @@ def save_calibration(
     overwrite: bool = False,
     more: Mapping[str, bytes] | None = None,
 ) -> None:
-    """Write the cameras of `light_field` into `folder`: `transforms.json` (nerfstudio, instant-ngp) and `sparse/0`
-    (COLMAP, binary), with the sparse points, also as `points.ply`.
+    """Write cameras into a folder: `transforms.json` (nerfstudio, instant-ngp) and `sparse/0` (COLMAP, binary).
 
-    more: further files by name, written with them. overwrite: replace what an earlier calibration wrote there; other
-    files in the folder stay as they are. `open_capture` reads both forms back to the same cameras. A lens that
-    COLMAP has no model for leaves `sparse` out, with a warning. Skew is refused.
+    `open_capture` reads both forms back to the same cameras. If COLMAP has no model for a lens, `sparse` is left out,
+    with a warning. Skew is refused.
 
-    Raises OutputError: `output-exists` (the folder is not empty), `output-is-file`, `camera-skew`, `disk-full`,
-    `not-writable`.
+    Args:
+        light_field: The cameras.
+        folder: Made if it does not exist.
+        points: Sparse points, written to `sparse/0` and to `points.ply`.
+        overwrite: Replace what an earlier calibration wrote there; other files in the folder stay as they are.
+        more: Further files by name, written with them.
+
+    Raises:
+        OutputError: `output-exists` (the folder is not empty), `output-is-file`, `camera-skew`, `disk-full`,
+            `not-writable`.
     """
     place = Path(folder)
     refuse_folder(place, overwrite)
@@ -55,23 +61,23 @@ def save_calibration(
                 path=place,
                 remedy="remove it from the photographs",
             )
-    files = _contents(light_field, place, points)
+    files = _make_files(light_field, place, points)
     files |= more or {}
-    with mended(place), _part(place) as part:
+    with output_errors(place), _temporary_folder(place) as part:
         for name, data in files.items():
             (part / name).parent.mkdir(parents=True, exist_ok=True)
             with (part / name).open("wb") as file:
                 file.write(data)
                 file.flush()
                 os.fsync(file.fileno())
-        _put(part, place)
+        _move_into_place(part, place)
 
 
 def refuse_folder(folder: Path, overwrite: bool) -> None:
     """Before any work: raise OutputError where a calibration may not or cannot be written to `folder`."""
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
-    with mended(folder):
+    with output_errors(folder):
         if folder.is_dir() and not overwrite and any(folder.iterdir()):
             raise OutputError(
                 "output-exists",
@@ -86,20 +92,20 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         raise OutputError("not-writable", "cannot be made here", path=folder, remedy="name another place")
 
 
-def _contents(light_field: LightField, place: Path, points: SparsePoints | None) -> dict[str, bytes]:
-    document = transforms_document(light_field, place, POINTS if points is not None else None)
-    files = {NAME: (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()}
+def _make_files(light_field: LightField, place: Path, points: SparsePoints | None) -> dict[str, bytes]:
+    document = transforms_document(light_field, place, POINTS_FILE if points is not None else None)
+    files = {TRANSFORMS_FILE: (json.dumps(document, indent=1, allow_nan=False) + "\n").encode()}
     model = colmap_model(light_field, points)
     if model is None:
-        log.warning("%s: COLMAP has no model for the lens: only %s is written", place, NAME)
+        log.warning("%s: COLMAP has no model for the lens: only %s is written", place, TRANSFORMS_FILE)
     else:
-        files |= {f"{MODEL}/{name}": data for name, data in model.items()}
+        files |= {f"{COLMAP_MODEL_FOLDER}/{name}": data for name, data in model.items()}
     if points is not None:
-        files[POINTS] = _ply(points)
+        files[POINTS_FILE] = _pack_ply(points)
     return files
 
 
-def _ply(points: SparsePoints) -> bytes:
+def _pack_ply(points: SparsePoints) -> bytes:
     record = np.zeros(len(points), [(axis, "<f4") for axis in "xyz"] + [(c, "u1") for c in ("red", "green", "blue")])
     for axis, values in zip("xyz", points.positions.T, strict=True):
         record[axis] = values
@@ -112,8 +118,8 @@ def _ply(points: SparsePoints) -> bytes:
 
 
 @contextlib.contextmanager
-def _part(place: Path) -> Iterator[Path]:
-    """A folder beside `place`, on the same disk, gone after the block."""
+def _temporary_folder(place: Path) -> Iterator[Path]:
+    """A folder beside `place`, on the same disk, deleted after the block."""
     parent = place.absolute().parent
     parent.mkdir(parents=True, exist_ok=True)
     part = Path(tempfile.mkdtemp(prefix=f".{place.name}-", suffix=".part", dir=parent))
@@ -123,9 +129,9 @@ def _part(place: Path) -> Iterator[Path]:
         shutil.rmtree(part, ignore_errors=True)
 
 
-def _put(part: Path, place: Path) -> None:
+def _move_into_place(part: Path, place: Path) -> None:
     """`part` as `place` by rename; entry by entry where `place` holds something that is to stay."""
-    mode = place.stat().st_mode & 0o7777 if place.is_dir() else 0o777 & ~_umask()
+    mode = place.stat().st_mode & 0o7777 if place.is_dir() else 0o777 & ~current_umask()
     part.chmod(mode)
     if not place.exists() or not any(place.iterdir()):
         if place.exists():
@@ -137,9 +143,3 @@ def _put(part: Path, place: Path) -> None:
         if target.is_dir() and not target.is_symlink():
             target.replace(part / f"old-{entry.name}")  # goes with `part`
         entry.replace(target)
-
-
-def _umask() -> int:
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

@@ -10,16 +10,20 @@ import numpy as np
 
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.readers.transforms import FLIP, OWN_LENS
+from eigenfield.capture.readers.transforms import OPENGL_TO_OPENCV_AXES, TRANSFORMS_OWN_MODEL
 
-DESCRIBED = ("brown", "fisheye")  # lenses that nerfstudio's keys describe
+NERFSTUDIO_LENSES = ("brown", "fisheye")  # lenses that nerfstudio's keys describe
 
 
 def transforms_document(light_field: LightField, folder: Path, points: str | None) -> dict[str, Any]:
-    """The JSON of a calibration that will lie in `folder`; paths are relative to it.
+    """The JSON of a calibration.
 
     Intrinsics stand at the top where all views share them, which some readers need, else in every frame.
-    points: the name of a PLY of the sparse points in the same folder.
+
+    Args:
+        light_field: The cameras.
+        folder: Of the file; paths are relative to it.
+        points: Name of a PLY of the sparse points in the same folder; None for none.
     """
     intrinsics = [_intrinsics(view) for view in light_field.views]
     common = intrinsics[0] if all(entry == intrinsics[0] for entry in intrinsics) else None
@@ -45,15 +49,15 @@ def _intrinsics(view: View) -> dict[str, Any]:
 
 
 def _model(lens: Lens) -> str:
-    if lens.model not in DESCRIBED:
-        return OWN_LENS
+    if lens.model not in NERFSTUDIO_LENSES:
+        return TRANSFORMS_OWN_MODEL
     return "OPENCV" if lens.model == "brown" else "OPENCV_FISHEYE"
 
 
 def _coefficients(lens: Lens | None) -> dict[str, Any]:
     if lens is None:
         return {}
-    if lens.model not in DESCRIBED:
+    if lens.model not in NERFSTUDIO_LENSES:
         return {"lens": {"model": lens.model, "coefficients": [float(c) for c in lens.coefficients]}}
     names = ("k1", "k2", "p1", "p2", "k3") if lens.model == "brown" else ("k1", "k2", "k3", "k4")
     found = dict(zip(names, (float(c) for c in lens.coefficients), strict=True))
@@ -65,13 +69,13 @@ def _coefficients(lens: Lens | None) -> dict[str, Any]:
 def _frame(view: View, folder: Path) -> dict[str, Any]:
     camera = view.camera
     pose = np.eye(4)
-    pose[:3, :3] = (FLIP @ camera.R).T
+    pose[:3, :3] = (OPENGL_TO_OPENCV_AXES @ camera.R).T
     pose[:3, 3] = camera.centre
-    frame: dict[str, Any] = {"file_path": _relative(view.path, folder), "transform_matrix": pose.tolist()}
+    frame: dict[str, Any] = {"file_path": _relative_path(view.path, folder), "transform_matrix": pose.tolist()}
     if view.mask is not None:
-        frame["mask_path"] = _relative(view.mask, folder)
+        frame["mask_path"] = _relative_path(view.mask, folder)
     return frame
 
 
-def _relative(path: Path, folder: Path) -> str:
+def _relative_path(path: Path, folder: Path) -> str:
     return Path(os.path.relpath(path.absolute(), folder.absolute())).as_posix()

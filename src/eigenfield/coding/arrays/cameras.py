@@ -101,7 +101,7 @@ def code_cameras(
 
     kind = 0 if cells is None else ON_GRID
     data = min(stream(kind), stream(kind | FROM_BEFORE), key=len)
-    return data, *_assembled(whole[np.argsort(order)] * unit + _base(base) + places @ planes.astype(np.float64), first)
+    return data, *_assemble(whole[np.argsort(order)] * unit + _base(base) + places @ planes.astype(np.float64), first)
 
 
 def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.float32], NDArray[np.float32]]:
@@ -135,7 +135,7 @@ def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.floa
     unit = np.repeat(steps, [5, 3, 3])
     with np.errstate(all="ignore"):
         numbers = whole[np.argsort(order)] * unit + _base(base) + _places(cells, count) @ planes
-        intrinsics, poses = _assembled(numbers, first)
+        intrinsics, poses = _assemble(numbers, first)
     if not (np.isfinite(intrinsics).all() and np.isfinite(poses).all()):
         raise damaged_error("cameras that are not finite", where)
     return intrinsics, poses
@@ -159,7 +159,7 @@ def _before(kind: int, count: int) -> NDArray[np.int64]:
     return np.arange(count) - 1 if kind & FROM_BEFORE else np.full(count, -1)
 
 
-def _assembled(
+def _assemble(
     numbers: NDArray[np.float64], first: NDArray[np.float64]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Intrinsics and poses of the eleven numbers; first: (4,) the first rotation as a quaternion x, y, z, w."""

@@ -12,7 +12,11 @@ from eigenfield.coding.entropy.table_kernels import code_cells
 
 
 def checked_grid(grid: ArrayLike, cameras: int) -> NDArray[np.int64]:
-    """(rows, columns) int64 with every camera once and -1 where there is none. Raises ValueError for anything else."""
+    """(rows, columns) int64 with every camera once and -1 where there is none.
+
+    Raises:
+        ValueError: It is anything else.
+    """
     cells = np.asarray(grid, np.int64)
     if (
         cells.ndim != 2

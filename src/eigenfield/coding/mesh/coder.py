@@ -92,7 +92,7 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
     if not 0 <= fine <= (MESH_MAX_FINE_DIGITS if lattice.flat else 0):
         raise ValueError("0 to 8 fine digits, and only on a flat lattice")
-    welded = _welded(mesh, lattice, uv_bits)
+    welded = _weld_mesh(mesh, lattice, uv_bits)
     n, m, v = len(welded.places), len(welded.faces), len(welded.place)
     found: list[Mesh] = []
 
@@ -158,7 +158,7 @@ def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     return mesh
 
 
-def _welded(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
+def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
     """The mesh on the lattice, without vertices that no face has."""
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)

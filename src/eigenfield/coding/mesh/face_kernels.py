@@ -32,7 +32,7 @@ from eigenfield.runtime.jit import kernel
 ANGLES = 13  # classes of a neighbour of the gate
 NO_GATE, AT_BORDER = 11, 12  # the last two of them
 PAIRS = ANGLES * ANGLES
-FANS = 8  # numbers of faces at a vertex that are told apart
+FANS = 8  # classes of numbers of faces at a vertex
 LEFT = PLACES  # first contexts; those before are code_place's
 RIGHT = LEFT + PAIRS + ANGLES * FANS + 2 * ANGLES
 EDGE = RIGHT + PAIRS + ANGLES * FANS + ANGLES

@@ -22,9 +22,20 @@ ROW = 2**24  # more than twice any sum of two coordinates
 
 
 class Front(NamedTuple):
-    """start, end, opposite: (3 m,) int32 vertices. before, after: (3 m,) int32 neighbours in the loop. status: (3 m,)
-    int8. into: (n,) int32, the gate that ended last at a vertex, or -1. heap, key: (3 m,) waiting gates and where their
-    middles are. sizes: (2,) gates, waiting ones."""
+    """Gates: the directed edges of the front between coded and open faces.
+
+    Attributes:
+        start: (3 m,) int32 vertices.
+        end: (3 m,) int32 vertices.
+        opposite: (3 m,) int32, the third vertex of the coded face.
+        before: (3 m,) int32 neighbours in the loop.
+        after: (3 m,) int32 neighbours in the loop.
+        status: (3 m,) int8, CLOSED, OPEN or BORDER.
+        into: (n,) int32, the gate that ended last at a vertex, or -1.
+        heap: (3 m,) int32 waiting gates.
+        key: (3 m,) int64 of the places of their middles.
+        sizes: (2,) int64, the numbers of gates and of waiting ones.
+    """
 
     start: NDArray[np.int32]
     end: NDArray[np.int32]

@@ -13,7 +13,7 @@ from eigenfield.runtime.jit import kernel
 
 PLACE_MAX_STEPS = 2**20  # of lattice coordinates, either way
 HEIGHT_RATIO = 0.8  # of a predicted triangle to its base, in a plane
-SIZES = 24  # binary digits of squared lengths that are told apart, in a plane
+SIZES = 24  # classes of binary digits of squared lengths, in a plane
 DEEP = 44  # likewise, in space
 PAIRS = 169  # classes of both neighbours of a gate
 X, Y, SPACE = 0, 0 + SIZES * 8 + SIZES + PAIRS, 0
@@ -25,7 +25,7 @@ M_X, M_Y, M_SPACE, M_START, M_REST = 0, 1, 2, 3, 15
 
 
 @kernel()
-def _bounded(value):
+def _clamp_steps(value):
     """The nearest whole number within PLACE_MAX_STEPS."""
     return np.int64(math.floor(min(max(value, -float(PLACE_MAX_STEPS)), float(PLACE_MAX_STEPS)) + 0.5))
 
@@ -57,8 +57,8 @@ def _code_flat(coder, points, vertex, a, b, o, pair, fine):
     hx, hy = points[o, 0] - points[a, 0], points[o, 1] - points[a, 1]
     area = gx * hy - gy * hx
     out = HEIGHT_RATIO if area > 0 else -HEIGHT_RATIO
-    x = _bounded((points[a, 0] + points[b, 0]) * 0.5 + out * gy)
-    y = _bounded((points[a, 1] + points[b, 1]) * 0.5 - out * gx)
+    x = _clamp_steps((points[a, 0] + points[b, 0]) * 0.5 + out * gy)
+    y = _clamp_steps((points[a, 1] + points[b, 1]) * 0.5 - out * gx)
     half = np.int64(1 << fine >> 1)
     size = min(binary_digits((gx * gx + gy * gy) >> 2 * fine), SIZES - 1)
     spread = min(binary_digits(abs(area) >> 2 * fine), SIZES - 1)
@@ -95,7 +95,7 @@ def _code_deep(coder, points, vertex, a, b, o):
     size = min(binary_digits(length), DEEP - 1)
     last = 0
     for axis in range(3):
-        expected = _bounded(float(points[a, axis] + points[b, axis] - points[o, axis]))
+        expected = _clamp_steps(float(points[a, axis] + points[b, axis] - points[o, axis]))
         off = code_integer(
             coder, points[vertex, axis] - expected, SPACE + size, SPACE + DEEP + axis * 24 + last,
             SPACE + DEEP + 72 + axis * DEEP + size, M_SPACE,

@@ -30,7 +30,7 @@ MIXTURES = 16
 
 
 @kernel()
-def _rounded(value, other):
+def _round_steps(value, other):
     """The nearest whole number within VALUE_MAX_STEPS; that of `other` for NaN."""
     if value != value:
         value = other
@@ -126,7 +126,7 @@ def code_depths(coder, built, first, corners):
                 s, t = float(px * vy - py * vx) / area, float(ux * py - uy * px) / area
                 za, zb, zo = points[a, 2], points[b, 2], points[o, 2]
                 parent = min(max(za + s * (zb - za) + t * (zo - za), low_all), high_all)
-        value = _rounded(plane, mean)
+        value = _round_steps(plane, mean)
         one, other = _difference_class(parent - value), _difference_class(mean - value)
         off = code_integer(
             coder, points[vertex, 2] - value, DEPTH + one * DIFFERENCES + other,
@@ -192,7 +192,7 @@ def code_textures(coder, vertices, world, uv, first, corners):
         pv = float(uv[anchor, 1]) if anchor >= 0 else 0.0
         if count > 0:
             pu, pv = u / count, v / count
-        iu, iv = _rounded(pu, 0.0), _rounded(pv, 0.0)
+        iu, iv = _round_steps(pu, 0.0), _round_steps(pv, 0.0)
         many, size = min(count, 2), min(reach, 23)
         for axis in range(2):
             expected = iu if axis == 0 else iv

@@ -36,7 +36,7 @@ def encode_png(picture: Codes, quality: int) -> bytes:
         picture: (H, W) or (H, W, 3) codes.
         quality: Not used: a PNG is lossless.
     """
-    return _saved(Image.fromarray(picture), "PNG", compress_level=9)
+    return _image_bytes(Image.fromarray(picture), "PNG", compress_level=9)
 
 
 def encode_webp(picture: Codes, quality: int) -> bytes:
@@ -52,13 +52,13 @@ def encode_webp(picture: Codes, quality: int) -> bytes:
             f"webp holds {_WEBP_MAX_SIDE_TEXELS} texels a side, {max(image.size)} needed",
             remedy="use png",
         )
-    return _saved(image, "WEBP", lossless=True, quality=80, method=4)
+    return _image_bytes(image, "WEBP", lossless=True, quality=80, method=4)
 
 
 def encode_avif(picture: Codes, quality: int) -> bytes:
-    """As `encode_png`. quality: 0..100."""
+    """As `encode_png`, lossy, of a quality of 0 to 100."""
     image = Image.fromarray(picture)
-    return _saved(
+    return _image_bytes(
         image,
         "AVIF",
         quality=quality,
@@ -78,10 +78,10 @@ def encode_preview(picture: Codes, side: int = PREVIEW_MAX_SIDE_TEXELS, quality:
     size = (max(1, round(image.width * scale)), max(1, round(image.height * scale)))
     if size != image.size:
         image = image.resize(size, Image.Resampling.LANCZOS)
-    return _saved(image, "JPEG", quality=quality, optimize=True)
+    return _image_bytes(image, "JPEG", quality=quality, optimize=True)
 
 
-def _saved(image: Image.Image, format: str, **options: Any) -> bytes:
+def _image_bytes(image: Image.Image, format: str, **options: Any) -> bytes:
     buffer = io.BytesIO()
     image.save(buffer, format, **options)
     return buffer.getvalue()
@@ -126,7 +126,7 @@ def _open(data: memoryview, mime: str, where: str) -> ImageFile.ImageFile:
     except MemoryError:
         raise
     except Exception as error:  # a decoder on damaged bytes: Pillow raises whatever comes, none of it our bug
-        raise _damaged(error, where) from error
+        raise _damage_error(error, where) from error
 
 
 def _load(image: ImageFile.ImageFile, where: str) -> Codes:
@@ -135,10 +135,10 @@ def _load(image: ImageFile.ImageFile, where: str) -> Codes:
     except MemoryError:
         raise
     except Exception as error:  # as in _open
-        raise _damaged(error, where) from error
+        raise _damage_error(error, where) from error
 
 
-def _damaged(error: Exception, where: str) -> FormatError:
+def _damage_error(error: Exception, where: str) -> FormatError:
     reason = " ".join(str(error).split())[:80] or type(error).__name__
     return FormatError("picture-damaged", f"the picture cannot be decoded: {reason}", where=where)
 

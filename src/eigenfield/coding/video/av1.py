@@ -86,7 +86,7 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
     """
     import av
 
-    def damaged(what: str) -> FormatError:
+    def damage_error(what: str) -> FormatError:
         return FormatError("residual-damaged", f"the residual cannot be decoded: {what}", where=where)
 
     context: Any = av.CodecContext.create("libdav1d", "r")
@@ -99,17 +99,17 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
         except MemoryError:
             raise
         except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
-            raise damaged(" ".join(str(error).split())[:80] or type(error).__name__) from error
+            raise damage_error(" ".join(str(error).split())[:80] or type(error).__name__) from error
         for frame in frames:
             if (frame.height, frame.width) != size or frame.format.name != PIXEL_FORMAT:
                 found = f"{frame.width}x{frame.height}, {frame.format.name}"
-                raise damaged(f"a frame of {found}; {size[1]}x{size[0]} of {PICTURE_BITS} bits announced")
+                raise damage_error(f"a frame of {found}; {size[1]}x{size[0]} of {PICTURE_BITS} bits announced")
             luma, blue, red = (_samples(plane) for plane in frame.planes)
             yield luma, blue, red
             number += 1
             if number == count:
                 return
-    raise damaged(f"ends after {number} of {count} frames")
+    raise damage_error(f"ends after {number} of {count} frames")
 
 
 def _units(data: bytes) -> Iterator[bytes]:

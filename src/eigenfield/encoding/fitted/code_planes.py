@@ -94,8 +94,8 @@ def code_mean(
         unit = _unit(float(mean.min()), float(mean.max()))
         affine = Affine(np.full(mean.shape[2], unit), np.full(mean.shape[2], float(ZERO_CODE)))
     codes = np.rint(mean / affine.scale + affine.zero).clip(0, MAX_CODE).astype(np.uint16)
-    data = coder(_stack(codes[None]), crf_of(step / float(affine.scale[0])))
-    stored = _unstack(decode_10bit(data, False, "mean"), codes[None].shape)[0]
+    data = coder(_stack_channels(codes[None]), crf_of(step / float(affine.scale[0])))
+    stored = _split_channels(decode_10bit(data, False, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
     return values, PicturePayload(PICTURES_CODEC, data, 1, affine, picture)
 
@@ -117,8 +117,8 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
         part = slice(first, first + each)
         unit = _unit(float(values[part].min()), float(values[part].max()))
         codes = np.rint(values[part] / np.float32(unit) + ZERO_CODE).clip(0, MAX_CODE).astype(np.uint16)
-        data = coder(_stack(codes), crf_of(step / unit))
-        stored[part], scale[part] = _unstack(decode_10bit(data, False, "textures"), codes.shape), unit
+        data = coder(_stack_channels(codes), crf_of(step / unit))
+        stored[part], scale[part] = _split_channels(decode_10bit(data, False, "textures"), codes.shape), unit
         numbers = len(codes) * channels
         affine = Affine(np.full(numbers, unit), np.full(numbers, float(ZERO_CODE)))
         return PicturePayload(PICTURES_CODEC, data, len(codes), affine)
@@ -131,7 +131,7 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
 def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:
     """The textures of the first `count` pictures."""
     pictures = coded.pictures[:count]
-    return CodedBasis(coded.basis.truncated(sum(picture.count for picture in pictures)), pictures)
+    return CodedBasis(coded.basis.truncate(sum(picture.count for picture in pictures)), pictures)
 
 
 def with_weights(coded: CodedBasis, weights: NDArray[np.float32], payload: Payload) -> CodedBasis:
@@ -156,7 +156,7 @@ def coded_plane(
         precision: As `code_mean`.
     """
     values, picture = code_mean(mean, step, coder, precision)
-    payloads = Payloads.joined(coded.payloads for coded in bases) | {mean_key(values): [picture]}
+    payloads = Payloads.merge(coded.payloads for coded in bases) | {mean_key(values): [picture]}
     return Coded(Plane(values, tuple(coded.basis for coded in bases)), payloads)
 
 
@@ -165,12 +165,12 @@ def _unit(low: float, high: float) -> float:
     return math.ceil(max(CODE_MIN_UNIT, -low / ZERO_CODE, high / (MAX_CODE - ZERO_CODE)) * 1e6) / 1e6
 
 
-def _stack(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:
+def _stack_channels(codes: NDArray[np.uint16]) -> NDArray[np.uint16]:
     """(n, H, W, C) as one grey picture: channel below channel, texture below texture."""
     count, height, width, channels = codes.shape
     return np.ascontiguousarray(codes.transpose(0, 3, 1, 2)).reshape(count * channels * height, width)
 
 
-def _unstack(picture: NDArray[np.uint16], shape: tuple[int, ...]) -> NDArray[np.uint16]:
+def _split_channels(picture: NDArray[np.uint16], shape: tuple[int, ...]) -> NDArray[np.uint16]:
     count, height, width, channels = shape
     return np.ascontiguousarray(picture.reshape(count, channels, height, width).transpose(0, 2, 3, 1))

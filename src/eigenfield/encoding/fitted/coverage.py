@@ -30,13 +30,13 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
         scales: Of the data that it was fitted to.
         surface: The mesh under the finest atlas.
     """
-    model.mean = _extended(model.mean, _observed(scales.mean, surface))
-    coarse = _observed(scales.coarse, surface)
+    model.mean = _fill_smoothly(model.mean, _observed_mask(scales.mean, surface))
+    coarse = _observed_mask(scales.coarse, surface)
     for block in model.blocks:
         observed = np.ascontiguousarray(coarse[block.window])
 
         def fill(index: int, block: Block = block, observed: NDArray[np.float32] = observed) -> None:
-            block.textures[index] = _extended(block.textures[index], observed)
+            block.textures[index] = _fill_smoothly(block.textures[index], observed)
 
         parallel_map(fill, range(block.count))
 
@@ -47,7 +47,7 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
     pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
     """
-    known = _known(scales.mean)
+    known = _seen_mask(scales.mean)
     if not known.any():
         return None
     share = np.minimum(scales.mean / np.median(scales.mean[known > 0]), 1).astype(np.float32)
@@ -61,7 +61,7 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     return np.asarray(precision, np.float32)
 
 
-def _observed(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
+def _observed_mask(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float32]:
     """(h, w) 1 where the photographs determine a texel: it is seen, and its middle is in a chart or its share is
     OBSERVED_MIN_SHARE_RATIO of the median."""
     (height, width), (rows, columns) = surface.size, share.shape
@@ -72,11 +72,11 @@ def _observed(share: NDArray[np.float32], surface: Surface) -> NDArray[np.float3
     return ((share > 0) & (inside | (share > OBSERVED_MIN_SHARE_RATIO * usual))).astype(np.float32)
 
 
-def _known(share: NDArray[np.float32]) -> NDArray[np.float32]:
+def _seen_mask(share: NDArray[np.float32]) -> NDArray[np.float32]:
     return (share > 0).astype(np.float32)
 
 
-def _extended(picture: NDArray[np.float32], observed: NDArray[np.float32]) -> NDArray[np.float32]:
+def _fill_smoothly(picture: NDArray[np.float32], observed: NDArray[np.float32]) -> NDArray[np.float32]:
     """(C, rows, columns) as it is where `observed` is 1, filled where it is 0."""
     known = np.ascontiguousarray((picture * observed).transpose(1, 2, 0))
     return np.ascontiguousarray(push_pull(known, observed).transpose(2, 0, 1))

@@ -50,7 +50,7 @@ class FittedEncoder:
         return self.plan.scene(
             tuple(plane.value for plane in planes.values()),
             own,
-            payloads=Payloads.joined(plane.payloads for plane in planes.values()),
+            payloads=Payloads.merge(plane.payloads for plane in planes.values()),
             to_rgb=None if options.planes == "rgb" else to_rgb(),
         )
 

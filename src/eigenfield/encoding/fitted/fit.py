@@ -176,7 +176,7 @@ def fit_plane(
     surface = pixels.every.footprints.surface
     fill_unseen(model, scales, surface)
     composer = make_composer(surface, model)
-    uncoded = _drawn(pixels.every, model, composer)
+    uncoded = _drawn_psnr(pixels.every, model, composer)
     tick(last=True)
     return OpenFit(name, pixels, model, scales, composer, mean_alone, uncoded)
 
@@ -248,10 +248,10 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
         textures = np.ascontiguousarray(basis.values().transpose(0, 3, 1, 2))
         blocks.append(Block((top, top + height, left, left + width), textures, basis.weights))
     mean = np.ascontiguousarray(plane.mean.transpose(2, 0, 1))
-    return _drawn(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
+    return _drawn_psnr(fit.pixels.every, replace(fit.model, mean=mean, blocks=blocks), fit.composer)
 
 
-def _drawn(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
+def _drawn_psnr(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
     """dB of the photographs as the renderers draw the model."""
     found = render_and_backproject(
         data, model, mean=model.mean, textures=[block.textures for block in model.blocks],

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts
-from eigenfield.rendering.software.drawing import Frame, Surface, cover, smooth_edges
+from eigenfield.rendering.software.drawing import Framebuffer, Surface, rasterise_surface, smooth_edges
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_stream
 
@@ -71,22 +71,22 @@ def open_footprints(
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])
 
-    def covered(camera: int) -> tuple[Frame, NDArray[np.uint8]]:
+    def covered(camera: int) -> tuple[Framebuffer, NDArray[np.uint8]]:
         sampling = smooth_edges(detail)
-        frame = Frame(surface, *shapes[camera], sampling)
-        cover(surface, cameras[camera], sampling, frame)
+        frame = Framebuffer(surface, *shapes[camera], sampling)
+        rasterise_surface(surface, cameras[camera], sampling, frame)
         return frame, counts[pixels[camera] : pixels[camera + 1]].reshape(shapes[camera])
 
     def count(camera: int) -> int:
         frame, part = covered(camera)
-        return int(footprint_counts(frame.inverse_depth, frame.spans, frame.parted, frame.finer, part))
+        return int(footprint_counts(frame.inverse_depth, frame.spans, frame.multisampled, frame.subsamples, part))
 
     def put(camera: int) -> None:
         frame, part = covered(camera)
         into = coordinates[offsets[camera] : offsets[camera + 1]]
         footprint_coordinates(
-            frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.parted, frame.finer, *surface.size,
-            part, into,
+            frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.multisampled, frame.subsamples,
+            *surface.size, part, into,
         )  # fmt: skip
 
     with scratch_array((int(pixels[-1]),), np.uint8, work) as counts:

@@ -18,8 +18,9 @@ from eigenfield.runtime.jit import kernel
 
 @kernel()
 def footprint_counts(near, spans, parted, finer, counts):
-    """Fill `counts` from a covered `Frame`; returns how many points that makes. Of a pixel at the border of the surface
-    those samples count that show something, if there are two: a single one says too little of a photograph's pixel."""
+    """Fill `counts` from a covered `Framebuffer`; returns how many points that makes. Of a pixel at the border of the
+    surface those samples count that show something, if there are two: a single one says too little of a photograph's
+    pixel."""
     total = 0
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
@@ -99,7 +100,15 @@ def position(coordinate, ratio, last):
 @kernel(inline=True)
 def bicubic_taps(point, across, down, width, height):
     """Column and row of the texel left above a point in a texture of width x height, and Catmull-Rom's weights of the
-    columns and rows from the one before on. point (2,): in the finest atlas; across, down: see `position`."""
+    columns and rows from the one before on.
+
+    Args:
+        point: (2,) in the finest atlas.
+        across: `ratio` of `position` along rows.
+        down: `ratio` of `position` along columns.
+        width: Of the texture.
+        height: Of the texture.
+    """
     x = position(point[0], across, np.float32(width - 1))
     y = position(point[1], down, np.float32(height - 1))
     left, top = np.int64(x), np.int64(y)
@@ -114,8 +123,16 @@ def tap_index(left, top, u, v, width, height):
 
 @kernel()
 def forward(counts, coordinates, size, texture, sign, image):
-    """image (C, h, w) += sign G texture: what is drawn of a texture (C, rows, columns) by Catmull-Rom. coordinates: in
-    an atlas of `size` (H, W), which need not be the texture's."""
+    """image += sign G texture: the texture drawn by Catmull-Rom.
+
+    Args:
+        counts: (h, w) uint8, see above.
+        coordinates: (n, 2) float32, in an atlas of `size`.
+        size: (H, W), which need not be the texture's.
+        texture: (C, rows, columns).
+        sign: 1 or -1.
+        image: (C, h, w).
+    """
     channels, height, width = texture.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = texture.reshape(-1), height * width
@@ -148,7 +165,16 @@ def part_of(weight, row, pixel):
 
 @kernel()
 def adjoint(counts, coordinates, size, image, weight, out):
-    """The transpose of `forward`: out (C, rows, columns) += G^T w image (C, h, w). weight: see `part_of`."""
+    """The transpose of `forward`: out += G^T w image.
+
+    Args:
+        counts: As `forward`.
+        coordinates: As `forward`.
+        size: As `forward`.
+        image: (C, h, w).
+        weight: w, see `part_of`.
+        out: (C, rows, columns).
+    """
     channels, height, width = out.shape
     down, across = np.float32(height / size[0]), np.float32(width / size[1])
     flat, plane = out.reshape(-1), height * width
@@ -196,9 +222,15 @@ def squares_of(counts, image, weight):
 
 @kernel()
 def robust_weights(image, weight, variance, out):
-    """out (h, w) uint8 = weight times 1 / (1 + e^2 / variance), Cauchy's weight of iteratively reweighted least squares
-    for an error of e, the channels of image (C, h, w) together. weight: see `part_of`. variance: sigma^2, the squared
-    error of pixels that count half."""
+    """out = weight / (1 + e^2 / variance), Cauchy's weight of iteratively reweighted least squares for an error of e,
+    all channels together.
+
+    Args:
+        image: (C, h, w), the errors.
+        weight: See `part_of`.
+        variance: sigma^2, the squared error of pixels that count half.
+        out: (h, w) uint8, 255 for whole.
+    """
     for row in range(out.shape[0]):
         for pixel in range(out.shape[1]):
             square = np.float32(0)

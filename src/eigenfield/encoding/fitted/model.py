@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.kernels import upsample
 from eigenfield.rendering.software.drawing import Surface
-from eigenfield.rendering.software.kernels import TILE
+from eigenfield.rendering.software.kernels import TILE_TEXELS
 from eigenfield.rendering.software.resample import Taps, make_taps
 
 NO_START = np.zeros((0, 0, 0), np.float32)
@@ -150,5 +150,8 @@ def make_upsampler(surface: Surface, grid: tuple[int, int]) -> Upsampler:
     spans = np.zeros((height, 2), np.int64)
     for row in np.flatnonzero(surface.used.any(axis=1)):
         used = np.flatnonzero(surface.used[row])
-        spans[row * TILE : (row + 1) * TILE] = used[0] * TILE, min((used[-1] + 1) * TILE, width)
+        spans[row * TILE_TEXELS : (row + 1) * TILE_TEXELS] = (
+            used[0] * TILE_TEXELS,
+            min((used[-1] + 1) * TILE_TEXELS, width),
+        )
     return Upsampler(make_taps(height, grid[0]), make_taps(width, grid[1]), spans, grid, (height, width))

@@ -164,7 +164,14 @@ def _open_observations(
 
 @contextlib.contextmanager
 def open_on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Path | None = None) -> Iterator[FitData]:
-    """The same observations on another mesh under as large an atlas. cameras: of the observations."""
+    """The same observations on another mesh under as large an atlas.
+
+    Args:
+        data: The observations.
+        cameras: Theirs.
+        mesh: The other mesh.
+        work: Folder for scratch files.
+    """
     surface = make_surface(mesh, *data.size)
     with open_footprints(surface, cameras, data.footprints.detail, work) as footprints:
         yield replace(data, footprints=footprints)

@@ -78,11 +78,11 @@ def measure_lambda(
         return Lambdas(predicted, predicted)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
 
-    def coded(factor: float) -> tuple[float, int]:
+    def code_at(factor: float) -> tuple[float, int]:
         kept, picture = code_mean(mean, rate.mean_step * factor, rate.trial or rate.coder, precision)
         return float(np.einsum("hwc,hw->", np.square(kept - mean), scales.mean, dtype=np.float64)), len(picture.data)
 
-    (fine, more), (coarse, fewer) = parallel_map(coded, (1 / RATE_SLOPE_STEP_RATIO, RATE_SLOPE_STEP_RATIO))
+    (fine, more), (coarse, fewer) = parallel_map(code_at, (1 / RATE_SLOPE_STEP_RATIO, RATE_SLOPE_STEP_RATIO))
     slope = (coarse - fine) / (more - fewer) if more > fewer else predicted
     return Lambdas(predicted, min(max(slope, predicted / RATE_MAX_LAMBDA_RATIO), predicted * RATE_MAX_LAMBDA_RATIO))
 

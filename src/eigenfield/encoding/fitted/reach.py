@@ -47,12 +47,12 @@ def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: 
         scene = encoder.with_figures(found.result)
         other = _other_plan(plan, found, work, progress)
         if other is not None:
-            found = _compared(target, found, encoder.data)
+            found = _with_psnr(target, found, encoder.data)
     if other is not None:
         words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
         log.info(words, found.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
         with open_encoder(other, work, progress, warn=False) as encoder:
-            second = _compared(target, _search(target, encoder, found.quality), encoder.data)
+            second = _with_psnr(target, _search(target, encoder, found.quality), encoder.data)
             sizes = second.size, second.measured, found.size, found.measured
             if target.merit(second) > target.merit(found):
                 log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
@@ -81,18 +81,18 @@ def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QU
 
     def code(quality: int) -> Attempt[EncodedScene]:
         scene = encoder.encode_without_figures(quality)
-        measured = 0.0 if target.size else _measured(target, scene, encoder.data)
+        measured = 0.0 if target.size else _mean_measure(target, scene, encoder.data)
         return Attempt(quality, len(encode_scene(scene)), measured, scene)
 
     return search_quality(target, code, first)
 
 
-def _compared(target: Target, found: Attempt[EncodedScene], data: FitData) -> Attempt[EncodedScene]:
+def _with_psnr(target: Target, found: Attempt[EncodedScene], data: FitData) -> Attempt[EncodedScene]:
     """What was found, measured too where the target is a size: for `Target.merit`."""
-    return found if target.size is None else replace(found, measured=_measured(target, found.result, data))
+    return found if target.size is None else replace(found, measured=_mean_measure(target, found.result, data))
 
 
-def _measured(target: Target, scene: EncodedScene, data: FitData) -> float:
+def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
     """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
     renderer, observations, count = Renderer(scene), data.observations, len(data)
     cameras = [scene.rig.cameras[index] for index in scene.rig.encoded]

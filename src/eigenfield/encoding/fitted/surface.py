@@ -31,8 +31,8 @@ from scipy.sparse.linalg import cg
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, cameras_of, of_cameras
+from eigenfield.core.mesh import Mesh, vertex_normals
+from eigenfield.core.observations import Observations, cameras_of, select_cameras
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
@@ -161,7 +161,7 @@ def fit_surface(
         OutputError: `disk-full`.
     """
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), SURFACE_TUNING.max_cameras)
-    some, used = of_cameras(observations, chosen), [cameras[index] for index in chosen]
+    some, used = select_cameras(observations, chosen), [cameras[index] for index in chosen]
     shape = (min(side, SURFACE_TUNING.max_side_texels),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
     step = 2 if len(some) >= SURFACE_TUNING.subsample_observations or pixels > SURFACE_TUNING.subsample_pixels else 1
@@ -291,12 +291,7 @@ def _lines(
         exact = lattice.coordinates(points)
         lines = lattice.points(exact + np.array([0, 0, 1])) - lattice.points(exact)
     else:
-        corners = points[faces]
-        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals = np.zeros_like(points)
-        for k in range(3):
-            np.add.at(normals, faces[:, k], across)
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+        normals = vertex_normals(points, faces)
         middle = np.mean([camera.centre for camera in cameras], axis=0)
         lines = normals * np.square(points - middle).sum(axis=1, keepdims=True)
     few = np.unique(np.linspace(0, len(points) - 1, min(len(points), SURFACE_TUNING.sample_points)).astype(int))

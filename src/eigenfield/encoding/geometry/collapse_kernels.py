@@ -47,7 +47,7 @@ def _has(faces, f, v):
 
 
 @kernel()
-def _moved(faces, f, u, v):
+def _corners_after(faces, f, u, v):
     """Corners of a face once u has collapsed onto v."""
     a, b, c = faces[f, 0], faces[f, 1], faces[f, 2]
     return v if a == u else a, v if b == u else b, v if c == u else c
@@ -92,7 +92,7 @@ def _may_collapse(state, u, v, ring, count, marks, stamps, beside):
             if _has(state.faces, f, v):
                 shared += 1
             else:
-                a, b, c = _moved(state.faces, f, u, v)
+                a, b, c = _corners_after(state.faces, f, u, v)
                 sense = _sense(state.places, state.faces[f, 0], state.faces[f, 1], state.faces[f, 2])
                 if sense == 0 or _sense(state.places, a, b, c) != sense:
                     return False
@@ -129,7 +129,7 @@ def _cost_change(cost_map, state, u, v):
                     )
                     total -= cost if turn == 0 else 0.0
                 elif not _has(state.faces, f, v):
-                    a, b, c = _moved(state.faces, f, u, v)
+                    a, b, c = _corners_after(state.faces, f, u, v)
                     cost = face_cost(
                         cost_map, state.places, state.depth, a, b, c, add if turn == 1 else -add, border and turn == 1
                     )

@@ -20,8 +20,8 @@ from scipy.ndimage import distance_transform_edt, uniform_filter
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh, barycentric, signed_areas
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.mesh import Mesh, barycentric_coordinates, signed_areas
+from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.encoding.geometry.raster_kernels import HALF_TEXEL_STEPS, TEXEL_STEPS, CostMap, draw_owners
 from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.raster import rasterise_view
@@ -88,7 +88,7 @@ def depth_distortion(
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
 
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), DISTORTION_MAX_CAMERAS)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
 
     def of_observation(index: int) -> NDArray[np.float64]:
         return _camera_distortion(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
@@ -132,7 +132,9 @@ def texel_weights(
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
     corners = faces[owners[row, column]]
-    return corners, barycentric(places[corners], np.stack([column, row], axis=1) * TEXEL_STEPS + HALF_TEXEL_STEPS)
+    return corners, barycentric_coordinates(
+        places[corners], np.stack([column, row], axis=1) * TEXEL_STEPS + HALF_TEXEL_STEPS
+    )
 
 
 def _camera_distortion(
@@ -183,7 +185,7 @@ def hole_error(
         The error, and the vertices of `given` that are seen there.
     """
     chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), HOLE_MAX_CAMERAS)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
     error, seen = 0.0, []
     for index in range(len(some)):
         camera = cameras[chosen[some.camera_of(index)]]

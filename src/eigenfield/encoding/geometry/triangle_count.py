@@ -21,7 +21,7 @@ from scipy.ndimage import uniform_filter
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.encoding.geometry.distortion import VARIANCE_WINDOW_PX, VISIBLE_MAX_DEPTH_RATIO, luma_of, spread_cameras
 from eigenfield.encoding.geometry.simplify_relief import REMAINING_LOSS_RATIO
 from eigenfield.imaging.raster import rasterise_view
@@ -99,7 +99,7 @@ def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Obser
         The number; None where that of the mesh, at most PROXY_DEFAULT_TRIANGLES, is best.
     """
     chosen = spread_cameras(np.array([camera.centre for camera in cameras]), TRIANGLE_MAX_CAMERAS)
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
 
     def view(index: int) -> _View:
         return _view(mesh, cameras[chosen[some.camera_of(index)]], some.time_of(index), luma_of(some, index))
@@ -133,7 +133,7 @@ def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Obser
 def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _View:
     pixels = max(1.0, camera.width * camera.height / TRIANGLE_VIEW_MAX_PX)
     if pixels > 1:
-        camera = camera.resized(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
+        camera = camera.resize(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
         grey = np.asarray(cv2.resize(grey, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.float32)
     mean = uniform_filter(grey, VARIANCE_WINDOW_PX)
     around = np.maximum(uniform_filter(np.square(grey), VARIANCE_WINDOW_PX) - np.square(mean), 0)
@@ -145,7 +145,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     view = views[number]
     step = max(1, int(np.sqrt((view.inverse_depth > 0).sum() / TRIANGLE_VIEW_SAMPLES)))
     row, column = step * np.array(np.nonzero(view.inverse_depth[::step, ::step] > 0))
-    world = _unprojected(view.camera, row, column, view.inverse_depth[row, column])
+    world = _unproject(view.camera, row, column, view.inverse_depth[row, column])
     beside = []
     for other in views:
         if other is not view and other.time == view.time:
@@ -161,7 +161,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     return _Points((row, column), world, each, beside)
 
 
-def _unprojected(
+def _unproject(
     camera: Camera, row: NDArray[np.int64], column: NDArray[np.int64], inverse_depth: NDArray[np.float32]
 ) -> NDArray[np.float64]:
     """(n, 3) the points in the middles of pixels."""
@@ -178,7 +178,7 @@ def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> flo
         black = (drawn <= 0) & (view.inverse_depth > 0)
         holes = float(np.square(view.grey[black], dtype=np.float64).sum())
         here = drawn[points.pixel]
-        moved = _unprojected(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
+        moved = _unproject(view.camera, *points.pixel, np.where(here > 0, here, 1).astype(np.float32))
         error = np.zeros(len(moved))
         for other, there, at, gradient in points.beside:
             shift = np.nan_to_num(other.camera.project(moved)[0] - at)

@@ -51,7 +51,7 @@ def _taps(kind, radius, centre, spread, size, index, weight):
 
 
 @kernel(inline=True)
-def _hidden(x, y, q, inverse_depth, bias):
+def _is_hidden(x, y, q, inverse_depth, bias):
     """Whether inverse depth q at pixel position (x, y) lies behind the farthest of the four neighbouring samples.
 
     Inverse depth is affine over a plane's picture, so a point of the surface itself is never behind all four. An
@@ -75,7 +75,7 @@ def project_texels(
     """Texels [first, last): values (n, C) and seen (n,) out.
 
     A texel at X projects to (x, y) at depth z = (P X)_3. It is seen if it is in front, inside the photograph, not
-    hidden (see `_hidden`), |n . v| > grazing, and, with a mask, most of its filter lies where the mask counts. Its
+    hidden (see `_is_hidden`), |n . v| > grazing, and, with a mask, most of its filter lies where the mask counts. Its
     footprint per axis is the length of the row of d(x, y)/d(column, row); where it exceeds one pixel the filter is
     stretched to it, so that the texel averages what it covers. With a mask, taps are weighted by it.
     """
@@ -101,7 +101,7 @@ def project_texels(
         cosine = abs(normal[f, 0] * vx + normal[f, 1] * vy + normal[f, 2] * vz)
         if cosine <= grazing * np.sqrt(vx * vx + vy * vy + vz * vz):
             continue
-        if _hidden(x, y, 1.0 / z, inverse_depth, bias):
+        if _is_hidden(x, y, 1.0 / z, inverse_depth, bias):
             continue
         a, d = along[f], down[f]
         za = matrix[2, 0] * a[0] + matrix[2, 1] * a[1] + matrix[2, 2] * a[2]

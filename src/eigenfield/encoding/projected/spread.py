@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from eigenfield.encoding.projected.atlas import Atlas
-from eigenfield.imaging.sampling import halved
+from eigenfield.imaging.sampling import halve_picture
 
 GUTTER_TEXELS = 4.0  # round each chart that repeat the nearest chart texel: bicubic taps reach 2
 
@@ -79,8 +79,8 @@ def push_pull(picture: NDArray[np.float32], weight: NDArray[np.float32]) -> NDAr
         )
     even = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)))
     even_weight = np.pad(weight, ((0, height % 2), (0, width % 2)))
-    half_weight = halved(even_weight[..., None])[..., 0]
-    half = halved(even)
+    half_weight = halve_picture(even_weight[..., None])[..., 0]
+    half = halve_picture(even)
     scale = np.minimum(half_weight * 4, 1.0) / np.maximum(half_weight, 1e-12)  # confidence grows as levels fill
     coarse = push_pull((half * scale[..., None]).astype(np.float32), (half_weight * scale).astype(np.float32))
     large = cv2.resize(coarse, (even.shape[1], even.shape[0]), interpolation=cv2.INTER_LINEAR)

@@ -12,7 +12,7 @@ from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.encoding.projected.spread import Spreader
 from eigenfield.imaging.png import png_bytes
-from eigenfield.runtime.files import mended, write_bytes
+from eigenfield.runtime.files import output_errors, write_bytes
 from eigenfield.runtime.parallel import parallel_stream
 
 
@@ -35,7 +35,7 @@ def write_maps(
         folder: Is made if it does not exist.
         progress: Reports the maps that are written.
     """
-    with mended(folder):
+    with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
 
     flat = [name.replace("/", "_").replace("\\", "_") for name in names]

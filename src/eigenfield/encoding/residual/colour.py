@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, MIDDLE_CODE
 from eigenfield.coding.video.av1 import Planes
 from eigenfield.imaging.colour import LUMA_BT709
-from eigenfield.imaging.sampling import halved
+from eigenfield.imaging.sampling import halve_picture
 
 # Catmull and Rom's, a quarter of a sample from the second
 QUARTER_CUBIC_TAPS = np.array([-9, 111, 29, -3], np.float32) / 128
@@ -46,7 +46,7 @@ def to_planes(
         stacked = np.concatenate([_codes(converted[..., channel], scale[min(channel, 1)]) for channel in range(3)])
         flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), MIDDLE_CODE, np.uint16)
         return stacked, flat, flat
-    blue, red = (halved(converted[..., channel]) for channel in (1, 2))
+    blue, red = (halve_picture(converted[..., channel]) for channel in (1, 2))
     return _codes(converted[..., 0], scale[0]), _codes(blue, scale[1]), _codes(red, scale[1])
 
 

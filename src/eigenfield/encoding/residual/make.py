@@ -81,7 +81,7 @@ def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
     """
     if not 0 <= quality <= 100:
         raise OptionError("residual-quality", f"a residual of quality {quality}", remedy="use 0 to 100")
-    rows, columns = (_even(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
+    rows, columns = (_even_side(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
     high = 3 * rows if quality >= RESIDUAL_FULL_CHROMA_QUALITY else rows
     if columns > RESIDUAL_MAX_COLUMNS_PX or high > RESIDUAL_MAX_ROWS_PX:
         raise OptionError(
@@ -99,5 +99,5 @@ def crf_of(quality: int) -> int:
     return round(63 - 0.62 * quality)
 
 
-def _even(side: int) -> int:
+def _even_side(side: int) -> int:
     return max(MIN_SIDE_TEXELS, side + side % 2)

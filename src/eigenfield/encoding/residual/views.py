@@ -68,7 +68,7 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     for number, planes in enumerate(residual_frames(residual)):
         if number == position:
             return to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
-    raise AssertionError("a film ends with an error")
+    raise AssertionError("a video ends with an error")
 
 
 def corrected_picture(

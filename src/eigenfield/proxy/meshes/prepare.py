@@ -95,7 +95,7 @@ def _inside_frame(pixels: NDArray[np.float64], depth: NDArray[np.float64], camer
 
 def _covers_pixels(mesh: Mesh, camera: Camera) -> bool:
     return bool(
-        (rasterise_view(mesh, camera.resized(PREPARE_THUMBNAIL_PIXELS, PREPARE_THUMBNAIL_PIXELS)).face >= 0).any()
+        (rasterise_view(mesh, camera.resize(PREPARE_THUMBNAIL_PIXELS, PREPARE_THUMBNAIL_PIXELS)).face >= 0).any()
     )
 
 

@@ -19,7 +19,7 @@ from scipy.optimize import minimize
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
-from eigenfield.core.observations import Observations, of_cameras
+from eigenfield.core.observations import Observations, select_cameras
 from eigenfield.core.progress import Progress, track
 from eigenfield.imaging.sampling import distances_to, farthest_points
 from eigenfield.proxy.primitives.shapes import SpherePrimitive
@@ -318,12 +318,12 @@ def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
 def _blur_views(
     chosen: Sequence[int], cameras: Sequence[Camera], observations: Observations, progress: Progress | None
 ) -> _BlurredViews:
-    some = of_cameras(observations, chosen)
+    some = select_cameras(observations, chosen)
     small, blurred, scales = [], [], []
     for index in track(range(len(some)), "fit sphere", len(some), progress):
         camera, pixels = cameras[chosen[some.camera_of(index)]], some.photograph(index).pixels
         scale = min(1.0, SPHERE_FIT_TUNING.max_side_pixels / max(camera.width, camera.height))
-        small.append(camera.resized(max(1, round(camera.width * scale)), max(1, round(camera.height * scale))))
+        small.append(camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale))))
         if scale < 1:
             size = (small[-1].width, small[-1].height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.float32)

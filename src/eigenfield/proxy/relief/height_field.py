@@ -17,7 +17,7 @@ from scipy.ndimage import binary_dilation, distance_transform_edt
 from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
-from eigenfield.core.mesh import Mesh, barycentric
+from eigenfield.core.mesh import Mesh, barycentric_coordinates
 from eigenfield.imaging.graph import components, vertex_components
 from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
 from eigenfield.proxy.relief.kernels import label_pixels, refine_greedily, wedge_moments
@@ -337,7 +337,7 @@ def _fit_depths(
     label_pixels(points, tri, len(tri), owner)
     y, x = np.nonzero((owner >= 0) & valid & ~at_cut)
     corners = tri[owner[y, x]]
-    weights = barycentric(points[corners], np.stack([x, y], axis=1) * DELAUNAY_STEPS_PER_PIXEL)
+    weights = barycentric_coordinates(points[corners], np.stack([x, y], axis=1) * DELAUNAY_STEPS_PER_PIXEL)
     off = d[y, x] - (weights * height[corners]).sum(axis=1)
     used = np.abs(off) <= HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance
     corners, weights, off = corners[used], weights[used], off[used]

@@ -202,7 +202,7 @@ def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progres
         photograph = light_field.photograph(index)
         camera = light_field.views[index].camera
         scale = min(1.0, float(np.sqrt(most / (camera.width * camera.height))))
-        small = camera.resized(max(2, round(camera.width * scale)), max(2, round(camera.height * scale)))
+        small = camera.resize(max(2, round(camera.width * scale)), max(2, round(camera.height * scale)))
         pixels = _resample(photograph.pixels, camera, small)
         mask = None if photograph.mask is None else _resample(photograph.mask, camera, small) > 0.5
         known = _lens_mask(light_field.views[index], small)
@@ -224,7 +224,7 @@ def _lens_mask(view: View, small: Camera) -> NDArray[np.bool_] | None:
 def _resample(pixels: NDArray[np.float32], camera: Camera, small: Camera) -> NDArray[np.float32]:
     """Pixels at the resolution of `small`.
 
-    `Camera.resized` crops evenly, by less than a pixel of the smaller picture.
+    `Camera.resize` crops evenly, by less than a pixel of the smaller picture.
     """
     if (small.width, small.height) == (camera.width, camera.height):
         return pixels

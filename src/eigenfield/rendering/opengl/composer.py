@@ -16,12 +16,12 @@ from eigenfield.core.viewplane import ViewPlane
 from eigenfield.rendering.weight_map import component_rows, weight_map
 from eigenfield.rendering.weights import ViewWeights
 
-WHOLE = (0.0, 0.0, 1.0, 1.0)  # rectangle
-LAYERS = 64  # that the shader sums in one draw
-REACH = 2  # texels beside a chart that the widest filter reads
-HEAD = "#version 330 core\n"
+WHOLE_RECTANGLE = (0.0, 0.0, 1.0, 1.0)  # left, top, right, bottom
+COMPOSE_DRAW_LAYERS = 64  # summed in one draw, as in compose.glsl
+COMPOSE_REACH_TEXELS = 2  # that the widest filter reads beside a chart
+GLSL_HEAD = "#version 330 core\n"
 
-QUAD = """#version 330 core
+QUAD_GLSL = """#version 330 core
 uniform vec4 rectangle;  // of the target: left, top, right, bottom in 0..1
 in vec2 corner;
 out vec2 own;
@@ -30,7 +30,7 @@ void main() {
   gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, corner) - 1.0, 0.0, 1.0);
 }
 """
-SPREAD = """#version 330 core
+SPREAD_GLSL = """#version 330 core
 uniform vec2 texel;      // of the target, in clip space
 uniform vec2 shifts[SHIFTS];
 in vec2 coordinate;
@@ -41,19 +41,23 @@ void main() {
   gl_Position = vec4(2.0 * coordinate - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);
 }
 """
-PLACE = "in vec3 point;\nout vec4 place;\nvoid main() { place = placeOf(point); }\n"
-SUM = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(sumTextures(own), 1.0); }\n"
-FINER = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(finerValue(own), 1.0); }\n"
+PLACE_GLSL = "in vec3 point;\nout vec4 place;\nvoid main() { place = placeOf(point); }\n"
+SUM_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(sumTextures(own), 1.0); }\n"
+FINER_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(finerValue(own), 1.0); }\n"
 
 
 @dataclass(frozen=True, eq=False)
 class _Part:
     """A mean or a basis on the GPU.
 
-    array: four channels of a mean or four textures of one channel to a texel. rectangle: left, top, right and bottom
-    of its grid that it covers, 0..1. colours: (C, 3) of the value 1 of each channel. scale, bias: (groups, C, 4),
-    value = stored * scale + bias. columns: its textures among those of all bases, None for a mean. group: the first of
-    its groups in the weight maps.
+    Attributes:
+        array: Four channels of a mean, or four textures of one channel, to a texel.
+        rectangle: Left, top, right and bottom of its grid that it covers, 0..1.
+        colours: (C, 3) R, G and B of the value 1 of each channel.
+        scale: (groups, C, 4): value = stored * scale + bias.
+        bias: (groups, C, 4).
+        columns: Its textures among those of all bases; None: a mean.
+        group: The first of its groups in the weight maps.
     """
 
     array: Any
@@ -67,7 +71,14 @@ class _Part:
 
 @dataclass(eq=False)
 class _Grid:
-    """What is summed at one size. target, frame: the sum. places: where each texel lies, once a view needs it."""
+    """What is summed at one size.
+
+    Attributes:
+        target: Texture of the sum.
+        frame: Framebuffer of it.
+        parts: What is summed.
+        places: Texture of where each texel lies on the surface, made when a view needs it.
+    """
 
     target: Any
     frame: Any
@@ -76,23 +87,33 @@ class _Grid:
 
 
 class Composer:
-    """Composes `texture` for one viewpoint after the other, in the context and thread that it was made in.
+    """Composes a texture for one viewpoint after the other, in the context and thread that it was made in.
 
-    texture: R, G, B of half-floats of the scene's whole atlas, with mip maps; row 0 is v = 0. mode: of the weights
-    that texels look up. Raises FormatError `unsupported-layout` for scenes that are no pictures.
+    Attributes:
+        texture: R, G, B of half-floats of the scene's whole atlas, with mip maps; row 0 is v = 0.
     """
 
     def __init__(self, context: Any, scene: Scene, mode: str) -> None:
+        """Put a scene's textures on the GPU.
+
+        Args:
+            context: Of moderngl.
+            scene: The scene.
+            mode: Of the weights that texels look up, one of `WEIGHT_MODES`.
+
+        Raises:
+            FormatError: `unsupported-layout`: the scene is no picture.
+        """
         self._made: list[Any] = []
         self._context, self._scene, self._mode = context, scene, mode
         self._rows = component_rows(scene)
         self._composed: Any = None
         self._maps: Any = None
         self._colours = _colours_of(scene)
-        self._sum, self._finer = (self._program(QUAD, body) for body in (SUM, FINER))
+        self._sum, self._finer = (self._program(QUAD_GLSL, body) for body in (SUM_GLSL, FINER_GLSL))
         corners = self.keep(context.buffer(np.array([[0, 0], [1, 0], [0, 1], [1, 1]], np.float32).tobytes()))
         set_uniforms(self._sum, stored=np.int32(0), places=np.int32(1), weightMaps=np.int32(2))
-        set_uniforms(self._finer, coarse=np.int32(0), rectangle=WHOLE)
+        set_uniforms(self._finer, coarse=np.int32(0), rectangle=WHOLE_RECTANGLE)
         self._quads = {
             program: self.keep(context.vertex_array(program, [(corners, "2f", "corner")]))
             for program in (self._sum, self._finer)
@@ -101,21 +122,28 @@ class Composer:
         self.texture = self._whole.target
 
     def keep(self, made: Any) -> Any:
-        """What `release` is to give back."""
+        """Return an object of the GPU, which `release` will free.
+
+        Args:
+            made: The object.
+        """
         self._made.append(made)
         return made
 
     def release(self) -> None:
-        """Give everything on the GPU back."""
+        """Free everything on the GPU."""
         for made in self._made:
             made.release()
         self._made.clear()
 
     def compose(self, count: int, weights: ViewWeights | None, eye: NDArray[np.float64]) -> None:
-        """Fill `texture` with the mean and the first `count` textures of each basis, unless it holds that already.
+        """Fill `texture`, unless it holds the same already.
 
-        weights: of the whole view; None: each texel takes those of the place where its ray
-        to `eye` (3,) meets the view plane.
+        Args:
+            count: Number of eigen textures of each basis.
+            weights: Of the whole view; None: each texel takes those of the place where its ray to `eye` meets the view
+                plane.
+            eye: (3,) the camera's centre.
         """
         place = eye.tobytes() if weights is None else weights.rows.tobytes() + weights.values.tobytes()
         wanted = (count, place, weights is None)
@@ -151,23 +179,23 @@ class Composer:
                 own = omega[part.columns]
                 flat[: len(own)] *= own
         scale, bias = part.scale * factor, part.bias * factor
-        sharing, step = 4 if part.columns is None else 1, LAYERS // channels
+        sharing, step = 4 if part.columns is None else 1, COMPOSE_DRAW_LAYERS // channels
         part.array.use(0)
         if rays:
             grid.places.use(1)
             self._maps.use(2)
         set_uniforms(self._sum, rectangle=part.rectangle, sharing=np.int32(sharing), channels=np.int32(channels))
-        set_uniforms(self._sum, rayWeights=np.bool_(rays), colours=_padded(part.colours))
+        set_uniforms(self._sum, rayWeights=np.bool_(rays), colours=_pad_layers(part.colours))
         for first in range(0, groups, step):
             last = min(first + step, groups)
             layer = first * channels // sharing
             numbers = {"entries": (last - first) * channels, "firstLayer": layer, "firstGroup": part.group + first}
             set_uniforms(self._sum, **{name: np.int32(number) for name, number in numbers.items()})
-            set_uniforms(self._sum, scale=_padded(scale[first:last]), bias=_padded(bias[first:last]))
+            set_uniforms(self._sum, scale=_pad_layers(scale[first:last]), bias=_pad_layers(bias[first:last]))
             self._quads[self._sum].render(self._context.TRIANGLE_STRIP)
 
     def _program(self, vertex: str, body: str) -> Any:
-        source = HEAD + shader("cubic") + shader("compose") + body
+        source = GLSL_HEAD + shader("cubic") + shader("compose") + body
         return self.keep(self._context.program(vertex_shader=vertex, fragment_shader=source))
 
     def _make_grids(self) -> tuple[_Grid, list[_Grid]]:
@@ -204,7 +232,7 @@ class Composer:
         data = np.ascontiguousarray(texels.transpose(0, 2, 3, 1))
         array = self._context.texture_array((width, height, len(data)), 4, data, dtype="f4", alignment=1)
         scale = np.tile(np.eye(4), (len(data), 1))[None, :channels]
-        return _Part(_unfiltered(self.keep(array)), WHOLE, colours, scale, np.zeros_like(scale))
+        return _Part(_without_filter(self.keep(array)), WHOLE_RECTANGLE, colours, scale, np.zeros_like(scale))
 
     def _basis(self, basis: Basis, colours: NDArray[np.float64], columns: slice, group: int) -> _Part:
         """Four eigen textures to a texel, and the numbers that make values of what it stores."""
@@ -225,10 +253,10 @@ class Composer:
         scale, bias = (values.reshape(groups, 4, channels).transpose(0, 2, 1) for values in (scale, bias))
         (rows, wide), (top, left) = basis.size, basis.corner
         rectangle = (left / wide, top / rows, (left + width) / wide, (top + height) / rows)
-        return _Part(_unfiltered(array), rectangle, colours, scale, bias, columns, group)
+        return _Part(_without_filter(array), rectangle, colours, scale, bias, columns, group)
 
     def _make_rays(self) -> None:
-        """The maps that texels look weights up in and the places of the texels, at the first view that needs them."""
+        """Make the weight maps and the places of the texels, for the first view that needs them."""
         grids = [grid for grid in (*self._coarser, self._whole) if any(part.columns for part in grid.parts)]
         if self._maps is not None or not grids:
             return
@@ -241,8 +269,8 @@ class Composer:
         data = np.ascontiguousarray(layers.transpose(0, 2, 3, 1)).astype(np.float16)
         self._maps = self.keep(self._context.texture_array((nodes, nodes, len(data)), 4, data, dtype="f2"))
         self._maps.repeat_x = self._maps.repeat_y = False
-        shifts = _shifts()
-        program = self._program(SPREAD.replace("SHIFTS", str(len(shifts))), PLACE)
+        shifts = _neighbour_shifts()
+        program = self._program(SPREAD_GLSL.replace("SHIFTS", str(len(shifts))), PLACE_GLSL)
         set_uniforms(program, shifts=shifts)
         mesh = self._scene.proxy.mesh
         assert mesh.uv is not None
@@ -267,12 +295,21 @@ class Composer:
 
 
 def shader(name: str) -> str:
-    """A GLSL body that every renderer on a GPU includes; its head says what goes before it."""
+    """A GLSL body, shared with the web viewer; its first lines say what stands before it.
+
+    Args:
+        name: Of the file in `shaders/`.
+    """
     return (resources.files("eigenfield.rendering") / "shaders" / f"{name}.glsl").read_text(encoding="utf-8")
 
 
 def set_uniforms(program: Any, **values: ArrayLike) -> None:
-    """Write uniforms, whole numbers as int; one that the compiler found unused is absent."""
+    """Write uniforms, whole numbers as int. Those that the compiler found unused are left out.
+
+    Args:
+        program: Of moderngl.
+        values: Of the uniforms.
+    """
     for name, value in values.items():
         if name in program:
             array = np.asarray(value)
@@ -282,7 +319,7 @@ def set_uniforms(program: Any, **values: ArrayLike) -> None:
 def _colours_of(scene: Scene) -> NDArray[np.float64]:
     """(K, 3): R, G and B of the value 1 of each channel of all planes."""
     channels = [int(plane.mean.shape[2]) for plane in scene.appearance.planes]
-    if scene.appearance.to_rgb is not None and max(channels) <= LAYERS:
+    if scene.appearance.to_rgb is not None and max(channels) <= COMPOSE_DRAW_LAYERS:
         return scene.appearance.to_rgb.T.astype(np.float64)
     if channels in ([1], [3]):
         return np.eye(3) if channels == [3] else np.ones((1, 3))
@@ -301,22 +338,22 @@ def _on_plane(view: ViewPlane, points: ArrayLike) -> NDArray[np.float64]:
     return np.concatenate([view.coordinates(points), height[:, None]], axis=1)
 
 
-def _shifts() -> NDArray[np.float64]:
+def _neighbour_shifts() -> NDArray[np.float64]:
     """(n, 2) texels by which the mesh is drawn beside itself, the nearest last, which is the one that stays."""
-    steps = np.arange(-REACH, REACH + 1.0)
+    steps = np.arange(-COMPOSE_REACH_TEXELS, COMPOSE_REACH_TEXELS + 1.0)
     shifts = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     return shifts[np.argsort(-np.square(shifts).sum(axis=1), kind="stable")]
 
 
-def _padded(values: NDArray[np.float64]) -> NDArray[np.float32]:
-    """(LAYERS, n): what an array of the shader takes, zeros after the last of (..., n)."""
+def _pad_layers(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(COMPOSE_DRAW_LAYERS, n): what an array of the shader takes, zeros after the last of (..., n)."""
     flat = values.reshape(-1, values.shape[-1])
-    padded = np.zeros((LAYERS, flat.shape[1]), np.float32)
+    padded = np.zeros((COMPOSE_DRAW_LAYERS, flat.shape[1]), np.float32)
     padded[: len(flat)] = flat
     return padded
 
 
-def _unfiltered(array: Any) -> Any:
+def _without_filter(array: Any) -> Any:
     array.repeat_x = array.repeat_y = False
     array.filter = (array.ctx.NEAREST, array.ctx.NEAREST)
     return array

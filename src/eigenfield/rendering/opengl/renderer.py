@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.checks import FILTERS, check_filter, check_textures
-from eigenfield.rendering.opengl.composer import HEAD, Composer, set_uniforms, shader
+from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
+from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
 from eigenfield.rendering.picture import Picture
-from eigenfield.rendering.software.drawing import ONE_SAMPLE, make_surface, median_footprint
+from eigenfield.rendering.software.drawing import RENDER_ONE_SAMPLE_PX, make_surface, median_footprint
 from eigenfield.rendering.software.renderer import BLACK, background_of
 from eigenfield.rendering.weights import ViewWeights
 
-VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
+OPENGL_VERSION = 330  # OpenGL 3.3: texture arrays, and GLSL that reads as WebGL2's does
 
-VERTEX = """#version 330 core
+SURFACE_VERTEX_GLSL = """#version 330 core
 uniform mat4 toClip;
 in vec3 position;
 in vec2 coordinate;
@@ -30,19 +30,16 @@ void main() {
   gl_Position = toClip * vec4(position, 1.0);
 }
 """
-FRAGMENT = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = vec4(surfaceColour(uv), 1.0); }\n"
+SURFACE_FRAGMENT_GLSL = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = vec4(surfaceColour(uv), 1.0); }\n"
 
 
 class OpenGLRenderer:
-    """Draws a scene with OpenGL; to be used from the thread that made it, and closed (it is a context manager).
+    """Draws a scene with OpenGL; used from the thread that made it, and closed (it is a context manager).
 
-    Each viewpoint's texture is composed and then drawn (decision 15). filter: `bilinear` or `bicubic` (Catmull-Rom).
-    weights: the mode of the weights that texels look up. multisample: samples of a pixel's edges, 0 for none. context:
-    a moderngl context to draw in, else one of its own.
+    Each viewpoint's texture is composed and then drawn (decision 15).
 
-    Raises OptionError (`opengl-missing`: moderngl is not installed; `opengl-context`: no driver, or one below OpenGL
-    3.3; `opengl-memory`: the textures are too many or too large for it), FormatError `unsupported-layout` for scenes
-    that are no pictures: neither one plane of one or three channels, nor planes with a matrix to R, G and B.
+    Attributes:
+        context: The moderngl context; None: the renderer is closed.
     """
 
     def __init__(
@@ -54,6 +51,21 @@ class OpenGLRenderer:
         multisample: int = 0,
         context: Any = None,
     ) -> None:
+        """Put a scene on the GPU.
+
+        Args:
+            scene: The scene.
+            filter: `bilinear` or `bicubic` (Catmull-Rom).
+            weights: Mode of the weights that texels look up, one of `WEIGHT_MODES`.
+            multisample: Samples of an edge pixel; 0: edges are not smoothed.
+            context: A moderngl context to draw in. Default: a new one.
+
+        Raises:
+            FormatError: `unsupported-layout`: the scene is no picture: neither one plane of one or three channels, nor
+                planes with a matrix to R, G and B.
+            OptionError: `opengl-missing`: moderngl is not installed; `opengl-context`: no driver, or one below OpenGL
+                3.3; `opengl-memory`: the textures are too many or too large for it; `filter`.
+        """
         check_filter(filter)
         self._scene = scene
         self._composer: Composer | None = None
@@ -76,7 +88,7 @@ class OpenGLRenderer:
 
     @property
     def name(self) -> str:
-        """What draws: the driver's own words."""
+        """The driver's name of what draws."""
         return str(self.context.info["GL_RENDERER"])
 
     def __enter__(self) -> OpenGLRenderer:
@@ -86,7 +98,7 @@ class OpenGLRenderer:
         self.close()
 
     def close(self) -> None:
-        """Give everything on the GPU back."""
+        """Free everything on the GPU."""
         for made in self._made:
             made.release()
         self._made.clear()
@@ -107,11 +119,18 @@ class OpenGLRenderer:
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Picture:
-        """The view of `camera`, values exact to 1 / 255.
+        """A view, with values exact to 1 / 255.
 
-        weights: as for the software renderer. None: each point of the
-        surface takes those of the place where its ray to the camera meets the view plane, which is right for a camera
-        anywhere; on the plane it is the same. The rest as `Renderer.draw`.
+        Args:
+            camera: The camera.
+            weights: As of `Renderer.draw`. Default: each point of the surface takes those of the place where its ray to
+                the camera meets the view plane, which suits a camera anywhere; on the plane both are the same.
+            background: As of `Renderer.draw`.
+            textures: As of `Renderer.draw`.
+            colour: As of `Renderer.draw`.
+
+        Raises:
+            OptionError: `textures`, `background`.
         """
         data = self.draw_rgba(camera, weights, textures=textures, colour=colour).astype(np.float32) / np.float32(255)
         image, coverage = data[..., :3], np.ascontiguousarray(data[..., 3])
@@ -126,7 +145,17 @@ class OpenGLRenderer:
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """(H, W, 4) uint8, R, G, B times coverage, and coverage: what the GPU holds after `paint`."""
+        """(H, W, 4) uint8: R, G, B times coverage, and coverage.
+
+        Args:
+            camera: As of `draw`.
+            weights: As of `draw`.
+            textures: As of `draw`.
+            colour: As of `draw`.
+
+        Raises:
+            OptionError: `textures`.
+        """
         frame = self.paint(camera, weights, textures=textures, colour=colour)
         data = np.frombuffer(frame.read(components=4), np.uint8)
         return data.reshape(camera.height, camera.width, 4)[::-1]
@@ -139,7 +168,17 @@ class OpenGLRenderer:
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Any:
-        """Draw into a framebuffer that stays on the GPU, bottom row first, and is drawn over by the next call."""
+        """Draw into a framebuffer that stays on the GPU, bottom row first, until the next call overwrites it.
+
+        Args:
+            camera: As of `draw`.
+            weights: As of `draw`.
+            textures: As of `draw`.
+            colour: As of `draw`.
+
+        Raises:
+            OptionError: `textures`.
+        """
         check_textures(textures)
         assert self._composer is not None, "the renderer is closed"
         largest = max((basis.count for plane in self._scene.appearance.planes for basis in plane.bases), default=0)
@@ -160,9 +199,9 @@ class OpenGLRenderer:
     def _set_up(self, filter: str, weights: str) -> None:
         context, scene, mesh = self.context, self._scene, self._scene.proxy.mesh
         self._composer = Composer(context, scene, weights)
-        head = f"{HEAD}#define BICUBIC {FILTERS.index(filter)}\n"
-        source = head + shader("cubic") + shader("surface") + FRAGMENT
-        self._program = self._keep(context.program(vertex_shader=VERTEX, fragment_shader=source))
+        head = f"{GLSL_HEAD}#define BICUBIC {TEXTURE_FILTERS.index(filter)}\n"
+        source = head + shader("cubic") + shader("surface") + SURFACE_FRAGMENT_GLSL
+        self._program = self._keep(context.program(vertex_shader=SURFACE_VERTEX_GLSL, fragment_shader=source))
         # about the middle of the mesh: float32 keeps few digits where the world's origin is far away
         low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
         self._middle, self._radius = (low + high) / 2, float(np.linalg.norm(high - low) / 2) or 1.0
@@ -173,7 +212,7 @@ class OpenGLRenderer:
         layout = [(vertices, "3f 2f", "position", "coordinate")]
         self._array = self._keep(context.vertex_array(self._program, layout, index_buffer=faces))
         detail = median_footprint(make_surface(mesh, *scene.appearance.atlas), scene.rig.cameras[scene.rig.reference])
-        set_uniforms(self._program, composed=np.int32(0), finest=ONE_SAMPLE * max(detail, 1.0))
+        set_uniforms(self._program, composed=np.int32(0), finest=RENDER_ONE_SAMPLE_PX * max(detail, 1.0))
 
     def _frames(self, width: int, height: int) -> tuple[Any, Any]:
         """The framebuffer to draw into and the one to read, of a size; kept until another is asked for."""
@@ -200,13 +239,17 @@ class OpenGLRenderer:
         self._kept = None
 
     def _keep(self, made: Any) -> Any:
-        """What is to be given back in the end."""
+        """Return an object of the GPU, which `close` will free."""
         self._made.append(made)
         return made
 
 
 def make_context() -> Any:
-    """A moderngl context without a window. Raises OptionError (`opengl-missing`, `opengl-context`)."""
+    """A moderngl context without a window.
+
+    Raises:
+        OptionError: `opengl-missing`, `opengl-context`.
+    """
     try:
         import moderngl
     except ImportError as error:
@@ -217,7 +260,7 @@ def make_context() -> Any:
     options: tuple[dict[str, Any], ...] = ({"backend": "egl"}, {})  # without a display, else what the system has
     for option in options:
         try:
-            return moderngl.create_standalone_context(require=VERSION, **option)
+            return moderngl.create_standalone_context(require=OPENGL_VERSION, **option)
         except Exception as error:  # what backends raise is not documented, and no context is no bug of ours
             problems.append(str(error))
     raise OptionError(

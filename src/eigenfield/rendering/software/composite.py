@@ -1,7 +1,7 @@
 """Equation 8 over a whole scene: what each plane keeps at densities of its own becomes one texture that is drawn.
 
-The sums are made where they are cheap, at the density at which eigen textures are stored, and only then made finer.
-The means do not change from view to view: they are made finer once, when a scene is opened.
+The sums are made where they are cheap, at the density at which eigen textures are stored, and upsampled afterwards. The
+means do not change from view to view: they are upsampled once, when a scene is opened.
 """
 
 # mypy: disable-error-code="no-untyped-call"
@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.software.kernels import AREA
+from eigenfield.rendering.software.kernels import TILE_AREA
 from eigenfield.rendering.software.resample import Taps, make_taps, tiles_read
 from eigenfield.rendering.software.resample_kernels import add_tiles, clear_outside, enlarge_tiles, join_tiles
 from eigenfield.rendering.software.tiles import (
-    AT_ONCE,
+    TILES_PER_TASK,
     Tiled,
     compose,
     cut_tiles,
@@ -37,10 +37,15 @@ from eigenfield.runtime.parallel import parallel_map, pieces
 class Part:
     """Bases of one plane with one grid and corner.
 
-    first, channels: which of the K channels. weights: for each basis (No, n) float64. number: (tile rows, tile columns)
-    of the grid, each tile's index in `tiled`, -1 for tiles that are not kept. taps: how it is made finer, along rows
-    and columns; None where it has the atlas's size. rectangle: [top, bottom) x [left, right) outside which it is zero;
-    None: nowhere.
+    Attributes:
+        first: First of its channels among the K of all planes.
+        channels: Number of its channels.
+        size: (rows, columns) of the grid.
+        tiled: The textures.
+        weights: (No, n) float64 for each basis.
+        number: (tile rows, tile columns) each tile's index in `tiled`; -1: the tile is left out.
+        taps: Filters along rows and columns that make it as fine as the atlas; None where it is.
+        rectangle: [top, bottom) x [left, right) outside of which it is zero; None: it is whole.
     """
 
     first: int
@@ -53,7 +58,12 @@ class Part:
     rectangle: tuple[int, int, int, int] | None
 
     def omega(self, view: ViewWeights, count: int | None) -> NDArray[np.float64]:
-        """(N,) weights of the components; zero from `count` on in each basis."""
+        """(N,) weights of the components.
+
+        Args:
+            view: What is blended.
+            count: Components of each basis from here on have the weight 0; None: none of them.
+        """
         each = [view.blend(weights) for weights in self.weights]
         return np.concatenate([np.where(np.arange(len(w)) < (len(w) if count is None else count), w, 0) for w in each])
 
@@ -62,9 +72,14 @@ class Part:
 class Composite:
     """A scene's textures, ready to be summed.
 
-    size: (H, W) of the atlas. channels: of the texture that is drawn, D. number: (tile rows, tile columns), index of
-    each kept tile, else -1. base: (tiles, D, AREA) float32, what is drawn without eigen textures. matrix: (D, K)
-    float32. plain: the scene is one plane of one size: its part holds the mean, and nothing needs to be joined.
+    Attributes:
+        size: (H, W) of the atlas.
+        channels: D, of the texture that is drawn.
+        number: (tile rows, tile columns) each tile's index in `base`; -1: the tile is left out.
+        base: (tiles, D, TILE_AREA) float32, what is drawn without eigen textures.
+        matrix: (D, K) float32 from the planes' channels to the texture's.
+        parts: What is summed.
+        plain: Whether the scene is one plane of one size: its part holds the mean, and nothing is joined.
     """
 
     size: tuple[int, int]
@@ -77,7 +92,12 @@ class Composite:
 
 
 def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
-    """Lay out a scene's textures for the tiles `used` (tile rows, tile columns) of its atlas."""
+    """Lay out a scene's textures.
+
+    Args:
+        scene: The scene.
+        used: (tile rows, tile columns) the tiles of the atlas that are ever drawn.
+    """
     size = scene.appearance.atlas
     total = sum(int(plane.mean.shape[2]) for plane in scene.appearance.planes)
     matrix = (
@@ -99,7 +119,7 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
         weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
         part = Part(0, total, size, tiled, weights, _numbers(used), None, None)
         return Composite(size, total, part.number, tiled.mean, matrix, (part,), True)
-    base = np.zeros((len(places), len(matrix), AREA), np.float32)
+    base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
     first = 0
     for plane in scene.appearance.planes:
         depth = int(plane.mean.shape[2])
@@ -118,8 +138,16 @@ def compose_scene(
     buffers: Sequence[NDArray[np.float32]],
     layers: NDArray[np.float32],
 ) -> None:
-    """The texture for view weights and `count` eigen textures of each basis (None: all), for the `needed`
-    tiles (those not kept are left out), into layers (L, tiles, AREA, 4). buffers: of `make_buffers`."""
+    """Equation 8 for some tiles.
+
+    Args:
+        composite: The scene's textures.
+        view: What is blended.
+        count: Number of eigen textures of each basis; None: all.
+        needed: (tile rows, tile columns) the tiles wanted; those that `composite` lacks are left out.
+        buffers: Of `make_buffers`, overwritten.
+        layers: (L, tiles, TILE_AREA, 4), written.
+    """
     kept = needed & (composite.number >= 0)
     if composite.plain:
         (part,) = composite.parts
@@ -136,16 +164,20 @@ def compose_scene(
 
     def join(piece: tuple[int, int]) -> None:
         some = tiles[piece[0] : piece[1]]
-        total = np.zeros((len(some), composite.matrix.shape[1], AREA), np.float32)
+        total = np.zeros((len(some), composite.matrix.shape[1], TILE_AREA), np.float32)
         for part, buffer in zip(composite.parts, buffers, strict=True):
             _add(part.taps, some, composite.size, part.size, buffer, total[:, part.first : part.first + part.channels])
         join_tiles(some, total, composite.matrix, composite.base, numbers[piece[0] : piece[1]], layers)
 
-    parallel_map(join, pieces(len(tiles), AT_ONCE))
+    parallel_map(join, pieces(len(tiles), TILES_PER_TASK))
 
 
 def make_buffers(composite: Composite) -> list[NDArray[np.float32]]:
-    """Room for the sums of the parts."""
+    """Memory for the sums of the parts.
+
+    Args:
+        composite: The scene's textures.
+    """
     return [] if composite.plain else [empty_layers(*part.size, part.channels) for part in composite.parts]
 
 
@@ -198,7 +230,7 @@ def _add_mean(
     share: NDArray[np.float32],
     base: NDArray[np.float32],
 ) -> None:
-    """base (tiles, D, AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
+    """base (tiles, D, TILE_AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
     height, width, depth = mean.shape
     taps = None if (height, width) == atlas else (make_taps(atlas[0], height), make_taps(atlas[1], width))
     if taps is None:
@@ -209,11 +241,11 @@ def _add_mean(
 
     def add(piece: tuple[int, int]) -> None:
         some = places[piece[0] : piece[1]]
-        total = np.zeros((len(some), depth, AREA), np.float32)
+        total = np.zeros((len(some), depth, TILE_AREA), np.float32)
         _add(taps, some, atlas, (height, width), layers, total)
         base[piece[0] : piece[1]] += np.einsum("dc,tca->tda", share, total)
 
-    parallel_map(add, pieces(len(places), AT_ONCE))
+    parallel_map(add, pieces(len(places), TILES_PER_TASK))
 
 
 def _add(
@@ -224,7 +256,7 @@ def _add(
     layers: NDArray[np.float32],
     total: NDArray[np.float32],
 ) -> None:
-    """total (n, C, AREA) += the texture in `layers`, made finer where it is coarser than the atlas."""
+    """total (n, C, TILE_AREA) += the texture in `layers`, upsampled where it is coarser than the atlas."""
     if taps is None:
         add_tiles(tiles, layers, total)
         return

@@ -1,7 +1,7 @@
 """Kernels of the renderer: where samples land in the atlas, composing a texture (equation 8), filtering.
 
-A texture is kept tile by tile and three channels to a layer, (layers, tile rows * tile columns, AREA, 4) float32: a
-tile is one page, written in one go, and a texel's address is the sum of a part for its row and one for its column.
+A texture lies tile by tile and three channels to a layer, (layers, tile rows * tile columns, TILE_AREA, 4) float32. A
+tile is one page of memory, and a texel's address is the sum of a part for its row and one for its column.
 """
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
@@ -10,31 +10,37 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.imaging.raster import run_ends, run_of
-from eigenfield.rendering.software.simd import RUN, blend_texels, draw_lanes, fetch_early
+from eigenfield.imaging.raster import edge_spans, row_span
+from eigenfield.rendering.software.simd import LANE_PX, blend_texels, draw_lanes, fetch_early
 from eigenfield.runtime.jit import kernel
 
-TILE = 16  # texels along a side of a tile
-AREA = TILE * TILE
-LANES = 16  # texels whose codes of four components lie together
-AHEAD = 32  # samples before it is needed that a texel is asked for
-DEPTH = 3  # channels of a layer; the fourth number of a texel is padding
+TILE_TEXELS = 16  # texels along a side of a tile
+TILE_AREA = TILE_TEXELS * TILE_TEXELS
+CODE_LANES = 16  # texels whose codes of four components lie together
+PREFETCH_SAMPLES = 32  # by which a texel is fetched before it is needed
+LAYER_CHANNELS = 3  # channels of a layer; the fourth number of a texel is padding
 
 
 @kernel()
 def draw_texels(
     faces, texels, edges, bounds, listing, first, last, slack, inverse_depth, column_of, row_of, seen
 ):  # fmt: skip
-    """As `imaging.raster.draw_band`, keeping where in the atlas each pixel lands instead of its triangle.
+    """As `imaging.raster.draw_band`, but for where in the atlas each pixel lands instead of its triangle.
 
-    texels (n, 2): texel coordinates of the vertices. inverse_depth, column_of, row_of (H, W + RUN) float32 out: 1 /
-    depth, and texel coordinates over depth, which are linear functions of the pixel; RUN columns are room for vectors.
-    seen (m,): set to 1 for triangles that were nearest for a while; threads share it, and only ever write ones.
+    1 / depth, and texel coordinates over depth, are linear functions of the pixel.
+
+    Args:
+        faces: (m, 3).
+        texels: (n, 2) texel coordinates of the vertices.
+        edges, bounds, listing, first, last, slack: As of `draw_band`.
+        inverse_depth: (H, W + LANE_PX) float32 1 / depth, written; the last columns are room for vectors.
+        column_of, row_of: Likewise texel coordinates over depth, written.
+        seen: (m,) set to 1 for triangles that were nearest for a while; threads share it and only ever write ones.
     """
     inverse_depth[first:last] = 0
     for f in listing:
         e = edges[f]
-        a, b, c, q = run_ends(e, slack)
+        a, b, c, q = edge_spans(e, slack)
         u0, u1, u2 = texels[faces[f, 0], 0], texels[faces[f, 1], 0], texels[faces[f, 2], 0]
         v0, v1, v2 = texels[faces[f, 0], 1], texels[faces[f, 1], 1], texels[faces[f, 2], 1]
         ux, vx = u0 * e[0, 0] + u1 * e[1, 0] + u2 * e[2, 0], v0 * e[0, 0] + v1 * e[1, 0] + v2 * e[2, 0]
@@ -44,12 +50,12 @@ def draw_texels(
         drawn = False
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             y = row + 0.5
-            left, right = run_of(a, b, c, y, bounds[f, 2], bounds[f, 3])
+            left, right = row_span(a, b, c, y, bounds[f, 2], bounds[f, 3])
             x = left + 0.5
             q_start = np.float32(q[0] * x + (q[1] * y + q[2]))
             u_start, v_start = np.float32(ux * x + (uy * y + uc)), np.float32(vx * x + (vy * y + vc))
             nearest, columns, rows = inverse_depth[row], column_of[row], row_of[row]
-            for step in range(0, right - left, RUN):
+            for step in range(0, right - left, LANE_PX):
                 along = np.float32(np.int32(step))
                 drawn |= draw_lanes(
                     nearest, columns, rows, left + step, np.int32(right - left - step),
@@ -63,8 +69,13 @@ def draw_texels(
 
 @kernel()
 def mark_tiles(seen, reach, needed):
-    """needed (tile rows, tile columns) = 1 for the tiles [top, bottom] x [left, right] (reach, (m, 4)) of the
-    triangles in seen (m,); 0 elsewhere."""
+    """The tiles that triangles read.
+
+    Args:
+        seen: (m,) the triangles in view.
+        reach: (m, 4) the tiles [top, bottom] x [left, right] of each triangle.
+        needed: (tile rows, tile columns) 1 for these tiles, 0 elsewhere, written.
+    """
     needed[:] = 0
     for f in range(seen.shape[0]):
         if seen[f]:
@@ -75,14 +86,19 @@ def mark_tiles(seen, reach, needed):
 
 @kernel(fastmath=True)
 def add_four(total, codes, a, b, c, d):
-    """total (AREA,) += a, b, c, d times four components, which codes (AREA / LANES, 4, LANES) holds side by side.
+    """Add four weighted components: total += a, b, c, d times the four in codes.
 
     Four at a time, so that the total is seldom loaded, and laid out so that memory is read strictly in order.
+
+    Args:
+        total: (TILE_AREA,) float32.
+        codes: (TILE_AREA / CODE_LANES, 4, CODE_LANES).
+        a, b, c, d: float32.
     """
-    for block in range(AREA // LANES):
+    for block in range(TILE_AREA // CODE_LANES):
         part = codes[block]
-        for i in range(LANES):
-            total[block * LANES + i] += (a * np.float32(part[0, i]) + b * np.float32(part[1, i])) + (
+        for i in range(CODE_LANES):
+            total[block * CODE_LANES + i] += (a * np.float32(part[0, i]) + b * np.float32(part[1, i])) + (
                 c * np.float32(part[2, i]) + d * np.float32(part[3, i])
             )
 
@@ -91,19 +107,26 @@ def add_four(total, codes, a, b, c, d):
 def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, layers):
     """Equation 8 on some tiles: mean + offset + sum of coefficients times codes.
 
-    tiles (n,): which of the stored tiles; places (tiles,): their number in the atlas.
-    mean (tiles, C, AREA) float32; codes (tiles, C, G, AREA / LANES, 4, LANES): components in groups of four, one
-    tile's together, so that its total stays in the first cache. groups (g,): those to sum; coefficients
-    (4 G, C), offset (C,) float32. layers (L, tiles of the atlas, AREA, 4) out.
+    A tile's components lie together, so that its total stays in the first cache.
+
+    Args:
+        tiles: (n,) which of the stored tiles.
+        places: (tiles,) number in the atlas of each stored tile.
+        mean: (tiles, C, TILE_AREA) float32.
+        codes: (tiles, C, G, TILE_AREA / CODE_LANES, 4, CODE_LANES) components in groups of four.
+        groups: (g,) the groups that are summed.
+        coefficients: (4 G, C) float32.
+        offset: (C,) float32.
+        layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
     channels = codes.shape[1]
-    totals = np.zeros((DEPTH, AREA), np.float32)
+    totals = np.zeros((LAYER_CHANNELS, TILE_AREA), np.float32)
     red, green, blue = totals[0], totals[1], totals[2]
     for t in tiles:
-        for first in range(0, channels, DEPTH):
-            for k in range(first, min(first + DEPTH, channels)):
+        for first in range(0, channels, LAYER_CHANNELS):
+            for k in range(first, min(first + LAYER_CHANNELS, channels)):
                 total, start, add = totals[k - first], mean[t, k], offset[k]
-                for i in range(AREA):
+                for i in range(TILE_AREA):
                     total[i] = start[i] + add
                 for g in groups:
                     j = 4 * g
@@ -111,8 +134,8 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
                         total, codes[t, k, g],
                         coefficients[j, k], coefficients[j + 1, k], coefficients[j + 2, k], coefficients[j + 3, k],
                     )  # fmt: skip
-            out = layers[first // DEPTH, places[t]]
-            for i in range(AREA):
+            out = layers[first // LAYER_CHANNELS, places[t]]
+            for i in range(TILE_AREA):
                 out[i, 0] = red[i]
                 out[i, 1] = green[i]
                 out[i, 2] = blue[i]
@@ -121,7 +144,12 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
 
 @kernel(fastmath=True)
 def filter_weights(kind, f):
-    """Weights of the taps at distances 1 + f, f, 1 - f, 2 - f: the triangle, or Catmull and Rom's cubic (a = -1/2)."""
+    """Weights of the taps at distances 1 + f, f, 1 - f, 2 - f: bilinear, or Catmull-Rom (a = -1/2).
+
+    Args:
+        kind: Number of taps: 2 or 4.
+        f: float32 in 0..1.
+    """
     if kind == 2:
         return np.float32(0), np.float32(1) - f, f, np.float32(0)
     half, f2 = np.float32(0.5), f * f
@@ -136,10 +164,16 @@ def filter_weights(kind, f):
 
 @kernel(fastmath=True, inline=True)
 def locate(taps, near, place, size, per_tile, per_texel, address, weight):
-    """Texel coordinates over depth (n,), and 1 / depth, along one axis into the addresses and weights (taps, n) of
-    the filter's taps, clamped to the atlas, `size` texels long.
+    """Addresses and weights of the filter's taps along one axis, clamped to the atlas.
 
-    per_tile, per_texel: how far apart neighbours lie in the flat texture.
+    Args:
+        taps: 2 or 4.
+        near: (n,) 1 / depth.
+        place: (n,) texel coordinates over depth.
+        size: Of the atlas, in texels.
+        per_tile, per_texel: Distance of neighbouring tiles, and texels, in the flat texture.
+        address: (taps, n), written.
+        weight: (taps, n), written.
     """
     last, end = np.int32(size - 1), np.float32(size - 1)
     tile, texel = np.int32(per_tile), np.int32(per_texel)
@@ -156,18 +190,26 @@ def locate(taps, near, place, size, per_tile, per_texel, address, weight):
 
 
 @kernel(fastmath=True, inline=True)
-def sample_line(taps, texture, near, rows, columns, down, across, many, background, line):
-    """Add the mean of each pixel's filtered samples to line (pixels * DEPTH,); background where uncovered.
+def sample_line(taps, texture, near, rows, columns, down, across, per_pixel, background, line):
+    """Add the mean of each pixel's filtered samples to a line.
 
-    texture: flat. rows, columns, down, across (taps, n): addresses and weights of the taps; see `locate`. many: of
-    the samples of a row belong to one pixel. Texels as vectors save 30 % of the time of 4 x 4 taps, and cost 15 % with
-    2 x 2.
+    Texels as vectors save 30 % of the time of 4 x 4 taps, and cost 15 % with 2 x 2.
+
+    Args:
+        taps: 2 or 4.
+        texture: Flat.
+        near: (pixels * per_pixel,) 1 / depth of the samples; 0: the background.
+        rows, columns: (taps, n) addresses of the taps (`locate`).
+        down, across: (taps, n) their weights.
+        per_pixel: Samples of a row that belong to one pixel.
+        background: (LAYER_CHANNELS,) where nothing is covered.
+        line: (pixels * LAYER_CHANNELS,), added to.
     """
-    one, two, ahead, count = np.uintp(1), np.uintp(2), np.uintp(AHEAD), np.uintp(many)
-    share = np.float32(1) / np.float32(many)
-    for pixel in range(near.shape[0] // many):
+    one, two, ahead, count = np.uintp(1), np.uintp(2), np.uintp(PREFETCH_SAMPLES), np.uintp(per_pixel)
+    share = np.float32(1) / np.float32(per_pixel)
+    for pixel in range(near.shape[0] // per_pixel):
         red, green, blue = np.float32(0), np.float32(0), np.float32(0)
-        for sample in range(many):
+        for sample in range(per_pixel):
             i = np.uintp(pixel) * count + np.uintp(sample)
             fetch_early(texture, rows[taps - 1, i + ahead] + columns[0, i + ahead])
             if near[i] > 0:
@@ -198,7 +240,7 @@ def sample_line(taps, texture, near, rows, columns, down, across, many, backgrou
                 red += background[0]
                 green += background[1]
                 blue += background[2]
-        place = np.uintp(pixel * DEPTH)
+        place = np.uintp(pixel * LAYER_CHANNELS)
         line[place] += share * red
         line[place + one] += share * green
         line[place + two] += share * blue
@@ -206,7 +248,14 @@ def sample_line(taps, texture, near, rows, columns, down, across, many, backgrou
 
 @kernel(fastmath=True)
 def store_line(line, scale, eight_bit, out):
-    """line times scale into out, both flat: as it is, or rounded half to even and clipped to 8 bit."""
+    """Write a line.
+
+    Args:
+        line: Flat.
+        scale: Factor.
+        eight_bit: Whether values are rounded half to even and clipped to 8 bit.
+        out: Flat, written.
+    """
     if eight_bit:
         for i in range(line.shape[0]):
             out[i] = np.int32(np.rint(min(max(line[i] * scale, np.float32(0)), np.float32(255))))
@@ -216,50 +265,77 @@ def store_line(line, scale, eight_bit, out):
 
 
 @kernel(fastmath=True)
-def cover_line(near, many, coverage):
-    """coverage (pixels,): the share of samples near (rows, pixels * many) that show surface."""
+def cover_line(near, per_pixel, coverage):
+    """The part of each pixel's samples that show the surface.
+
+    Args:
+        near: (rows, pixels * per_pixel) 1 / depth of the samples.
+        per_pixel: Samples of a row that belong to one pixel.
+        coverage: (pixels,), written.
+    """
     for pixel in range(coverage.shape[0]):
         hits = 0
         for row in range(near.shape[0]):
-            for sample in range(pixel * many, pixel * many + many):
+            for sample in range(pixel * per_pixel, pixel * per_pixel + per_pixel):
                 hits += near[row, sample] > 0
-        coverage[pixel] = np.float32(hits) / np.float32(near.shape[0] * many)
+        coverage[pixel] = np.float32(hits) / np.float32(near.shape[0] * per_pixel)
 
 
 @kernel(fastmath=True)
-def shade_line(near, u, v, many, texture, width, height, bicubic, background, room, line):
-    """As `sample_line`, for the samples near, u, v of a row. room: for rows, columns, down, across."""
+def shade_line(near, u, v, per_pixel, texture, width, height, bicubic, background, room, line):
+    """As `sample_line`, from texel coordinates.
+
+    Args:
+        near: (n,) 1 / depth of the samples.
+        u, v: (n,) texel coordinates over depth.
+        per_pixel: As of `sample_line`.
+        texture: As of `sample_line`.
+        width, height: Of the atlas, in texels.
+        bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
+        background: As of `sample_line`.
+        room: Memory for `rows`, `columns`, `down` and `across` of `sample_line`.
+        line: As of `sample_line`.
+    """
     rows, columns, down, across = room
-    tile_row = -(-width // TILE) * AREA * 4
+    tile_row = -(-width // TILE_TEXELS) * TILE_AREA * 4
     if bicubic:
-        locate(4, near, u, width, AREA * 4, 4, columns, across)
-        locate(4, near, v, height, tile_row, TILE * 4, rows, down)
-        sample_line(4, texture, near, rows, columns, down, across, many, background, line)
+        locate(4, near, u, width, TILE_AREA * 4, 4, columns, across)
+        locate(4, near, v, height, tile_row, TILE_TEXELS * 4, rows, down)
+        sample_line(4, texture, near, rows, columns, down, across, per_pixel, background, line)
     else:
-        locate(2, near, u, width, AREA * 4, 4, columns, across)
-        locate(2, near, v, height, tile_row, TILE * 4, rows, down)
-        sample_line(2, texture, near, rows, columns, down, across, many, background, line)
+        locate(2, near, u, width, TILE_AREA * 4, 4, columns, across)
+        locate(2, near, v, height, tile_row, TILE_TEXELS * 4, rows, down)
+        sample_line(2, texture, near, rows, columns, down, across, per_pixel, background, line)
 
 
 @kernel(fastmath=True)
 def shade_rows(
-    inverse_depth, column_of, row_of, spans, parted, finer, layers, width, height, bicubic, samples, background,
-    eight_bit, first, last, picture, coverage,
+    inverse_depth, column_of, row_of, spans, multisampled, subsamples, layers, width, height, bicubic, samples,
+    background, eight_bit, first, last, picture, coverage,
 ):  # fmt: skip
-    """Rows [first, last) of picture (H, W, C), uint8 or float32, and coverage (H, W), from samples (H k, at least W k),
-    k being `samples`: each pixel is the mean of k x k, a parted one of its four; see `keep_parted`.
+    """Rows [first, last) of a picture: each pixel is the mean of its k x k samples, a multi-sampled one of its four.
 
-    layers (L, tiles, AREA, 4): a texture of `height` x `width`. Uncovered samples count as `background` (L, DEPTH).
-    eight_bit: times 255, rounded half to even and clipped.
+    Args:
+        inverse_depth, column_of, row_of: (H k, at least W k), of `draw_texels`.
+        spans, multisampled, subsamples: Of `keep_multisampled`.
+        layers: (L, tiles, TILE_AREA, 4) the texture.
+        width, height: Of the texture, in texels.
+        bicubic: Whether the filter has 4 x 4 taps, not 2 x 2.
+        samples: k.
+        background: (L, LAYER_CHANNELS) for samples that show nothing.
+        eight_bit: Whether values are multiplied by 255, rounded half to even and clipped.
+        first, last: Range of rows.
+        picture: (H, W, C) uint8 or float32, written.
+        coverage: (H, W), written.
     """
     pixels, channels = picture.shape[1], picture.shape[2]
     most = pixels * samples
     for row in range(first, last):
         most = max(most, 4 * (spans[row, 1] - spans[row, 0]))
-    rows, columns = np.zeros((4, most + AHEAD), np.int32), np.zeros((4, most + AHEAD), np.int32)
+    rows, columns = np.zeros((4, most + PREFETCH_SAMPLES), np.int32), np.zeros((4, most + PREFETCH_SAMPLES), np.int32)
     down, across = np.empty((4, most), np.float32), np.empty((4, most), np.float32)
     room = rows, columns, down, across
-    line, edges = np.empty(pixels * DEPTH, np.float32), np.empty(pixels * DEPTH, np.float32)
+    line, edges = np.empty(pixels * LAYER_CHANNELS, np.float32), np.empty(pixels * LAYER_CHANNELS, np.float32)
     scale = np.float32((255.0 if eight_bit else 1.0) / samples)
     for row in range(first, last):
         sources = range(row * samples, row * samples + samples)
@@ -267,7 +343,7 @@ def shade_rows(
         four, covered = slice(4 * one, 4 * end), coverage[row]
         cover_line(inverse_depth[row * samples : row * samples + samples], samples, covered)
         for at in range(one, end):
-            cover_line(finer[:1, 4 * at : 4 * at + 4], 4, covered[parted[at] : parted[at] + 1])
+            cover_line(subsamples[:1, 4 * at : 4 * at + 4], 4, covered[multisampled[at] : multisampled[at] + 1])
         for layer in range(layers.shape[0]):
             texture, behind = layers[layer].reshape(-1), background[layer]
             line[:] = 0
@@ -279,14 +355,14 @@ def shade_rows(
                 )
                 shade_line(near, u, v, samples, texture, width, height, bicubic, behind, room, line)
             if one < end:
-                edges[: DEPTH * (end - one)] = 0
-                near, u, v = finer[0, four], finer[1, four], finer[2, four]
+                edges[: LAYER_CHANNELS * (end - one)] = 0
+                near, u, v = subsamples[0, four], subsamples[1, four], subsamples[2, four]
                 shade_line(near, u, v, 4, texture, width, height, bicubic, behind, room, edges)
                 for at in range(end - one):
-                    for k in range(DEPTH):
-                        line[parted[one + at] * DEPTH + k] = edges[at * DEPTH + k]
-            if channels == DEPTH:
+                    for k in range(LAYER_CHANNELS):
+                        line[multisampled[one + at] * LAYER_CHANNELS + k] = edges[at * LAYER_CHANNELS + k]
+            if channels == LAYER_CHANNELS:
                 store_line(line, scale, eight_bit, picture[row].reshape(-1))
             else:
-                for k in range(layer * DEPTH, min(layer * DEPTH + DEPTH, channels)):
-                    store_line(line[k - layer * DEPTH :: DEPTH], scale, eight_bit, picture[row, :, k])
+                for k in range(layer * LAYER_CHANNELS, min(layer * LAYER_CHANNELS + LAYER_CHANNELS, channels)):
+                    store_line(line[k - layer * LAYER_CHANNELS :: LAYER_CHANNELS], scale, eight_bit, picture[row, :, k])

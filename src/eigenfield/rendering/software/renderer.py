@@ -21,41 +21,56 @@ from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
 from eigenfield.rendering.software.drawing import (
-    Frame,
+    Framebuffer,
     Sampling,
     Surface,
     choose_sampling,
-    cover,
     grid_side,
     make_surface,
     median_footprint,
+    rasterise_surface,
     shade,
 )
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
 BLACK = (0.0, 0.0, 0.0)
-SPARE_FRAMES = 4  # sets of buffers kept for the next picture
+RENDER_SPARE_BUFFERS = 4  # sets kept for the next pictures
 
 
 @dataclass(frozen=True, eq=False)
 class Buffers:
-    """What one picture in the making needs: see `Frame`, `make_buffers` and `empty_layers`."""
+    """The memory in which one picture is drawn.
 
-    frame: Frame
+    Attributes:
+        frame: Where its samples land.
+        sums: Of `make_buffers`.
+        layers: Of `empty_layers`.
+    """
+
+    frame: Framebuffer
     sums: list[NDArray[np.float32]]
     layers: NDArray[np.float32]
 
 
 class Renderer:
-    """Draws a scene; prepared once, then callable from any number of threads at a time."""
+    """Draws a scene; prepared once, then callable from any number of threads at a time.
+
+    Attributes:
+        channels: Of a drawn picture.
+    """
 
     def __init__(self, scene: Scene) -> None:
+        """Prepare a scene.
+
+        Args:
+            scene: The scene.
+        """
         self.channels = scene.appearance.channels
         self._surface = make_surface(scene.proxy.mesh, *scene.appearance.atlas)
         self._detail = median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
         self._composite = make_composite(scene, self._surface.used)
-        self._spare: deque[Buffers] = deque(maxlen=SPARE_FRAMES)
+        self._spare: deque[Buffers] = deque(maxlen=RENDER_SPARE_BUFFERS)
 
     def draw(
         self,
@@ -68,14 +83,21 @@ class Renderer:
         samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Picture:
-        """The view of `camera`, blended of observations by `weights`.
+        """A view.
 
-        filter: `bilinear` or `bicubic` (Catmull-Rom). background: one number or C of them, 0..1.
-        textures: how many eigen textures to sum, None for all. samples: k x k samples a pixel; None: one, but four at
-        edges (decision 24), or more in a picture smaller than the photographs. colour: (2, 3) gain and offset of R, G,
-        B that harmonised a captured camera (`camera_colour`): its own exposure is given back to the surface; None
-        leaves it as the scene keeps it.
-        Raises OptionError (`filter`, `samples`, `textures`, `background`).
+        Args:
+            camera: The camera.
+            weights: What is blended (`view_weights`, `camera_weights`).
+            filter: `bilinear` or `bicubic` (Catmull-Rom).
+            background: One number or C of them, 0..1.
+            textures: Number of eigen textures of each basis. Default: all.
+            samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges (decision 24), or more in a
+                picture smaller than the photographs.
+            colour: (2, 3) gain and offset of R, G, B that harmonised a captured camera (`camera_colour`): the surface
+                gets that camera's own exposure. Default: the scene's common exposure.
+
+        Raises:
+            OptionError: `filter`, `samples`, `textures`, `background`.
         """
         image, coverage = self._draw(camera, weights, filter, background, textures, samples, np.float32)
         if colour is not None:
@@ -93,7 +115,20 @@ class Renderer:
         samples: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> NDArray[np.uint8]:
-        """(H, W, C) uint8: `draw(...).to_uint8()`, without a `colour` also without the way through floats."""
+        """(H, W, C) uint8: `draw(...).to_uint8()`. Without a `colour` no picture of floats is made.
+
+        Args:
+            camera: As of `draw`.
+            weights: As of `draw`.
+            filter: As of `draw`.
+            background: As of `draw`.
+            textures: As of `draw`.
+            samples: As of `draw`.
+            colour: As of `draw`.
+
+        Raises:
+            OptionError: As `draw`.
+        """
         if colour is not None:
             options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
             return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
@@ -101,11 +136,20 @@ class Renderer:
         return image
 
     def grid_side(self, camera: Camera) -> int:
-        """k of the k x k samples a pixel that a picture takes by itself, 1 for smooth edges."""
+        """k of the k x k samples a pixel that are taken by default; 1: smooth edges.
+
+        Args:
+            camera: The camera.
+        """
         return grid_side(self._surface, camera, self._detail)
 
     def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
-        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere."""
+        """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere.
+
+        Args:
+            weights: What is blended.
+            textures: Number of eigen textures of each basis. Default: all.
+        """
         layers = empty_layers(*self._surface.size, self.channels)
         compose_scene(self._composite, weights, textures, self._surface.used, make_buffers(self._composite), layers)
         return read_layers(layers, *self._surface.size, self.channels)
@@ -127,7 +171,7 @@ class Renderer:
         height, width = camera.height, camera.width
         buffers = self._take(height, width, sampling)
         frame = buffers.frame
-        cover(self._surface, camera, sampling, frame)
+        rasterise_surface(self._surface, camera, sampling, frame)
         compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
         image = np.empty((height, width, self.channels), dtype)
         coverage = np.empty((height, width), np.float32)
@@ -145,11 +189,19 @@ class Renderer:
             if spare.frame.fits(height, width, sampling):
                 return spare
         layers = empty_layers(*self._surface.size, self.channels)
-        return Buffers(Frame(self._surface, height, width, sampling), make_buffers(self._composite), layers)
+        return Buffers(Framebuffer(self._surface, height, width, sampling), make_buffers(self._composite), layers)
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
-    """(C,) float32; one number stands for all channels. Raises OptionError `background`."""
+    """(C,) float32; one number stands for all channels.
+
+    Args:
+        background: One number or C of them.
+        channels: C.
+
+    Raises:
+        OptionError: `background`: they are of another number, or not finite.
+    """
     values = np.atleast_1d(np.asarray(background, np.float32))
     if values.shape == (3,) and channels != 3 and not values.any():
         values = values[:1]  # the default, for attributes that are no colours
@@ -170,14 +222,26 @@ def draw_texture(
     samples: int | None = None,
     detail: float = 1.0,
 ) -> Picture:
-    """One plain texture (H, W, C) float32 on a mesh with UVs: a camera's own texture map, or the mean. detail: of
-    `choose_sampling`."""
+    """A view of one plain texture on a mesh: a camera's own texture map, or the mean.
+
+    Args:
+        mesh: With UVs.
+        texture: (H, W, C) float32.
+        camera: The camera.
+        filter: As of `Renderer.draw`.
+        background: As of `Renderer.draw`.
+        samples: As of `Renderer.draw`.
+        detail: As of `choose_sampling`.
+
+    Raises:
+        OptionError: `filter`, `samples`, `background`.
+    """
     check_filter(filter)
     height, width, channels = texture.shape
     surface: Surface = make_surface(mesh, height, width)
     sampling = choose_sampling(surface, camera, samples, detail)
-    frame = Frame(surface, camera.height, camera.width, sampling)
-    cover(surface, camera, sampling, frame)
+    frame = Framebuffer(surface, camera.height, camera.width, sampling)
+    rasterise_surface(surface, camera, sampling, frame)
     image = np.empty((camera.height, camera.width, channels), np.float32)
     coverage = np.empty((camera.height, camera.width), np.float32)
     layers = empty_layers(height, width, channels)
@@ -187,8 +251,12 @@ def draw_texture(
 
 
 def renderer_of(scene: Scene) -> Renderer:
-    """The scene's renderer, made on the first call and kept as long as the scene."""
-    return scene.derived("software renderer", lambda: Renderer(scene))
+    """The scene's renderer, made on the first call and kept as long as the scene.
+
+    Args:
+        scene: The scene.
+    """
+    return scene.derive("software renderer", lambda: Renderer(scene))
 
 
 def render(
@@ -204,13 +272,25 @@ def render(
     samples: int | None = None,
     time: int = 0,
 ) -> Picture:
-    """Draw the view at view-plane coordinates `at` (X right, Y up, ±1 at the array's edges), or that of the capture
-    camera named `camera`; the reference camera's if neither is given. In a harmonised scene a captured camera's picture
-    has that camera's own exposure, a viewpoint's the common one.
+    """Draw a view; the reference camera's if neither `at` nor `camera` is given.
 
-    resolution: (width, height), the camera's own if None. weights: `delaunay`, `nearest3` or `bilinear`. time: index of
-    the instant. The rest as `Renderer.draw`. May be called from several threads. Raises OptionError, for a name that is
-    not there `unknown-camera`, for an instant `time`.
+    In a harmonised scene a captured camera's picture has that camera's own exposure, a viewpoint's the common one. May
+    be called from several threads.
+
+    Args:
+        scene: The scene.
+        at: View-plane coordinates: X right, Y up, ±1 at the array's edges.
+        camera: Name of a capture camera.
+        resolution: (width, height). Default: the camera's own.
+        weights: `delaunay`, `nearest3` or `bilinear`.
+        filter: As of `Renderer.draw`.
+        background: As of `Renderer.draw`.
+        textures: As of `Renderer.draw`.
+        samples: As of `Renderer.draw`.
+        time: Index of the instant.
+
+    Raises:
+        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`, `resolution`; as `Renderer.draw`.
     """
     view, mix = viewpoint(scene, at=at, camera=camera, weights=weights, time=time)
     if resolution is not None:
@@ -229,7 +309,18 @@ def viewpoint(
     weights: str = "delaunay",
     time: int = 0,
 ) -> tuple[Camera, ViewWeights]:
-    """The camera and the view weights of `at`, of a capture camera by name, or of the reference camera."""
+    """The camera and the view weights of a place, of a capture camera, or of the reference camera.
+
+    Args:
+        scene: The scene.
+        at: As of `render`.
+        camera: As of `render`.
+        weights: As of `render`.
+        time: As of `render`.
+
+    Raises:
+        OptionError: `unknown-camera`, `viewpoint`, `time`, `weights-mode`, `no-grid`.
+    """
     if at is not None and camera is not None:
         raise OptionError("viewpoint", "a place and a camera were both given", remedy="give one of them")
     if not 0 <= time < len(scene.times):
@@ -243,14 +334,31 @@ def viewpoint(
 def viewpoint_colour(
     scene: Scene, *, at: tuple[float, float] | None = None, camera: str | None = None
 ) -> NDArray[np.float32] | None:
-    """The `colour` of `Renderer.draw` for what `viewpoint` names: a captured camera's own, None for a place."""
+    """The `colour` of `Renderer.draw` for a view: a captured camera's own, None for a place.
+
+    Args:
+        scene: The scene.
+        at: As of `render`.
+        camera: As of `render`.
+
+    Raises:
+        OptionError: `unknown-camera`.
+    """
     if at is not None:
         return None
     return camera_colour(scene, scene.rig.reference if camera is None else camera_index(scene, camera))
 
 
 def camera_index(scene: Scene, name: str) -> int:
-    """Where `name` stands in `scene.rig.names`. Raises OptionError `unknown-camera`, with the names most like it."""
+    """The index of a camera.
+
+    Args:
+        scene: The scene.
+        name: Of the camera.
+
+    Raises:
+        OptionError: `unknown-camera`, with the names most like it.
+    """
     if name in scene.rig.names:
         return scene.rig.names.index(name)
     near = difflib.get_close_matches(name, scene.rig.names, n=3, cutoff=0.0)
@@ -258,8 +366,16 @@ def camera_index(scene: Scene, name: str) -> int:
 
 
 def at_resolution(camera: Camera, resolution: tuple[int, int]) -> Camera:
-    """`camera.resized`, refusing what cannot be: OptionError `resolution`."""
+    """The camera with another resolution.
+
+    Args:
+        camera: The camera.
+        resolution: (width, height), 1 to 16384 each.
+
+    Raises:
+        OptionError: `resolution`.
+    """
     width, height = resolution
     if not (1 <= width <= 16384 and 1 <= height <= 16384):
         raise OptionError("resolution", f"a picture of {width}x{height}", remedy="give 1x1 to 16384x16384")
-    return camera.resized(width, height)
+    return camera.resize(width, height)

@@ -1,4 +1,4 @@
-"""Coarse textures made finer: Catmull-Rom from a coarse atlas to the texels of a fine one, both cut into tiles."""
+"""Upsampling of textures: Catmull-Rom from a coarse atlas to the texels of a fine one, both cut into tiles."""
 
 # mypy: disable-error-code="no-untyped-call"
 
@@ -9,15 +9,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.rendering.software.kernels import TILE
+from eigenfield.rendering.software.kernels import TILE_TEXELS
 
 
 @dataclass(frozen=True, eq=False)
 class Taps:
-    """Along one axis, for each of n fine texels, the four coarse ones it is made of.
+    """Along one axis, for each of n fine texels, the four coarse ones that it is interpolated from.
 
-    at: (n, 4) int32, clamped to the atlas. weight: (n, 4) float32, summing to 1. first, last: (tiles,) int64, for each
-    tile of the fine atlas the coarse tiles that it reads.
+    Attributes:
+        at: (n, 4) int32 coarse texels, clamped to the atlas.
+        weight: (n, 4) float32, summing to 1.
+        first: (tiles,) int64 for each tile of the fine atlas the first coarse tile that it reads.
+        last: (tiles,) int64 and the last.
     """
 
     at: NDArray[np.int32]
@@ -27,25 +30,46 @@ class Taps:
 
 
 def make_taps(fine: int, coarse: int) -> Taps:
-    """Texel i of `fine` lies at x = (i + 0.5) / fine * coarse - 0.5 among `coarse` ones; Catmull-Rom (a = -1/2)."""
+    """Fine texel i lies at x = (i + 0.5) / fine * coarse - 0.5 among the coarse ones; Catmull-Rom (a = -1/2).
+
+    Args:
+        fine: Number of fine texels.
+        coarse: Number of coarse texels.
+    """
     x = (np.arange(fine) + 0.5) * (coarse / fine) - 0.5
     base = np.floor(x)
     weight = catmull_rom(x - base)
     at = np.clip(base[:, None] + np.arange(-1, 3), 0, coarse - 1).astype(np.int32)
-    starts = np.arange(0, fine, TILE)
-    ends = np.minimum(starts + TILE, fine) - 1
-    return Taps(at, weight.astype(np.float32), at[starts, 0].astype(np.int64) // TILE, at[ends, 3] // np.int64(TILE))
+    starts = np.arange(0, fine, TILE_TEXELS)
+    ends = np.minimum(starts + TILE_TEXELS, fine) - 1
+    return Taps(
+        at,
+        weight.astype(np.float32),
+        at[starts, 0].astype(np.int64) // TILE_TEXELS,
+        at[ends, 3] // np.int64(TILE_TEXELS),
+    )
 
 
 def catmull_rom(f: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(n, 4) weights of the taps at distances 1 + f, f, 1 - f, 2 - f."""
+    """(n, 4) weights of the taps at distances 1 + f, f, 1 - f, 2 - f.
+
+    Args:
+        f: (n,) in 0..1.
+    """
     f2, f3 = f * f, f * f * f
     taps = [2 * f2 - f3 - f, 3 * f3 - 5 * f2 + 2, 4 * f2 - 3 * f3 + f, f3 - f2]
     return np.stack(taps, axis=1) / 2
 
 
 def tiles_read(needed: NDArray[np.bool_], rows: Taps, columns: Taps, shape: tuple[int, int]) -> NDArray[np.bool_]:
-    """(tile rows, tile columns) of the coarse atlas, of `shape` tiles, that the needed fine tiles read."""
+    """(tile rows, tile columns) bool, the coarse tiles that fine ones read.
+
+    Args:
+        needed: (tile rows, tile columns) the fine tiles.
+        rows: Along the rows.
+        columns: Along the columns.
+        shape: (tile rows, tile columns) of the coarse atlas.
+    """
     found = np.zeros(shape, np.bool_)
     for row in np.flatnonzero(needed.any(axis=1)):
         line = np.zeros(shape[1] + 1, np.int64)  # +1 where a run begins, -1 after its end

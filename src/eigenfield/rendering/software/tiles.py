@@ -20,19 +20,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis
-from eigenfield.rendering.software.kernels import AREA, DEPTH, LANES, TILE, compose_tiles
+from eigenfield.rendering.software.kernels import CODE_LANES, LAYER_CHANNELS, TILE_AREA, TILE_TEXELS, compose_tiles
 from eigenfield.runtime.parallel import parallel_map, pieces
 
-AT_ONCE = 64  # tiles that a thread composes at a time
+TILES_PER_TASK = 64
 
 
 @dataclass(frozen=True, eq=False)
 class Tiled:
     """A mean and components of one size, by tile.
 
-    mean: (tiles, C, AREA) float32. codes: (tiles, C, G, AREA / LANES, 4, LANES), uint8 or uint16 as stored, or float32:
-    the components of all bases one after the other, in groups of four, the last filled up with zeros.
-    scale, zero: (N, C) float64. places: (tiles,) the tiles' numbers in the atlas.
+    Attributes:
+        mean: (tiles, C, TILE_AREA) float32.
+        codes: (tiles, C, G, TILE_AREA / CODE_LANES, 4, CODE_LANES), uint8 or uint16 as stored, or float32: the
+            components of all bases one after the other, in groups of four, the last padded with zeros.
+        scale: (N, C) float64: value = (code - zero) * scale.
+        zero: (N, C) float64.
+        places: (tiles,) the tiles' numbers in the atlas.
     """
 
     mean: NDArray[np.float32]
@@ -43,24 +47,30 @@ class Tiled:
 
 
 def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray[np.bool_], channels: int) -> Tiled:
-    """Lay out bases that share their size, grid and corner, and a mean (H, W, C) of that size, None for zeros.
+    """Lay out bases that share their size, grid and corner, and a mean of that size.
 
-    used: (tile rows, tile columns) of the grid, the tiles kept.
+    Args:
+        mean: (H, W, C); None: zeros.
+        bases: The bases.
+        used: (tile rows, tile columns) the tiles of the grid that are laid out.
+        channels: C.
     """
     size, corner = (bases[0].size, bases[0].corner) if bases else (mean_size(mean), (0, 0))
     places = np.flatnonzero(used)
     textures = [texture for basis in bases for texture in basis.textures]
     kinds = {texture.dtype for texture in textures} | {np.dtype(np.uint8)}
-    shape = (len(places), channels, -(-len(textures) // 4), AREA // LANES, 4, LANES)
+    shape = (len(places), channels, -(-len(textures) // 4), TILE_AREA // CODE_LANES, 4, CODE_LANES)
     codes = np.zeros(shape, np.result_type(*kinds) if all(kind.kind == "u" for kind in kinds) else np.float32)
 
     def place(j: int) -> None:
         cut = cut_tiles(_in_grid(textures[j], size, corner), channels)[places]
-        codes[:, :, j // 4, :, j % 4, :] = cut.reshape(len(places), channels, AREA // LANES, LANES)
+        codes[:, :, j // 4, :, j % 4, :] = cut.reshape(len(places), channels, TILE_AREA // CODE_LANES, CODE_LANES)
 
     parallel_map(place, range(len(textures)))
     none = np.zeros((0, channels))
-    start = np.zeros((len(places), channels, AREA), np.float32) if mean is None else cut_tiles(mean, channels)[places]
+    start = (
+        np.zeros((len(places), channels, TILE_AREA), np.float32) if mean is None else cut_tiles(mean, channels)[places]
+    )
     return Tiled(
         np.ascontiguousarray(start, dtype=np.float32),
         codes,
@@ -71,13 +81,22 @@ def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray
 
 
 def mean_size(mean: NDArray[np.float32] | None) -> tuple[int, int]:
+    """(rows, columns) of a mean.
+
+    Args:
+        mean: (H, W, C).
+    """
     assert mean is not None, "neither a mean nor components"
     return int(mean.shape[0]), int(mean.shape[1])
 
 
 def tile_shape(size: tuple[int, int]) -> tuple[int, int]:
-    """Tile rows and columns of an atlas of `size`."""
-    return -(-size[0] // TILE), -(-size[1] // TILE)
+    """(tile rows, tile columns) of an atlas.
+
+    Args:
+        size: (rows, columns) of its texels.
+    """
+    return -(-size[0] // TILE_TEXELS), -(-size[1] // TILE_TEXELS)
 
 
 def _in_grid(texture: NDArray[Any], size: tuple[int, int], corner: tuple[int, int]) -> NDArray[Any]:
@@ -91,39 +110,68 @@ def _in_grid(texture: NDArray[Any], size: tuple[int, int], corner: tuple[int, in
 
 
 def cut_tiles(texture: NDArray[Any], channels: int) -> NDArray[Any]:
-    """(H, W, C) into (tiles, channels, AREA), row by row; the border's texels are repeated beyond it."""
+    """(tiles, C, TILE_AREA) of a texture, row by row; its border is repeated beyond it.
+
+    Args:
+        texture: (H, W, C).
+        channels: C.
+    """
     height, width, _ = texture.shape
-    padded = np.pad(texture, ((0, -height % TILE), (0, -width % TILE), (0, 0)), mode="edge")
-    rows, columns = -(-height // TILE), -(-width // TILE)
-    tiled = padded.reshape(rows, TILE, columns, TILE, channels).transpose(0, 2, 4, 1, 3)
-    return tiled.reshape(rows * columns, channels, AREA)
+    padded = np.pad(texture, ((0, -height % TILE_TEXELS), (0, -width % TILE_TEXELS), (0, 0)), mode="edge")
+    rows, columns = -(-height // TILE_TEXELS), -(-width // TILE_TEXELS)
+    tiled = padded.reshape(rows, TILE_TEXELS, columns, TILE_TEXELS, channels).transpose(0, 2, 4, 1, 3)
+    return tiled.reshape(rows * columns, channels, TILE_AREA)
 
 
 def empty_layers(height: int, width: int, channels: int) -> NDArray[np.float32]:
-    """(L, tiles, AREA, 4): room for a texture as the shading reads it, see `eigenfield.rendering.kernels`."""
-    tiles = -(-height // TILE) * -(-width // TILE)
-    return np.zeros((-(-channels // DEPTH), tiles, AREA, 4), np.float32)
+    """(L, tiles, TILE_AREA, 4) zeros for a texture as the shading reads it (`kernels`).
+
+    Args:
+        height: Of the atlas, in texels.
+        width: Of the atlas, in texels.
+        channels: Of the texture.
+    """
+    tiles = -(-height // TILE_TEXELS) * -(-width // TILE_TEXELS)
+    return np.zeros((-(-channels // LAYER_CHANNELS), tiles, TILE_AREA, 4), np.float32)
 
 
 def fill_layers(texture: NDArray[np.float32], layers: NDArray[np.float32]) -> None:
-    """A plain texture (H, W, C) into `layers`."""
+    """Lay out a plain texture.
+
+    Args:
+        texture: (H, W, C).
+        layers: Of `empty_layers`, written.
+    """
     channels = texture.shape[2]
     tiled = cut_tiles(texture, channels)
     for k in range(channels):
-        layers[k // DEPTH, :, :, k % DEPTH] = tiled[:, k]
+        layers[k // LAYER_CHANNELS, :, :, k % LAYER_CHANNELS] = tiled[:, k]
 
 
 def read_layers(layers: NDArray[np.float32], height: int, width: int, channels: int) -> NDArray[np.float32]:
-    """The texture (H, W, C) in `layers`."""
-    rows, columns = -(-height // TILE), -(-width // TILE)
-    tiled = layers[..., :DEPTH].reshape(len(layers), rows, columns, TILE, TILE, DEPTH)
-    whole = tiled.transpose(1, 3, 2, 4, 0, 5).reshape(rows * TILE, columns * TILE, -1)
+    """The texture (H, W, C) in layers.
+
+    Args:
+        layers: (L, tiles, TILE_AREA, 4).
+        height: H.
+        width: W.
+        channels: C.
+    """
+    rows, columns = -(-height // TILE_TEXELS), -(-width // TILE_TEXELS)
+    tiled = layers[..., :LAYER_CHANNELS].reshape(len(layers), rows, columns, TILE_TEXELS, TILE_TEXELS, LAYER_CHANNELS)
+    whole = tiled.transpose(1, 3, 2, 4, 0, 5).reshape(rows * TILE_TEXELS, columns * TILE_TEXELS, -1)
     return np.ascontiguousarray(whole[:height, :width, :channels])
 
 
 def compose(plane: Tiled, omega: NDArray[np.float64], tiles: NDArray[np.int64], layers: NDArray[np.float32]) -> None:
-    """Equation 8: mean + sum of omega (n,) times the first n components, for `tiles` (indices into `places`), into
-    layers (L, tiles of the atlas, AREA, 4)."""
+    """Equation 8: the mean plus the weighted sum of the first components.
+
+    Args:
+        plane: Mean and components.
+        omega: (n,) weights of the first n components.
+        tiles: (t,) the tiles to be summed, indices into `plane.places`.
+        layers: (L, tiles of the atlas, TILE_AREA, 4), written.
+    """
     count, channels = len(omega), plane.mean.shape[1]
     scaled = omega[:, None] * plane.scale[:count]
     coefficients = np.zeros((4 * plane.codes.shape[2], channels), np.float32)
@@ -134,5 +182,5 @@ def compose(plane: Tiled, omega: NDArray[np.float64], tiles: NDArray[np.int64], 
         lambda part: compose_tiles(
             tiles[part[0] : part[1]], plane.places, plane.mean, plane.codes, groups, coefficients, offset, layers
         ),
-        pieces(len(tiles), AT_ONCE),
+        pieces(len(tiles), TILES_PER_TASK),
     )

@@ -1,6 +1,6 @@
-"""A scene for other programs: a page, a film, a mesh with textures, texture maps, a quilt, photographs with a model.
+"""A scene for other programs: a page, a video, a mesh with textures, texture maps, a quilt, photographs with a model.
 
-Each kind is a file. What is written is whole or absent; existing files stay unless `overwrite` says otherwise.
+Each kind is a module. What is written is whole or absent; existing files stay unless `overwrite` says otherwise.
 """
 
 from __future__ import annotations

@@ -23,19 +23,26 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_colour, camera_weights, viewpoint
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
+from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
 from eigenfield.viewer.exports.maps import mean_map
 from eigenfield.viewer.exports.names import file_names
 
-MOST, FEWEST = 50_000, 10_000  # points
-TRACK = 8  # views named for a point: enough for every tool; all of 289 would outweigh the pictures
-AT_ONCE = 4096  # points whose views are chosen at a time
-BEHIND = 0.01  # of a vertex's depth, by which it may lie behind the drawn surface and still be seen
+COLMAP_MAX_POINTS, COLMAP_MIN_POINTS = 50_000, 10_000
+COLMAP_TRACK_VIEWS = 8  # listed for a point: enough for every tool; all of 289 would outweigh the pictures
+COLMAP_POINTS_PER_TASK = 4096
+COLMAP_DEPTH_TOLERANCE_RATIO = 0.01  # of a point's depth: a visible point may lie so far behind the drawn surface
 
 
 @dataclass(frozen=True, eq=False)
 class RedrawnView:
-    """A picture to draw: a name, a camera without skew, view weights, and the camera's own exposure if it has one."""
+    """A picture to draw.
+
+    Attributes:
+        name: Of the camera.
+        camera: Without skew.
+        weights: What is blended.
+        colour: The camera's own exposure, of `Renderer.draw`; None: the common one.
+    """
 
     name: str
     camera: Camera
@@ -52,18 +59,28 @@ def write_colmap(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
-    """Write images/NAME.png for every captured camera, encoded or held out, and sparse/0/*.bin: pinholes without
-    distortion, and points of the mesh in the mean's colours, with some of the views that see each.
+    """Write pictures (images/NAME.png) and a COLMAP model (sparse/0/*.bin).
 
-    Captured cameras have their own exposure. The model's world is the capture's. points: (n, 2) viewpoints to draw in
-    place of the captured cameras, as path_0000.png and so on. Skew, which COLMAP cannot say, is left out of the
-    pictures too. residual: encoded cameras' pictures have their residual on them; the listing says which.
-    Raises OutputError, OptionError as `Renderer.draw`, and `residual` where there is none, or with skew.
+    The pictures are of every captured camera, encoded or held out, with its own exposure. The model has pinholes
+    without distortion, and points of the mesh in the mean's colours with some of the views that see each. Its world is
+    the capture's. Skew, which COLMAP cannot express, is left out of the pictures too.
+
+    Args:
+        job: The scene and how it is drawn.
+        folder: To write.
+        points: (n, 2) viewpoints to draw in place of the captured cameras, as path_0000.png and so on.
+        residual: Whether the pictures of encoded cameras get their residual; the listing says which did.
+        overwrite: Whether an existing export is replaced.
+        progress: Reports each picture.
+
+    Raises:
+        OptionError: `residual`: the scene has none, or its cameras skew; `no-points`; as `Renderer.draw`.
+        OutputError: The folder cannot be written.
     """
-    todo = _captured(job) if points is None else _along(job, points)
-    files = file_names([shot.name for shot in todo])
+    redrawn_views = _captured_views(job) if points is None else _views_along(job, points)
+    files = file_names([redrawn.name for redrawn in redrawn_views])
     refuse_attributes(job.scene.appearance.channels)
-    sparse = _sparse_points(job.scene, todo)
+    sparse = _sparse_points(job.scene, redrawn_views)
     plain = replace(job, resolution=None)
     if residual and (points is not None or any(camera.K[0, 1] for camera in job.scene.rig.cameras)):
         raise OptionError(
@@ -73,29 +90,32 @@ def write_colmap(
 
     def draw(view: tuple[int, NDArray[np.float32] | None]) -> tuple[int, bytes]:
         number, difference = view
-        shot = todo[number]
+        redrawn = redrawn_views[number]
         if difference is None:
-            return number, plain.png(shot.camera, shot.weights, shot.colour)
+            return number, plain.png(redrawn.camera, redrawn.weights, redrawn.colour)
         exact.append(files[number])
         return number, png(captured_pixels(job, number, difference))
 
-    drawn = plain.each(draw, with_differences(job.scene, range(len(todo)), residual))
+    drawn = plain.each(draw, with_differences(job.scene, range(len(redrawn_views)), residual))
     with atomic_folder(folder, overwrite) as part:
         images = part / "images"
-        for number, data in track(drawn, "drawing", len(todo), progress):
-            put(images / files[number], data)
-        views = tuple(View(shot.name, images / file, shot.camera) for shot, file in zip(todo, files, strict=True))
+        for number, data in track(drawn, "drawing", len(redrawn_views), progress):
+            write_file(images / files[number], data)
+        views = tuple(
+            View(redrawn.name, images / file, redrawn.camera)
+            for redrawn, file in zip(redrawn_views, files, strict=True)
+        )
         model = colmap_model(LightField(images, views, (), "colmap"), sparse)
         assert model is not None, "pinholes without skew have a model"
         for name, data in model.items():
-            put(part / "sparse" / "0" / name, data)
+            write_file(part / "sparse" / "0" / name, data)
         held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(job.scene.rig.held_out)]}
         held |= {"residual": sorted(exact)} if residual else {}
-        named = {shot.name: f"images/{file}" for shot, file in zip(todo, files, strict=True)}
+        named = {redrawn.name: f"images/{file}" for redrawn, file in zip(redrawn_views, files, strict=True)}
         write_listing(part, "colmap", {"images": named, **held})
 
 
-def _captured(job: RenderJob) -> list[RedrawnView]:
+def _captured_views(job: RenderJob) -> list[RedrawnView]:
     scene = job.scene
     return [
         RedrawnView(
@@ -108,7 +128,7 @@ def _captured(job: RenderJob) -> list[RedrawnView]:
     ]
 
 
-def _along(job: RenderJob, points: NDArray[np.float64]) -> list[RedrawnView]:
+def _views_along(job: RenderJob, points: NDArray[np.float64]) -> list[RedrawnView]:
     made = []
     for number, (x, y) in enumerate(points.tolist()):
         camera, weights = viewpoint(job.scene, at=(x, y), weights=job.weights)
@@ -126,12 +146,14 @@ def _pinhole(camera: Camera, resolution: tuple[int, int] | None) -> Camera:
 def _sparse_points(scene: Scene, views: Sequence[RedrawnView]) -> SparsePoints:
     """Points of the surface that two views or more see."""
     positions, uv = _surface_points(scene.proxy.mesh)
-    seen = np.array(parallel_map(lambda redrawn: _seen(scene.proxy.mesh, redrawn.camera, positions), views))
-    kept = np.flatnonzero(seen.sum(axis=0) >= min(2, len(views)))
+    visible = np.array(
+        parallel_map(lambda redrawn: _visible_points(scene.proxy.mesh, redrawn.camera, positions), views)
+    )
+    kept = np.flatnonzero(visible.sum(axis=0) >= min(2, len(views)))
     if len(kept) == 0:
         raise OptionError("no-points", "the views see nothing in common", remedy="give viewpoints that look at it")
-    positions, uv, seen = positions[kept], uv[kept], seen[:, kept]
-    parts = [_tracks(seen[:, first:last], first) for first, last in pieces(len(kept), AT_ONCE)]
+    positions, uv, visible = positions[kept], uv[kept], visible[:, kept]
+    parts = [_select_tracks(visible[:, first:last], first) for first, last in pieces(len(kept), COLMAP_POINTS_PER_TASK)]
     point, view = (np.concatenate(part) for part in zip(*parts, strict=True))
     pixels = np.empty((len(point), 2))
     for number, redrawn in enumerate(views):
@@ -141,14 +163,14 @@ def _sparse_points(scene: Scene, views: Sequence[RedrawnView]) -> SparsePoints:
 
 
 def _surface_points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """(n, 3) positions and (n, 2) UVs: the vertices, evenly `MOST` of them if there are more; on a mesh of few,
-    random points of the surface too, as many as make `FEWEST`."""
+    """(n, 3) positions and (n, 2) UVs: vertices, at most `COLMAP_MAX_POINTS` at even steps, and random points of
+    the surface where these are fewer than `COLMAP_MIN_POINTS`."""
     assert mesh.uv is not None
     _, first = np.unique(mesh.vertices, axis=0, return_index=True)  # vertices on seams are doubled
     first.sort()
-    chosen = first[np.linspace(0, len(first) - 1, min(MOST, len(first))).astype(np.int64)]
+    chosen = first[np.linspace(0, len(first) - 1, min(COLMAP_MAX_POINTS, len(first))).astype(np.int64)]
     positions, uv = mesh.vertices[chosen].astype(np.float64), mesh.uv[chosen].astype(np.float64)
-    more = max(0, FEWEST - len(chosen))
+    more = max(0, COLMAP_MIN_POINTS - len(chosen))
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     area = triangle_areas(corners)
     if more == 0 or area.sum() == 0:
@@ -160,21 +182,23 @@ def _surface_points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64
     return np.concatenate([positions, inside]), np.concatenate([uv, (mesh.uv[mesh.faces[faces]] * shares).sum(axis=1)])
 
 
-def _seen(mesh: Mesh, camera: Camera, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _visible_points(mesh: Mesh, camera: Camera, positions: NDArray[np.float64]) -> NDArray[np.bool_]:
     """(n,) whether nothing of the mesh hides a point from the camera."""
     near = rasterise_view(mesh, camera).inverse_depth
     pixels, depth = camera.project(positions)
     inside = (depth > 0) & (pixels >= 0).all(axis=1) & (pixels < (camera.width, camera.height)).all(axis=1)
     column, row = np.where(inside[:, None], pixels, 0).astype(np.int64).T
-    return inside & (near[row, column] * depth <= 1 + BEHIND)
+    return inside & (near[row, column] * depth <= 1 + COLMAP_DEPTH_TOLERANCE_RATIO)
 
 
-def _tracks(seen: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Point, counted from `first`, and view of the observations kept of (views, points): `TRACK` a point at most,
-    spread over those that see it; sorted by point."""
-    rank = np.cumsum(seen, axis=0) - 1
-    step = np.maximum(seen.sum(axis=0), TRACK) / TRACK
-    kept = seen & (np.floor(rank / step) > np.floor((rank - 1) / step))
+def _select_tracks(visible: NDArray[np.bool_], first: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Point, counted from `first`, and view of each entry of the tracks, sorted by point.
+
+    Of the (views, points) in which a point is visible, at most `COLMAP_TRACK_VIEWS` at even steps are listed.
+    """
+    rank = np.cumsum(visible, axis=0) - 1
+    step = np.maximum(visible.sum(axis=0), COLMAP_TRACK_VIEWS) / COLMAP_TRACK_VIEWS
+    kept = visible & (np.floor(rank / step) > np.floor((rank - 1) / step))
     point, view = np.nonzero(kept.T)
     return point.astype(np.int64) + first, view.astype(np.int64)
 

@@ -13,14 +13,22 @@ from typing import Any
 
 from eigenfield.core.errors import OutputError
 from eigenfield.core.version import __version__
-from eigenfield.runtime.files import flush_folder, mended
+from eigenfield.runtime.files import flush_folder, output_errors
 
-LISTING = "eigenfield.json"
-MOST = 16 * 2**20  # bytes of a listing that is read back
+LISTING_FILE = "eigenfield.json"
+LISTING_MAX_BYTES = 16 * 2**20  # larger ones are not read back
 
 
 def refuse_folder(folder: Path, overwrite: bool) -> None:
-    """Before any work: raise OutputError where an export may not or cannot be put."""
+    """Before any work: check that an export may be written.
+
+    Args:
+        folder: To write.
+        overwrite: Whether an existing export may be replaced.
+
+    Raises:
+        OutputError: `output-is-file`, `no-folder`, `not-writable`, `output-exists`, `not-an-export`.
+    """
     if folder.exists() and not folder.is_dir():
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
     parent = folder.absolute().parent
@@ -28,7 +36,7 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         raise OutputError("no-folder", "its folder does not exist", path=folder, remedy=f"create {parent}")
     if not os.access(folder if folder.is_dir() else parent, os.W_OK):
         raise OutputError("not-writable", "cannot be written to", path=folder, remedy="name another place")
-    with mended(folder):
+    with output_errors(folder):
         if not folder.is_dir() or not any(folder.iterdir()):
             return
         if not overwrite:
@@ -47,12 +55,19 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
 
 @contextlib.contextmanager
 def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
-    """Yields an empty folder that becomes `folder` by rename when the block ends well; else nothing stays.
+    """Yields an empty folder that is renamed to `folder` when the block succeeds, and removed when it fails.
 
-    Where `folder` exists, what it holds is replaced entry by entry, and put back if that fails.
+    Where `folder` exists, what it holds is replaced entry by entry, and restored if that fails.
+
+    Args:
+        folder: To write.
+        overwrite: Whether an existing export is replaced.
+
+    Raises:
+        OutputError: As `refuse_folder`; the folder cannot be written.
     """
     refuse_folder(folder, overwrite)
-    with mended(folder):
+    with output_errors(folder):
         there = folder.is_dir()
         beside = folder if there else folder.absolute().parent
         part = Path(tempfile.mkdtemp(prefix=".eigenfield-", suffix=".part", dir=beside))
@@ -69,25 +84,38 @@ def atomic_folder(folder: Path, overwrite: bool) -> Iterator[Path]:
             shutil.rmtree(part, ignore_errors=True)
 
 
-def put(path: Path, data: bytes) -> None:
-    """A file, and the folders that it lies in. Not for threads: one that is late would bring a removed folder back."""
+def write_file(path: Path, data: bytes) -> None:
+    """Write a file, and create the folders that it lies in.
+
+    Not for threads: one that is late would create a removed folder again.
+
+    Args:
+        path: Of the file.
+        data: Its bytes.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_bytes(data)
 
 
 def write_listing(folder: Path, kind: str, more: Mapping[str, Any]) -> None:
-    """`eigenfield.json`: the kind of export, `more` about it, and every file that it wrote."""
+    """Write `eigenfield.json`: the kind of export, and every file that it wrote.
+
+    Args:
+        folder: Of the export.
+        kind: Of the export.
+        more: Further entries.
+    """
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
-    document = {"kind": kind, "generator": f"eigenfield {__version__}", **more, "files": [*files, LISTING]}
+    document = {"kind": kind, "generator": f"eigenfield {__version__}", **more, "files": [*files, LISTING_FILE]}
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-    (folder / LISTING).write_text(text + "\n", encoding="utf-8")
+    (folder / LISTING_FILE).write_text(text + "\n", encoding="utf-8")
 
 
 def _not_ours(folder: Path) -> str | None:
     """A file in `folder` that its listing does not name."""
-    listing, ours = folder / LISTING, set[str]()
+    listing, ours = folder / LISTING_FILE, set[str]()
     with contextlib.suppress(OSError, ValueError, AttributeError, TypeError, RecursionError):
-        if listing.stat().st_size <= MOST:
+        if listing.stat().st_size <= LISTING_MAX_BYTES:
             ours = set(json.loads(listing.read_text(encoding="utf-8")).get("files", []))
     for path in sorted(folder.rglob("*")):
         name = path.relative_to(folder).as_posix()
@@ -97,7 +125,7 @@ def _not_ours(folder: Path) -> str | None:
 
 
 def _exchange(folder: Path, part: Path) -> None:
-    """What is in `folder` goes to part / "old", what is in part / "new" comes; undone if anything fails."""
+    """Move what is in `folder` to part / "old", and what is in part / "new" to `folder`; undone if anything fails."""
     (part / "old").mkdir()
     moved: list[tuple[Path, Path]] = []
     try:

@@ -19,7 +19,7 @@ from eigenfield.rendering.software.composite import compose_scene, make_buffers,
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
 from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.viewer.exports.folder import atomic_folder, put, write_listing
+from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
 from eigenfield.viewer.exports.names import file_names
 
 
@@ -31,11 +31,21 @@ def write_maps(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
-    """Write a PNG of the whole atlas for each encoded camera, named by it: equation 8 with the camera's own weights,
-    cut to 0..1. `eigenfield.json` says which file is whose.
+    """Write a PNG of the whole atlas for each encoded camera: equation 8 with its own weights, clipped to 0..1.
 
-    Texels that no camera saw are what the file holds there. A harmonised scene's maps are in the common exposure.
-    textures: how many eigen textures to sum. Raises OutputError, OptionError (`textures`, `not-a-picture`).
+    `eigenfield.json` says which file is whose. Texels that no camera saw are what the scene holds there. A harmonised
+    scene's maps have the common exposure.
+
+    Args:
+        scene: The scene.
+        folder: To write.
+        textures: Number of eigen textures of each basis. Default: all.
+        overwrite: Whether an existing export is replaced.
+        progress: Reports each map.
+
+    Raises:
+        OptionError: `textures`, `not-a-picture`.
+        OutputError: The folder cannot be written.
     """
     check_textures(textures)
     make = camera_maps(scene)
@@ -44,30 +54,50 @@ def write_maps(
     drawn = parallel_stream(lambda row: png_bytes(make(row, textures)), range(len(names)))
     with atomic_folder(folder, overwrite) as part:
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
-            put(part / file, data)
+            write_file(part / file, data)
         height, width = scene.appearance.atlas
         write_listing(part, "maps", {"size": [width, height], "maps": dict(zip(names, files, strict=True))})
 
 
 def camera_maps(scene: Scene) -> Callable[[int, int | None], NDArray[np.float32]]:
-    """A function of an encoded camera's row and a number of eigen textures: its (H, W, C) texture map, not cut."""
+    """A function of an encoded camera, counted among these, and a number of eigen textures: its (H, W, C) map, not
+    clipped.
+
+    Args:
+        scene: The scene.
+
+    Raises:
+        OptionError: `not-a-picture`.
+    """
     compose = _composer(scene)
     rows = scene.rows()
     return lambda row, textures: compose(ViewWeights.one(int(rows[row])), textures)
 
 
 def mean_map(scene: Scene) -> NDArray[np.float32]:
-    """(H, W, C): the means of all planes, drawn at the atlas's size; not cut."""
+    """(H, W, C): the means of all planes at the atlas's size, not clipped.
+
+    Args:
+        scene: The scene.
+
+    Raises:
+        OptionError: `not-a-picture`.
+    """
     return _composer(scene)(ViewWeights(), 0)
 
 
 def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
-    """Every eigen texture of every plane, as (H, W, C) of what it adds to a drawn picture, and its (Ne,) weights.
+    """Every eigen texture of every plane: (H, W, C) that it adds to a drawn picture, and its (No,) weights.
 
-    textures: the first so many of each basis.
+    Args:
+        scene: The scene.
+        textures: Number of eigen textures of each basis. Default: all.
+
+    Raises:
+        OptionError: `not-a-picture`.
     """
     count = scene.appearance.textures if textures is None else textures
-    kept = [[basis.truncated(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
+    kept = [[basis.truncate(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
     total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
     for plane, bases in zip(scene.appearance.planes, kept, strict=True):
         alone = []

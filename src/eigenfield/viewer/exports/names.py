@@ -6,55 +6,68 @@ import re
 import unicodedata
 from collections.abc import Sequence
 
-from eigenfield.capture.photographs.read import EXTENSIONS
+from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
 
-LONGEST = 120  # bytes of a folder's or file's name, before its ending
-DEEPEST = 6  # folders in a path
-FORBIDDEN = '<>:"|?*'  # on Windows; and everywhere what is not printable
-RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³])(\..*)?", re.IGNORECASE)  # devices of Windows
+NAME_MAX_BYTES = 120  # of a folder's or file's name, without its ending
+PATH_MAX_PARTS = 6  # folders and file of a path
+NAME_FORBIDDEN_CHARACTERS = '<>:"|?*'  # on Windows; and everywhere what is not printable
+NAME_RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³])(\..*)?", re.IGNORECASE)  # devices of Windows
 
 
 def file_names(names: Sequence[str], ending: str = ".png") -> list[str]:
-    """For each name a relative path with forward slashes that ends in `ending`, in place of a photograph's own.
+    """A relative path with forward slashes for each name.
 
-    Sub-folders stay. What leads outside, or what some system does not allow, is left out or becomes `_`; names that
-    would then be the same file, also where upper and lower case are, are numbered: `a.png`, `a-2.png`.
+    Sub-folders stay. What leads outside, or what some system does not allow, is left out or becomes `_`. Names that
+    would then be the same file, also where case does not count, are numbered: `a.png`, `a-2.png`.
+
+    Args:
+        names: Of cameras.
+        ending: Of the files, in place of a photograph's own.
     """
     files: set[str] = set()
     folders: set[str] = set()
-    return [_free(_parts(name), ending, files, folders) for name in names]
+    return [_free_path(_parts(name), ending, files, folders) for name in names]
 
 
 def file_name(name: str, otherwise: str) -> str:
-    """One part of a path that every system allows; `otherwise` where nothing of `name` is left."""
-    text = "".join("_" if c in FORBIDDEN or not c.isprintable() else c for c in unicodedata.normalize("NFC", name))
+    """One part of a path that every system allows.
+
+    Args:
+        name: Wanted.
+        otherwise: Where nothing of `name` is left.
+    """
+    text = "".join(
+        "_" if c in NAME_FORBIDDEN_CHARACTERS or not c.isprintable() else c for c in unicodedata.normalize("NFC", name)
+    )
     text = text.strip(". ")
-    if RESERVED.fullmatch(text):
+    if NAME_RESERVED.fullmatch(text):
         text = f"_{text}"
-    return _cut(text, LONGEST).rstrip(". ") or otherwise
+    return _truncate(text, NAME_MAX_BYTES).rstrip(". ") or otherwise
 
 
 def _parts(name: str) -> list[str]:
     stem = name
-    for extension in EXTENSIONS:
+    for extension in PHOTOGRAPH_EXTENSIONS:
         if name.lower().endswith(extension):
             stem = name[: -len(extension)]
             break
     parts = [file_name(part, "") for part in re.split(r"[/\\]", stem)]
-    kept = [part for part in parts if part]
-    if not kept:
+    named = [part for part in parts if part]
+    if not named:
         return ["camera"]
-    return [*kept[: DEEPEST - 1], "_".join(kept[DEEPEST - 1 :])] if len(kept) > DEEPEST else kept
+    return (
+        [*named[: PATH_MAX_PARTS - 1], "_".join(named[PATH_MAX_PARTS - 1 :])] if len(named) > PATH_MAX_PARTS else named
+    )
 
 
-def _free(parts: list[str], ending: str, files: set[str], folders: set[str]) -> str:
-    """The path of `parts`, numbered where it is taken; it and its folders are taken from now on."""
+def _free_path(parts: list[str], ending: str, files: set[str], folders: set[str]) -> str:
+    """The path of `parts`, numbered where it is taken; adds it and its folders to `files` and `folders`."""
     parents = [_key("/".join(parts[:depth])) for depth in range(1, len(parts))]
     if any(parent in files for parent in parents):
         parts, parents = ["_".join(parts)], []
     number = 1
     while True:
-        last = _cut(parts[-1], LONGEST) + (f"-{number}" if number > 1 else "") + ending
+        last = _truncate(parts[-1], NAME_MAX_BYTES) + (f"-{number}" if number > 1 else "") + ending
         path = "/".join([*parts[:-1], last])
         if _key(path) not in files | folders:
             break
@@ -69,5 +82,5 @@ def _key(path: str) -> str:
     return unicodedata.normalize("NFC", path.casefold())
 
 
-def _cut(text: str, most: int) -> str:
+def _truncate(text: str, most: int) -> str:
     return text.encode("utf-8")[:most].decode("utf-8", errors="ignore")

@@ -1,4 +1,4 @@
-"""The proxy as Wavefront OBJ with the mean as its texture, and the eigen textures beside it for programs of one's own.
+"""The proxy as Wavefront OBJ with the mean as its texture, and the eigen textures beside it for other programs.
 
 Axes are the .glb's: x right, y up, the array looking along -z. OBJ counts v upwards, the scene downwards.
 """
@@ -25,14 +25,21 @@ from eigenfield.viewer.exports.folder import atomic_folder, write_listing
 from eigenfield.viewer.exports.maps import eigen_maps, mean_map
 from eigenfield.viewer.exports.names import file_name
 
-Coded = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
-SUM = "texture = mean / 255 + sum over j of weight[camera][j] * (code[j] - zero[j]) * scale[j]"
+CodedPicture = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
+OBJ_SUM_NOTE = "texture = mean / 255 + sum over j of weight[camera][j] * (code[j] - zero[j]) * scale[j]"
 
 
 def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
-    """Write NAME.obj with NAME.mtl and NAME.png, the mean cut to 0..1, beside it; all three or none.
+    """Write NAME.obj with NAME.mtl and NAME.png, the mean clipped to 0..1, beside it; all three or none.
 
-    Raises OutputError, OptionError `not-a-picture`.
+    Args:
+        scene: The scene.
+        output: The .obj.
+        overwrite: Whether existing files are replaced.
+
+    Raises:
+        OptionError: `not-a-picture`.
+        OutputError: A file cannot be written.
     """
     mean = png_bytes(mean_map(scene))
     targets = obj_files(output)
@@ -43,13 +50,25 @@ def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
 
 
 def refuse_obj(output: Path, overwrite: bool) -> None:
-    """Before any work: raise OutputError where one of the three files may not or cannot be written."""
+    """Before any work: check that the three files may be written.
+
+    Args:
+        output: The .obj.
+        overwrite: Whether existing files may be replaced.
+
+    Raises:
+        OutputError: One of them may not or cannot be written.
+    """
     for path in obj_files(output):
         refuse_existing(path, overwrite)
 
 
 def obj_files(output: Path) -> list[Path]:
-    """Picture, material and mesh of an OBJ; the first two in words that every reader of OBJ takes for one."""
+    """Picture, material and mesh of an OBJ. The names of the first two have no spaces, which readers of OBJ split at.
+
+    Args:
+        output: The .obj.
+    """
     stem = "".join(c if c.isalnum() or c in "._" else "_" for c in file_name(output.stem, "mesh"))
     return [output.with_name(f"{stem}.png"), output.with_name(f"{stem}.mtl"), output]
 
@@ -62,12 +81,22 @@ def write_obj_folder(
     overwrite: bool = False,
     progress: Progress | None = None,
 ) -> None:
-    """Write mesh.obj, mesh.mtl, mean.png and eigen_00.png, eigen_01.png, ..., whose codes become numbers with the
-    scale and zero in `eigenfield.json`; weights of every encoded camera are there too.
+    """Write mesh.obj, mesh.mtl, mean.png and eigen_00.png, eigen_01.png, ...
 
-    textures: how many eigen textures, of each basis. Where planes have sizes and channels of their own, each eigen
-    texture is what it adds to R, G and B at the atlas's size. Raises OutputError and OptionError (`not-a-picture`,
-    `textures`).
+    `eigenfield.json` has the scale and zero that make values of their codes, and the weights of every encoded camera.
+    Where planes have sizes and channels of their own, each eigen texture is what it adds to R, G and B at the atlas's
+    size.
+
+    Args:
+        scene: The scene.
+        folder: To write.
+        textures: Number of eigen textures of each basis. Default: all.
+        overwrite: Whether an existing export is replaced.
+        progress: Reports each eigen texture.
+
+    Raises:
+        OptionError: `not-a-picture`, `textures`.
+        OutputError: The folder cannot be written.
     """
     check_textures(textures)
     mean = png_bytes(mean_map(scene))
@@ -91,7 +120,7 @@ def write_obj_folder(
             {
                 "axes": "x right, y up, the cameras look along -z; v upwards",
                 "toCapture": capture_to_gltf(scene.rig.view_plane).T.tolist(),
-                "sum": SUM,
+                "sum": OBJ_SUM_NOTE,
                 "mean": "mean.png",
                 "textures": entries,
                 "weights": {
@@ -102,10 +131,10 @@ def write_obj_folder(
         )
 
 
-def _codes(scene: Scene, count: int) -> Iterator[Coded]:
-    """Codes (H, W, C), scale and zero (C,), and weights (Ne,) of the first `count` eigen textures of each basis, as
+def _codes(scene: Scene, count: int) -> Iterator[CodedPicture]:
+    """Codes (H, W, C), scale and zero (C,), and weights (No,) of the first `count` eigen textures of each basis, as
     pictures of the whole atlas: codes as the scene has them where these are such pictures."""
-    if not _plain(scene):
+    if not _has_plain_atlas(scene):
         for picture, weights in eigen_maps(scene, count):
             ones = np.ones((1, picture.shape[2]), np.float32)
             yield from _codes_of(Basis(picture[None], ones, 0 * ones, weights[:, None]), picture.shape[2], 1)
@@ -115,13 +144,13 @@ def _codes(scene: Scene, count: int) -> Iterator[Coded]:
         yield from _codes_of(basis, plane.mean.shape[2], min(count, basis.count))
 
 
-def _codes_of(basis: Basis, channels: int, count: int) -> Iterator[Coded]:
+def _codes_of(basis: Basis, channels: int, count: int) -> Iterator[CodedPicture]:
     scale, zero = basis_scale(basis, one_unit=channels == 3)
     for index in range(count):
         yield texture_codes(basis, index, scale, zero), scale[index], zero[index], basis.weights[:, index]
 
 
-def _plain(scene: Scene) -> bool:
+def _has_plain_atlas(scene: Scene) -> bool:
     """Whether the scene's eigen textures are pictures of the whole atlas."""
     sizes = {basis.textures.shape[1:3] for plane in scene.appearance.planes for basis in plane.bases}
     return scene.appearance.to_rgb is None and len(scene.appearance.planes) == 1 and sizes <= {scene.appearance.atlas}

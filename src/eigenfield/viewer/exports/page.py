@@ -19,11 +19,19 @@ def write_page(
     metres_per_unit: float | None = None,
     overwrite: bool = False,
 ) -> None:
-    """Write a page that opens by double click and needs no network: viewer and file in one, the file without the
-    residual, which the viewer does not show. What has been coded is in it as it is.
+    """Write a page that opens by double click and needs no network: viewer and scene in one file.
 
-    title: of the page, the output's name if None. metres_per_unit: metres in one unit of the capture, for headsets.
-    Raises OutputError.
+    The residual, which the viewer does not show, is left out. Payloads are not coded anew.
+
+    Args:
+        scene: The scene.
+        output: The .html.
+        title: Of the page. Default: the output's name.
+        metres_per_unit: Metres in one unit of the capture, for headsets.
+        overwrite: Whether an existing file is replaced.
+
+    Raises:
+        OutputError: `viewer-build`; the file cannot be written.
     """
     refuse_existing(output, overwrite)
     glb = encode_scene(replace(scene, residual=None))

@@ -22,17 +22,25 @@ from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, novel_ca
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
 
-COLUMNS, ROWS = 8, 6
-SIDE = 4096  # pixels of a quilt that every player takes; views are made smaller than the cameras' to keep to it
-LARGEST = 16384
-MOST = 64  # columns, and rows
-SIDEWAYS = 0.7  # cosine between the array's X and the cameras' own x axis
-SUFFIX = re.compile(r"_qs([1-9]\d?)x([1-9]\d?)a(\d+(?:\.\d+)?)$")
+QUILT_COLUMNS, QUILT_ROWS = 8, 6
+QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
+QUILT_MAX_SIDE_PX = 16384
+QUILT_MAX_TILES = 64  # in a row, and in a column
+QUILT_MIN_COSINE = 0.7  # between the array's X and the cameras' own x axis
+QUILT_SUFFIX = re.compile(r"_qs([1-9]\d?)x([1-9]\d?)a(\d+(?:\.\d+)?)$")
 
 
 @dataclass(frozen=True)
 class Quilt:
-    """columns, rows: tiles. width, height: of a view, in pixels. spread: the part of the array's width, 0..1."""
+    """The shape of a quilt.
+
+    Attributes:
+        columns: Tiles in a row.
+        rows: Tiles in a column.
+        width: Of a view, in pixels.
+        height: Of a view, in pixels.
+        spread: Part of the array's width that the views cover, 0..1.
+    """
 
     columns: int
     rows: int
@@ -42,6 +50,7 @@ class Quilt:
 
     @property
     def suffix(self) -> str:
+        """What a file's name ends in."""
         return f"_qs{self.columns}x{self.rows}a{self.width / self.height:.4g}"
 
 
@@ -51,31 +60,48 @@ def quilt_of(
     resolution: tuple[int, int] | None = None,
     spread: float = 1.0,
 ) -> Quilt:
-    """A quilt of `grid` (columns, rows), 8 x 6 if None, and views of `resolution` (width, height): the reference
-    camera's shape if None, no larger than it is and so that the quilt has at most 4096 pixels a side.
+    """The shape of a scene's quilt.
 
-    Raises OptionError (`quilt`, `spread`).
+    Args:
+        scene: The scene.
+        grid: (columns, rows). Default: 8 x 6.
+        resolution: (width, height) of a view. Default: the reference camera's shape, no larger than it is, so that the
+            quilt has at most 4096 pixels a side.
+        spread: Part of the array's width, 0..1.
+
+    Raises:
+        OptionError: `quilt`, `spread`.
     """
-    columns, rows = grid or (COLUMNS, ROWS)
-    if not (1 <= columns <= MOST and 1 <= rows <= MOST):
-        raise OptionError("quilt", f"a quilt of {columns}x{rows}", remedy=f"ask for 1x1 to {MOST}x{MOST}")
+    columns, rows = grid or (QUILT_COLUMNS, QUILT_ROWS)
+    if not (1 <= columns <= QUILT_MAX_TILES and 1 <= rows <= QUILT_MAX_TILES):
+        raise OptionError(
+            "quilt", f"a quilt of {columns}x{rows}", remedy=f"ask for 1x1 to {QUILT_MAX_TILES}x{QUILT_MAX_TILES}"
+        )
     if not 0 <= spread <= 1:
         raise OptionError("spread", f"a spread of {spread:g}", remedy="give 0 (one place) to 1 (the array's width)")
     camera = scene.rig.cameras[scene.rig.reference]
-    scale = min(1.0, SIDE / (columns * camera.width), SIDE / (rows * camera.height))
+    scale = min(1.0, QUILT_SIDE_PX / (columns * camera.width), QUILT_SIDE_PX / (rows * camera.height))
     width, height = resolution or (max(1, int(camera.width * scale)), max(1, int(camera.height * scale)))
-    if width < 1 or height < 1 or columns * width > LARGEST or rows * height > LARGEST:
+    if width < 1 or height < 1 or columns * width > QUILT_MAX_SIDE_PX or rows * height > QUILT_MAX_SIDE_PX:
         raise OptionError(
             "quilt",
             f"{columns}x{rows} views of {width}x{height}",
-            remedy=f"keep the quilt within {LARGEST}x{LARGEST} pixels",
+            remedy=f"keep the quilt within {QUILT_MAX_SIDE_PX}x{QUILT_MAX_SIDE_PX} pixels",
         )
     return Quilt(columns, rows, width, height, spread)
 
 
 def quilt_file(output: Path, quilt: Quilt) -> Path:
-    """`output` with the quilt's suffix; one that it has already must be right. Raises OptionError `quilt-name`."""
-    said = SUFFIX.search(output.stem)
+    """A file's path with the quilt's suffix.
+
+    Args:
+        output: The .png.
+        quilt: Its shape.
+
+    Raises:
+        OptionError: `quilt-name`: the name has a suffix of another shape.
+    """
+    said = QUILT_SUFFIX.search(output.stem)
     if said is None:
         return output.with_name(f"{output.stem}{quilt.suffix}{output.suffix}")
     aspect = quilt.width / quilt.height
@@ -91,9 +117,18 @@ def quilt_file(output: Path, quilt: Quilt) -> Path:
 def write_quilt(
     job: RenderJob, quilt: Quilt, output: Path, *, overwrite: bool = False, progress: Progress | None = None
 ) -> Path:
-    """Draw and write the quilt as .png; returns the file's path, which has the suffix.
+    """Draw and write a quilt; returns the file's path, which has the suffix.
 
-    Raises OutputError, OptionError (`quilt-array`, `quilt-name`, and as `Renderer.draw`).
+    Args:
+        job: The scene and how it is drawn.
+        quilt: Its shape.
+        output: The .png.
+        overwrite: Whether an existing file is replaced.
+        progress: Reports each view.
+
+    Raises:
+        OptionError: `quilt-array`, `quilt-name`; as `Renderer.draw`.
+        OutputError: The file cannot be written.
     """
     path = quilt_file(output, quilt)
     views = quilt_views(job, quilt)
@@ -114,14 +149,21 @@ def write_quilt(
 def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, ViewWeights]]:
     """The quilt's cameras and their view weights, from left to right along the middle of the array.
 
-    All look the same way, with their x axis along the array's X; principal points are shifted so that what lies in the
+    All look the same way, with their x axis along the array's X. Principal points are shifted so that the point in the
     middle of the picture, at the median depth of what the array's middle sees, stays in the middle: it is shown in the
-    plane of the display. Raises OptionError `quilt-array` where the cameras do not stand side by side.
+    plane of the display.
+
+    Args:
+        job: The scene and how it is drawn.
+        quilt: Its shape.
+
+    Raises:
+        OptionError: `quilt-array`: the cameras do not stand side by side, or see nothing.
     """
     scene, plane = job.scene, job.scene.rig.view_plane
     base = at_resolution(novel_camera(scene, (0.0, 0.0)), (quilt.width, quilt.height))
     right = plane.right
-    if base.R[0] @ right < SIDEWAYS:
+    if base.R[0] @ right < QUILT_MIN_COSINE:
         raise OptionError(
             "quilt-array",
             "the cameras do not stand side by side before the scene",
@@ -132,19 +174,19 @@ def quilt_views(job: RenderJob, quilt: Quilt) -> list[tuple[Camera, ViewWeights]
     R = np.stack([right, np.cross(forward, right), forward])
     middle = base.R.T @ np.linalg.inv(base.K) @ (quilt.width / 2, quilt.height / 2, 1.0)
     towards = R @ middle
-    depth = _median_depth(scene, _looking(base, R, base.centre, middle))
+    depth = _median_depth(scene, _camera_towards(base, R, base.centre, middle))
     focus = base.centre + middle * (depth / towards[2])
     places = np.linspace(-quilt.spread, quilt.spread, quilt.columns * quilt.rows)
     return [
         (
-            _looking(base, R, plane.point(x, 0.0), focus - plane.point(x, 0.0)),
+            _camera_towards(base, R, plane.point(x, 0.0), focus - plane.point(x, 0.0)),
             view_weights(scene, (float(x), 0.0), job.weights),
         )
         for x in places.tolist()
     ]
 
 
-def _looking(
+def _camera_towards(
     base: Camera, R: NDArray[np.float64], centre: NDArray[np.float64], direction: NDArray[np.float64]
 ) -> Camera:
     """A camera at `centre` with axes R and the focal lengths of `base`, which sees `direction` in its middle."""
