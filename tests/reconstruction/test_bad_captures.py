@@ -246,8 +246,9 @@ def test_too_few_photographs(array, tmp_path, number):
     ids=lambda words: " ".join(words),
 )  # fmt: skip
 def test_options_are_judged_first(array, tmp_path, run, words):
-    error = refused(lambda: run("encode", array, "-o", tmp_path / "scene.glb", *words, "--traceback"))
-    assert error.remedy
+    with pytest.raises(EigenfieldError) as caught:
+        run("encode", array, "-o", tmp_path / "scene.glb", *words, "--traceback")
+    assert caught.value.remedy
     assert not list(tmp_path.glob("**/array-*"))
 
 
