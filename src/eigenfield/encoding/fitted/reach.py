@@ -19,7 +19,7 @@ from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.target import TARGET_FIRST_QUALITY, Attempt, Target, search_quality
 from eigenfield.gltf import encode_scene
 from eigenfield.imaging.metrics import psnr, ssim, to_codes
-from eigenfield.rendering import Renderer
+from eigenfield.rendering import Renderer, ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.encode")
@@ -98,7 +98,7 @@ def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
     cameras = [scene.rig.cameras[index] for index in scene.rig.encoded]
 
     def of_observation(index: int) -> float | None:
-        picture = renderer.draw(cameras[observations.camera_of(index)], np.eye(count)[index])
+        picture = renderer.draw(cameras[observations.camera_of(index)], ViewWeights.one(index))
         covered, mask = picture.covered, observations.mask(index)
         if mask.size:
             covered &= mask > 0
