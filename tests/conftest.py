@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
-import signal
-import sys
 from pathlib import Path
 
 import pytest
+
+from support.program import Ran, call
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -37,24 +37,15 @@ def data() -> Path:
 
 
 @pytest.fixture
-def run(capsys, monkeypatch):
-    """Call the program as the shell does, in this process: exit code, standard output, standard error."""
-    from eigenfield.cli import main
+def run(capfd):
+    """Call the program as the shell does, in this process: exit code, standard output and standard error, with what
+    goes past Python to either."""
 
-    def call(*words):
-        monkeypatch.setattr(sys, "argv", ["eigenfield", *map(str, words)])
-        before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        finally:
-            for number, handler in before.items():
-                signal.signal(number, handler)
-        return code, *capsys.readouterr()
+    def ran(*words: object) -> Ran:
+        capfd.readouterr()
+        return Ran(call(*words), *capfd.readouterr())
 
-    return call
+    return ran
 
 
 @pytest.fixture(scope="session")
@@ -71,15 +62,12 @@ def good() -> dict[str, bytes]:
 @pytest.fixture(scope="session")
 def fitted(tmp_path_factory) -> tuple[Path, Path]:
     """A folder of nine photographs and their proxy, and the file that they were fitted to."""
-    from eigenfield.cli import main
     from support.captures import write_capture
 
     folder = write_capture(tmp_path_factory.mktemp("fit") / "nine")
     output = folder.parent / "fitted.glb"
-    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q"]
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(output), "--quality", "92"])
-        main()
+    words = ["--proxy", folder / "proxy.ply", "-n", "4", "-q", "-o", output, "--quality", "92"]
+    assert call("encode", folder, *words) == 0
     return folder, output
 
 

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -35,11 +33,16 @@ def test_tarot_before_coding(data, hold_out, part, whole, outside):
     assert figures["psnr"] >= whole and figures["outside"]["psnr"] >= outside
 
 
-def call(*words):
+@pytest.fixture
+def call(run):
     """What the program says to standard output."""
-    done = subprocess.run([sys.executable, "-m", "eigenfield", *map(str, words)], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+
+    def said(*words):
+        code, out, err = run(*words)
+        assert code == 0, err
+        return out
+
+    return said
 
 
 CAPTURES = {
@@ -52,7 +55,7 @@ CAPTURES = {
 
 
 @pytest.mark.parametrize("name", list(CAPTURES))
-def test_the_command_line_on_a_capture(data, tmp_path, name):
+def test_the_command_line_on_a_capture(data, tmp_path, call, name):
     where, proxy, options, least, coverage = CAPTURES[name]
     folder = data / name
     where = [str(folder / word) if "/" in word else word for word in where]
@@ -67,7 +70,7 @@ def test_the_command_line_on_a_capture(data, tmp_path, name):
     call("render", scene, "--at", "0.2,0.1", "-o", tmp_path / "view.png")
 
 
-def test_photographs_in_one_small_file_out(data, tmp_path):
+def test_photographs_in_one_small_file_out(data, tmp_path, call):
     """Nothing but photographs and their own parameters: the proxy is estimated, found to be a relief, simplified; the
     textures are fitted to it."""
     folder, scene = data / "hci_antinous_9x9", tmp_path / "scene.glb"

@@ -6,13 +6,13 @@ import csv
 import json
 import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import av
 import click
 import cv2
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -24,9 +24,8 @@ from eigenfield.calibrate.charts.lens_models import LENS_MODEL_LADDER
 from eigenfield.calibrate.charts.pictures import find_charts, split_name
 from eigenfield.calibrate.charts.rig import solve_rig
 from eigenfield.capture import open_capture
-from eigenfield.cli import calibrate
 from eigenfield.cli.calibrate_chart import board_of, chart_options, table
-from eigenfield.core.errors import CaptureError, EigenfieldError
+from eigenfield.core.errors import CaptureError, EigenfieldError, OutputError
 from eigenfield.runtime.parallel import set_threads
 from support import charts
 from support.charts import CHARUCO, CHECKER, TOML
@@ -312,25 +311,22 @@ def test_another_charuco_board_is_refused_with_the_right_one(charuco_folder, wro
 @click.command()
 @chart_options
 def verb(chart):
-    from pathlib import Path
-
-    click.echo(repr(board_of(chart, Path())) if chart else "no chart")
+    return board_of(chart, Path()) if chart else None
 
 
-def say(*words):
-    done = CliRunner().invoke(verb, words)
-    return done.output if done.exception is None else done.exception
+def described(*words):
+    return verb.main(words, standalone_mode=False)
 
 
 def test_options_describe_the_board(tmp_path):
-    assert say() == "no chart\n"
-    assert repr(CHECKER) in say("--chart", "checkerboard", "--board", "9x6", "--square", "25mm")
+    assert described() is None
+    assert described("--chart", "checkerboard", "--board", "9x6", "--square", "25mm") == CHECKER
     made = boards.charuco(4, 5, 5.4, 4.05, "DICT_4X4_1000", "cm", inverted=True)
-    assert repr(replace(made, marker=40.5 * 1e-3 / 1e-2)) in say(
+    assert replace(made, marker=40.5 * 1e-3 / 1e-2) == described(
         "--chart", "charuco", "--board", "4x5", "--square", "5.4cm", "--marker", "40.5mm", "--inverted"
     )
     (tmp_path / "charuco.toml").write_text(TOML)
-    assert "columns=4" in say("--chart", "charuco", "--board", str(tmp_path / "charuco.toml"))
+    assert described("--chart", "charuco", "--board", str(tmp_path / "charuco.toml")).columns == 4
 
 
 @pytest.mark.parametrize(
@@ -345,20 +341,21 @@ def test_options_describe_the_board(tmp_path):
     ],
 )
 def test_options_that_do_not_go_together(words):
-    error = say(*words)
-    assert isinstance(error, EigenfieldError) and error.remedy
+    with pytest.raises(EigenfieldError) as caught:
+        described(*words)
+    assert caught.value.remedy
 
 
-def test_the_rig_is_used_with_photographs_named_after_its_cameras(tmp_path):
+def test_the_rig_is_used_with_photographs_named_after_its_cameras(tmp_path, run):
     """From chart pictures in a folder a camera to a light field of a scene, through both files that are written."""
     cameras = charts.rig(3, spacing=100, distance=500)
     how = {"name": "{camera}/shot-{number}.png", "names": ("cam_0", "cam_1", "cam_10")}
     charts.write_charts(tmp_path / "charts", CHECKER, cameras, POSES[:5], **how)
     out, photos = tmp_path / "rig", tmp_path / "photos"
-    words = [str(tmp_path / "charts"), "--chart", "checkerboard", "--board", "9x6", "--square", "25mm", "-o", str(out)]
-    done = CliRunner().invoke(calibrate.command, [*words, "--quiet"])
-    assert done.exception is None, done.output
-    assert "3 of 3 cameras in mm" in done.output and "cam_10" in done.output
+    words = ["calibrate", tmp_path / "charts", "--chart", "checkerboard", "--board", "9x6", "--square", "25mm"]
+    code, said, err = run(*words, "-o", out, "--quiet")
+    assert code == 0, err
+    assert "3 of 3 cameras in mm" in said and "cam_10" in said
     report = json.loads((out / "report.json").read_text())
     assert report["unit"] == "mm" and [c["name"] for c in report["cameras"]] == ["cam_0", "cam_1", "cam_10"]
     for name, extension in (("cam_0", "png"), ("cam_1", "JPG"), ("cam_10", "png")):
@@ -371,8 +368,9 @@ def test_the_rig_is_used_with_photographs_named_after_its_cameras(tmp_path):
             true = base_R @ (-R.T @ t) + base_t
             assert np.linalg.norm(camera.centre - true) < 2
             assert camera.K[0, 2] == pytest.approx(320, abs=6)
-    again = CliRunner().invoke(calibrate.command, [*words, "--quiet"])
-    assert again.exception.code == "output-exists"
+    with pytest.raises(OutputError) as caught:
+        run(*words, "-o", out, "--quiet", "--traceback")
+    assert caught.value.code == "output-exists"
 
 
 # --- real rigs

@@ -13,7 +13,6 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from eigenfield.calibrate import (
     KnownLens,
@@ -26,9 +25,8 @@ from eigenfield.calibrate.lenses import undistort_pixels
 from eigenfield.calibrate.motion.features import FeatureOptions, extract_features_of
 from eigenfield.calibrate.motion.matching import choose_pairs
 from eigenfield.capture import GridLayout, Lens, LightField, PhotoSet, Shot, open_capture
-from eigenfield.cli import group
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.rendering import draw_texture
 from eigenfield.runtime.parallel import set_threads, threads
 from support.motion import HEIGHT, WIDTH, K, cameras, photographed, picture, relief, spotted
@@ -301,27 +299,27 @@ def test_a_layout_is_needed_to_match_by_it():
 # the verb
 
 
-def test_the_verb_writes_what_inspect_and_open_capture_read(scene, tmp_path, capfd):
+def test_the_verb_writes_what_inspect_and_open_capture_read(scene, tmp_path, run):
     photos, truth = scene
     (tmp_path / "K.txt").write_text("\n".join(" ".join(map(str, row)) for row in K))
     folder = tmp_path / "photos"
     folder.symlink_to(photos.root, target_is_directory=True)
-    run = CliRunner().invoke(group, ["calibrate", str(folder), "--intrinsics", str(tmp_path / "K.txt"), "--quiet"])
-    assert run.exit_code == 0, run.output
-    assert capfd.readouterr() == ("", "")  # COLMAP's log goes past Python, if it goes anywhere
-    assert "5 of 5 photographs registered" in run.stdout
+    code, said, err = run("calibrate", folder, "--intrinsics", tmp_path / "K.txt", "--quiet")
+    assert (code, err) == (0, "")  # nothing of COLMAP's log, which goes past Python, if it goes anywhere
+    assert "5 of 5 photographs registered" in said
     out = tmp_path / "photos-calibration"
     assert sorted(p.name for p in out.iterdir()) == ["points.ply", "report.json", "sparse", "transforms.json"]
     report = json.loads((out / "report.json").read_text())
     assert report["registered"] == 5 and [v["name"] for v in report["views"]] == list(photos.names)
     field = open_capture(folder, calibration=out / "transforms.json")
     assert calibration_error(field, truth).position.max() < 0.002
-    seen = CliRunner().invoke(group, ["inspect", str(folder), "--calibration", str(out / "transforms.json"), "--json"])
-    assert seen.exit_code == 0 and json.loads(seen.stdout)["views"] == 5
+    code, seen, _ = run("inspect", folder, "--calibration", out / "transforms.json", "--json")
+    assert code == 0 and json.loads(seen)["views"] == 5
     # nothing is replaced unasked
     before = (out / "transforms.json").read_bytes()
-    again = CliRunner().invoke(group, ["calibrate", str(folder)])
-    assert getattr(again.exception, "code", None) == "output-exists"
+    with pytest.raises(OutputError) as error:
+        run("calibrate", folder, "--traceback")
+    assert error.value.code == "output-exists"
     assert (out / "transforms.json").read_bytes() == before
 
 

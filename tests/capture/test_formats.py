@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from PIL import Image
@@ -27,7 +26,6 @@ from eigenfield.capture import (
     read_header,
 )
 from eigenfield.capture.photographs.exif import read_focal_length
-from eigenfield.cli.inspect import command
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.core.observations import select_cameras
 from support.captures import frame_of
@@ -37,23 +35,29 @@ from support.scenes import row_grid
 GRID = [f"v_{r}_{c}.png" for r in range(3) for c in range(3)]
 
 
-def inspect(*words) -> dict:
-    result = CliRunner().invoke(command, [*map(str, words), "--json"])
-    assert result.exception is None, result.output
-    return json.loads(result.stdout)
+@pytest.fixture
+def inspect(run):
+    """What the verb finds; EigenfieldErrors come through."""
+
+    def found(*words):
+        code, out, err = run("inspect", *words, "--json", "--traceback")
+        assert code == 0, err
+        return json.loads(out)
+
+    return found
 
 
 # one claim
 
 
-def test_every_row_is_documented_and_offered():
+def test_every_row_is_documented_and_offered(run):
     assert len({row.name for row in FORMATS}) == len(FORMATS)
     page = Path(eigenfield.__file__).parents[2] / "docs" / "captures.md"
     if page.exists():  # not in an installed package
         text = page.read_text(encoding="utf-8")
         table = text.split("\n## Formats\n\n")[1].split("\n\n")[0]
         assert re.findall(r"^\| `(\w+)` \|", table, re.MULTILINE) == [row.name for row in FORMATS]
-    words = " ".join(CliRunner().invoke(command, ["--help"]).output.split())
+    words = " ".join(run("inspect", "--help").out.split())
     names = [row.name for row in FORMATS]
     assert f": {', '.join(names[:-1])} or {names[-1]}." in words
     assert all((row.read_cameras is None) != (row.read_names is None) for row in FORMATS)
@@ -349,7 +353,7 @@ def test_damaged_exif_is_no_focal_length_or_one(tmp_path_factory, at, change):
 # inspect
 
 
-def test_inspect_of_photographs_without_cameras(tmp_path):
+def test_inspect_of_photographs_without_cameras(tmp_path, inspect, run):
     names = [f"out_{r:02d}_{c:02d}_{-9.0 * r:.2f}_{8.0 * c:.2f}.png" for r in range(3) for c in range(4)][:-1]
     folder = write(tmp_path / "my photos", names)
     report = inspect(folder)
@@ -361,34 +365,34 @@ def test_inspect_of_photographs_without_cameras(tmp_path):
     shot = report["photographs"][5]
     assert shot["name"] == names[5] and shot["node"] == [1, 1] and shot["position"] == [8, 9] and shot["focal"] is None
     assert report["next"] == [f"eigenfield encode '{folder}' -o scene.glb", f"eigenfield calibrate '{folder}'"]
-    words = CliRunner().invoke(command, [str(folder)]).stdout
+    words = run("inspect", folder).out
     assert "11 photographs without cameras from stanford" in words and "3 rows x 4 columns" in words
     assert "measured" in words and "row 2 column 3" in words and "eigenfield calibrate" in words
 
 
-def test_inspect_takes_the_options_and_hands_them_on(tmp_path):
+def test_inspect_takes_the_options_and_hands_them_on(tmp_path, inspect):
     folder = write(tmp_path, [f"{i}.png" for i in range(12)])
     report = inspect(folder, "--grid", "3x4")
     assert report["format"] == "numbered" and report["layout"]["columns"] == 4
     assert report["next"][0].endswith(f"{folder} --grid 3x4 -o scene.glb")
     assert inspect(folder, "--format", "folder")["layout"] is None
     for words in (["--grid", "3"], ["--grid", "0x12"], ["--grid", "3x5"], ["--frame", "2"], ["--format", "x"]):
-        result = CliRunner().invoke(command, [str(folder), *words])
-        assert isinstance(result.exception, EigenfieldError), words
+        with pytest.raises(EigenfieldError):
+            inspect(folder, *words)
 
 
-def test_inspect_decodes_photographs_without_cameras(tmp_path):
+def test_inspect_decodes_photographs_without_cameras(tmp_path, inspect):
     folder = write(tmp_path, GRID)
     whole = (folder / GRID[4]).read_bytes()
     (folder / GRID[4]).write_bytes(whole[: len(whole) // 2])
     report = inspect(folder)
     assert [item["code"] for item in report["damaged"]] == ["image-truncated"]
     assert any("v_1_1.png" in problem for problem in report["problems"])
-    result = CliRunner().invoke(command, [str(folder), "--proxy", "mesh.ply"])
-    assert isinstance(result.exception, EigenfieldError) and "calibrate" in str(result.exception)
+    with pytest.raises(EigenfieldError, match="calibrate"):
+        inspect(folder, "--proxy", "mesh.ply")
 
 
-def test_inspect_of_cameras_from_names(tmp_path):
+def test_inspect_of_cameras_from_names(tmp_path, inspect):
     report = inspect(hci(tmp_path, CFG))
     assert report["views"] == 9 and report["layout"]["exact"] and report["array"]["grid"] == {"rows": 3, "columns": 3}
     assert np.isclose(report["array"]["distance"], 1.25, rtol=1e-4) and report["photographs"] == []

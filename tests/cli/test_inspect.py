@@ -4,21 +4,17 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from PIL import Image
 
 from eigenfield.capture import open_capture
 from eigenfield.capture.overlay import draw_overlay, proxy_lines
 from eigenfield.capture.survey import corners_and_centre, find_focus, measure_array
-from eigenfield.cli.inspect import command
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, OutputError
+from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy import write_ply
 from support.captures import write_capture
@@ -35,23 +31,26 @@ def capture(tmp_path_factory) -> Path:
     return write_capture(tmp_path_factory.mktemp("inspect") / "my capture")
 
 
-def inspect(*arguments, fails: type[EigenfieldError] | None = None):
-    result = CliRunner().invoke(command, [str(a) for a in arguments])
-    if fails is not None:
-        assert isinstance(result.exception, fails), result.output
-        return result.exception
-    assert result.exception is None, result.output
-    return result
+@pytest.fixture
+def inspect(run):
+    """What the verb says; EigenfieldErrors come through."""
+
+    def said(*words):
+        code, out, err = run("inspect", *words, "--traceback")
+        assert code == 0, err
+        return out
+
+    return said
 
 
-def test_words(capture):
-    text = inspect(capture).stdout
+def test_words(capture, inspect):
+    text = inspect(capture)
     assert "9 views from transforms" in text and "64x56 (9)" in text and "PNG 8 bit (9)" in text
     assert "grid of 3 rows x 3 columns" in text and "problems   none" in text
 
 
-def test_json(capture):
-    report = json.loads(inspect(capture, "--json").stdout)
+def test_json(capture, inspect):
+    report = json.loads(inspect(capture, "--json"))
     assert set(report) == KEYS and report["schema"] == "eigenfield.inspect/1"
     assert report["views"] == 9 and report["proxy"] is None and report["damaged"] == []
     assert report["bytes"] == sum(p.stat().st_size for p in (capture / "images").iterdir())
@@ -61,7 +60,7 @@ def test_json(capture):
     assert np.allclose(report["cameras"][4]["centre"], [0, 0, -3]) and report["cameras"][0]["name"] == "view_00.png"
 
 
-def test_all_damaged_files_are_listed_together(tmp_path):
+def test_all_damaged_files_are_listed_together(tmp_path, inspect):
     folder = write_capture(tmp_path / "c")
     images = folder / "images"
     whole = (images / "view_03.png").read_bytes()
@@ -70,7 +69,7 @@ def test_all_damaged_files_are_listed_together(tmp_path):
     (images / "view_07.png").unlink()
     Image.new("RGB", (64, 41)).save(images / "view_08.png")
     Image.new("RGB", (64, 56)).save(images / "stranger.jpg")
-    report = json.loads(inspect(folder, "--json", "--proxy", folder / "proxy.ply").stdout)
+    report = json.loads(inspect(folder, "--json", "--proxy", folder / "proxy.ply"))
     problems = "\n".join(report["problems"])
     assert report["views"] == 6
     expected = (
@@ -86,39 +85,38 @@ def test_all_damaged_files_are_listed_together(tmp_path):
         open_capture(folder)
 
 
-def test_too_few_views_are_a_problem_here_and_not_an_error(tmp_path):
+def test_too_few_views_are_a_problem_here_and_not_an_error(tmp_path, inspect):
     folder = write_capture(tmp_path / "c", row_grid(2))
-    text = inspect(folder).stdout
+    text = inspect(folder)
     assert "2 photographs with a camera are too few" in text and "array" not in text
 
 
-def test_overlay(capture, tmp_path):
+def test_overlay(capture, tmp_path, inspect):
     target, proxy = tmp_path / "over lay.png", tmp_path / "small.ply"
     mesh = bumpy_square()
     write_ply(Mesh(mesh.vertices * np.float32(0.5), mesh.faces, mesh.uv), proxy)  # inside every picture
     result = inspect(capture, "--proxy", proxy, "--overlay", target)
-    assert "triangles, with UVs" in result.stdout and "view_04.png" in result.stdout
+    assert "triangles, with UVs" in result and "view_04.png" in result
     with Image.open(target) as sheet:
         pixels = np.asarray(sheet).astype(int)
     magenta = (pixels == [255, 0, 191]).all(axis=-1)
     assert 500 < magenta.sum() < 0.1 * magenta.size
-    error = inspect(capture, "--proxy", proxy, "--overlay", target, fails=OutputError)
-    assert error.code == "output-exists"
+    with pytest.raises(OutputError) as caught:
+        inspect(capture, "--proxy", proxy, "--overlay", target)
+    assert caught.value.code == "output-exists"
     inspect(capture, "--proxy", proxy, "--overlay", target, "--overwrite")
 
 
-def test_overlay_without_a_proxy_says_so(capture, tmp_path):
-    error = inspect(capture, "--overlay", tmp_path / "o.png", fails=OptionError)
-    assert "--proxy" in str(error) and not (tmp_path / "o.png").exists()
+def test_overlay_without_a_proxy_says_so(capture, tmp_path, inspect):
+    with pytest.raises(OptionError, match="--proxy"):
+        inspect(capture, "--overlay", tmp_path / "o.png")
+    assert not (tmp_path / "o.png").exists()
 
 
-def test_exit_code_and_one_line(tmp_path):
-    code = "import sys; sys.argv = ['eigenfield', 'inspect', sys.argv[1]]; from eigenfield.cli import main; main()"
-    run = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "no where")], capture_output=True, text=True, check=False
-    )
-    assert run.returncode == 2 and run.stdout == ""
-    assert run.stderr.count("\n") == 1 and "no where: does not exist" in run.stderr
+def test_exit_code_and_one_line(tmp_path, run):
+    code, out, err = run("inspect", tmp_path / "no where")
+    assert code == 2 and out == ""
+    assert err.count("\n") == 1 and "no where: does not exist" in err
 
 
 def test_the_outline_is_where_the_mesh_ends():
@@ -192,11 +190,11 @@ def test_focus_and_corners():
     ("tarot_17x17_512", "calibration/proxy.ply", {"rows": 17, "columns": 17}, 0.999),
     ("cube_colmap_mesh", "proxy.obj", None, 0.85),
 ])  # fmt: skip
-def test_real_captures(data, tmp_path, name, proxy, grid, coverage):
+def test_real_captures(data, tmp_path, name, proxy, grid, coverage, inspect):
     options = ["--calibration", data / name / "calibration" / "refined.json"] if "tarot" in name else []
     target = tmp_path / "o.png"
     result = inspect(data / name, *options, "--json", "--proxy", data / name / proxy, "--overlay", target, "--quiet")
-    report = json.loads(result.stdout)
+    report = json.loads(result)
     assert report["array"]["grid"] == grid and report["damaged"] == [] and target.stat().st_size > 100_000
     assert min(report["proxy"]["coverage"].values()) > coverage
     if grid:

@@ -6,12 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.cli import group
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
@@ -368,7 +366,7 @@ def test_saving_again_codes_nothing_twice(fitted, tmp_path):
     assert np.abs(Renderer(first).texture(weights) - Renderer(again).texture(weights)).mean() < 2 / 255
 
 
-def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
+def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted, run):
     folder, output = fitted
     figures = evaluate(ef.load(output), ef.open_capture(folder))
     assert figures["image"]["encoded"]["psnr"] > 40
@@ -376,8 +374,8 @@ def test_a_fitted_scene_is_evaluated_without_texture_maps(fitted):
     with pytest.raises(OptionError, match="no texture maps") as caught:
         evaluate(ef.load(output), ef.open_capture(folder), curve="all")
     assert caught.value.code == "curve" and "--fit none" in caught.value.remedy
-    result = CliRunner().invoke(group, ["evaluate", str(output), str(folder)])
-    assert result.exit_code == 0 and "none: the scene was fitted" in result.stdout
+    code, said, _ = run("evaluate", output, folder)
+    assert code == 0 and "none: the scene was fitted" in said
 
 
 @pytest.mark.parametrize(

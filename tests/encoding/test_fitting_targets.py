@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import sys
-
 import pytest
 
 import eigenfield as ef
-from eigenfield.cli import main
 from eigenfield.core.payloads import mesh_key, size_of
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fitted import PLANE_PRESETS, coded_psnr
@@ -37,12 +34,12 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     assert any(0 <= len(tried) - len(encode_scene(made)) <= 16 for tried in files)
 
 
-def test_a_size_is_kept_to(fitted, tmp_path, monkeypatch):
+def test_a_size_is_kept_to(fitted, tmp_path, run):
     folder, output = fitted
     limit = output.stat().st_size * 9 // 10
-    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "4", "-q", "--target-size", f"{limit}"]
-    monkeypatch.setattr(sys, "argv", ["eigenfield", *words, "-o", str(tmp_path / "small.glb")])
-    main()
+    words = ["--proxy", folder / "proxy.ply", "-n", "4", "-q", "--target-size", limit]
+    code, _, err = run("encode", folder, *words, "-o", tmp_path / "small.glb")
+    assert code == 0, err
     size = (tmp_path / "small.glb").stat().st_size
     assert 0.85 * limit < size <= limit
     assert validate(tmp_path / "small.glb") == []

@@ -8,12 +8,10 @@ import json
 import cv2
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eigenfield as ef
-from eigenfield.cli import group
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.encoding.projected import fit_colours, harmonised_map, make_atlas, texture_map
 from eigenfield.evaluation import evaluate
@@ -312,19 +310,19 @@ def test_the_surface_alone_is_given_its_exposure_back():
     assert camera_colour(tiny_scene(), 2) is None
 
 
-def test_the_command_line(folders, tmp_path):
+def test_the_command_line(folders, tmp_path, run):
     folder, out = folders["gain"], tmp_path / "a.glb"
-    words = ["encode", str(folder), "--proxy", str(folder / "proxy.ply"), "-n", "3", "--atlas", "64", "-o", str(out)]
+    words = ["encode", folder, "--proxy", folder / "proxy.ply", "-n", "3", "--atlas", "64", "-o", out]
     for extra in (["--harmonise"], ["--harmonise", "affine", "--overwrite"]):
-        result = CliRunner().invoke(group, [*words, "-q", *extra])
-        assert result.exit_code == 0, result.output
-    assert "harmonised" in CliRunner().invoke(group, ["info", str(out)]).stdout
-    facts = json.loads(CliRunner().invoke(group, ["info", "--json", str(out)]).stdout)
+        code, _, err = run(*words, "-q", *extra)
+        assert code == 0, err
+    assert "harmonised" in run("info", out).out
+    facts = json.loads(run("info", "--json", out).out)
     assert facts["settings"]["harmonise"] == "affine" and facts["cameras"]["harmonised"]["gain"]["G"][0] < 0.9
     scene = ef.load(out)
     for name in scene.rig.names[::4]:
         picture = tmp_path / name
-        assert CliRunner().invoke(group, ["render", str(out), "--camera", name, "-o", str(picture)]).exit_code == 0
+        assert run("render", out, "--camera", name, "-o", picture).code == 0
         np.testing.assert_array_equal(cv2.imread(str(picture))[..., ::-1], ef.render(scene, camera=name).to_uint8())
 
 

@@ -8,10 +8,8 @@ import sys
 from dataclasses import FrozenInstanceError, fields, replace
 
 import pytest
-from click.testing import CliRunner
 
 import eigenfield as ef
-from eigenfield.cli import group
 from eigenfield.cli.encode import command
 from eigenfield.cli.field_options import from_fields
 from eigenfield.core.errors import OptionError
@@ -119,10 +117,10 @@ def test_what_cannot_be_is_refused_at_once(asked, code):
     assert caught.value.code == code and caught.value.remedy
 
 
-def test_every_option_has_help_and_is_one_of_the_command_line():
+def test_every_option_has_help_and_is_one_of_the_command_line(run):
     assert [name for name, _ in options_of(EncodeOptions)] == [field.name for field in fields(EncodeOptions)]
     offered = {parameter.name: parameter for parameter in command.params}
-    said = " ".join(CliRunner().invoke(group, ["encode", "--help"], terminal_width=400).stdout.split())
+    said = " ".join(run("encode", "--help").out.split())
     for name, one in options_of(EncodeOptions):
         assert one.help.endswith((".", "]")) and f"{name}: {' '.join(one.help.split())}" in EncodeOptions.__doc__
         parts = {name: one} if one.parts is None else {f"{name}_{part}": own for part, own in options_of(one.parts)}
@@ -168,10 +166,10 @@ def test_options_and_their_fields_by_name_are_the_same(folder):
 
 
 @pytest.mark.parametrize("words", ["--codec png", "--quality 40", "--fit none", "--preset small"])
-def test_the_library_saves_what_the_command_line_does(folder, tmp_path, words):
+def test_the_library_saves_what_the_command_line_does(folder, tmp_path, run, words):
     words = ["--proxy", str(folder / "proxy.ply"), "--atlas", "64", "-n", "2", *words.split()]
-    result = CliRunner().invoke(group, ["encode", str(folder), "-q", "-o", str(tmp_path / "cli.glb"), *words])
-    assert result.exit_code == 0, result.output
+    code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)
+    assert code == 0, err
     options = command_line(*words)
     scene = ef.encode(ef.open_capture(folder), folder / "proxy.ply", options)
     save(scene, tmp_path / "library.glb", **options.for_save)
@@ -189,10 +187,10 @@ def test_what_save_is_given():
 @pytest.mark.parametrize(
     "words", ["--preset small -n 2 --residual 30", "--fit none -n 2 --atlas 64 --codec png --residual"]
 )
-def test_a_residual_from_the_library_is_that_of_the_command_line(folder, tmp_path, words):
+def test_a_residual_from_the_library_is_that_of_the_command_line(folder, tmp_path, run, words):
     words = ["--proxy", str(folder / "proxy.ply"), *words.split()]
-    result = CliRunner().invoke(group, ["encode", str(folder), "-q", "-o", str(tmp_path / "cli.glb"), *words])
-    assert result.exit_code == 0, result.output
+    code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)
+    assert code == 0, err
     made = ef.encode(ef.open_capture(folder), folder / "proxy.ply", command_line(*words))
     save(made, tmp_path / "library.glb", **command_line(*words).for_save)
     assert made.residual is not None

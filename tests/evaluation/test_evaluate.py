@@ -10,11 +10,10 @@ from pathlib import Path
 import cv2
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError, OutputError
+from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.encoding.projected import make_atlas, texture_map
 from eigenfield.evaluation import PSNR_MAX_DECIBELS, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
@@ -363,22 +362,16 @@ def test_bytes_ratios_and_sampled_maps(tmp_path):
     assert none["png_maps"] is none["ratio"]["texture_maps_png"] is None
 
 
-def run(*arguments):
-    from eigenfield.cli.evaluate import command
-
-    return CliRunner().invoke(command, [str(argument) for argument in arguments])
-
-
-def test_the_verb_from_end_to_end(scene, tmp_path):
+def test_the_verb_from_end_to_end(scene, tmp_path, run):
     write_capture(scene, tmp_path / "a capture", lighter(2))
     path, plots = tmp_path / "scene.glb", tmp_path / "some" / "plots"
     named = dataclasses.replace(
         scene, rig=dataclasses.replace(scene.rig, names=tuple(f"{name}.png" for name in scene.rig.names))
     )
     save(named, path, codec="png")
-    result = run(path, tmp_path / "a capture", "--json", "--curve", "--plots", plots, "--store", "--quiet")
-    assert result.exit_code == 0, result.output
-    figures = json.loads(result.stdout)
+    result = run("evaluate", path, tmp_path / "a capture", "--json", "--curve", "--plots", plots, "--store", "--quiet")
+    assert result.code == 0, result.err
+    figures = json.loads(result.out)
     assert {"schema", "uv", "image", "bytes", "ratio", "seconds", "curve"} <= set(figures)
     assert figures["image"]["encoded"]["worst"]["psnr"]["camera"] == "view_02.png"
     assert sorted(p.name for p in plots.iterdir()) == ["bytes.png", "cameras.png", "contact-sheet.png", "uv-curve.png"]
@@ -387,20 +380,20 @@ def test_the_verb_from_end_to_end(scene, tmp_path):
     assert stored == stored_scores(figures)
     assert {"seconds", "cameras", "bytes"}.isdisjoint(stored)
 
-    refused = run(path, tmp_path / "a capture", "--plots", plots)
-    assert isinstance(refused.exception, OutputError)
-    assert refused.exception.code == "output-exists"
-    table = run(path, tmp_path / "a capture", "--plots", plots, "--overwrite", "--store")
-    assert table.exit_code == 0, table.output
+    with pytest.raises(OutputError) as refused:
+        run("evaluate", path, tmp_path / "a capture", "--plots", plots, "--traceback")
+    assert refused.value.code == "output-exists"
+    table = run("evaluate", path, tmp_path / "a capture", "--plots", plots, "--overwrite", "--store")
+    assert table.code == 0, table.err
     for words in ("texture maps (UV)", "encoded (8)", "held out (1)", "view_02.png", "times smaller than"):
-        assert words in table.stdout
-    assert "FLIP" not in table.stdout
+        assert words in table.out
+    assert "FLIP" not in table.out
     again = load(path).scores
     assert set(stored) - set(again) == {"curve"}
     assert all(again[key] == stored[key] for key in again if key != "ratio")  # the file has grown by its scores
 
 
-def test_the_table_of_the_verb_shows_flip(scene, tmp_path):
+def test_the_table_of_the_verb_shows_flip(scene, tmp_path, run):
     write_capture(scene, tmp_path / "c", lighter(2))
     save(
         dataclasses.replace(
@@ -409,19 +402,19 @@ def test_the_table_of_the_verb_shows_flip(scene, tmp_path):
         tmp_path / "s.glb",
         codec="png",
     )
-    shown = run(tmp_path / "s.glb", tmp_path / "c", "--flip", "--png-maps", "none", "--quiet").stdout.splitlines()
+    words = ["--flip", "--png-maps", "none", "--quiet"]
+    shown = run("evaluate", tmp_path / "s.glb", tmp_path / "c", *words).out.splitlines()
     end = next(line for line in shown if "PSNR" in line).index("FLIP") + 4
     at = next(number for number, line in enumerate(shown) if line.startswith("encoded (8)"))
     mean, worst = (float(line[end - 6 : end]) for line in shown[at : at + 2])
     assert 0 < mean < worst < 0.3
 
 
-def test_the_verb_leaves_nothing_when_it_cannot(scene, tmp_path):
+def test_the_verb_leaves_nothing_when_it_cannot(scene, tmp_path, run):
     save(scene, tmp_path / "scene.glb", codec="png")
     before = (tmp_path / "scene.glb").read_bytes()
     write_capture(scene, tmp_path / "c")  # names end in .png, the scene's do not
-    result = run(tmp_path / "scene.glb", tmp_path / "c", "--plots", tmp_path / "plots", "--store")
-    assert isinstance(result.exception, EigenfieldError)
-    assert result.stdout == ""
+    code, out, err = run("evaluate", tmp_path / "scene.glb", tmp_path / "c", "--plots", tmp_path / "plots", "--store")
+    assert (code, out) == (2, "") and err.startswith("eigenfield: ")
     assert not (tmp_path / "plots").exists()
     assert (tmp_path / "scene.glb").read_bytes() == before

@@ -13,13 +13,11 @@ import time
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from PIL import Image, ImageFilter
 
 import eigenfield as ef
 from eigenfield.calibrate.motion import sfm
 from eigenfield.capture import PhotoSet, Shot, open_any, open_capture
-from eigenfield.cli import group
 from eigenfield.core.errors import CaptureError, EigenfieldError
 from eigenfield.reconstruction import reconstruct
 from support.captures import write_array, write_capture
@@ -174,14 +172,14 @@ DAMAGES = {
 
 
 @pytest.mark.parametrize("damage", list(DAMAGES))
-def test_a_damaged_photograph_is_named_and_inspect_goes_on(array, tmp_path, damage):
+def test_a_damaged_photograph_is_named_and_inspect_goes_on(array, tmp_path, run, damage):
     folder = copied(array, tmp_path)
     DAMAGES[damage](folder / "view_01_02.png")
     error = refused(lambda: reconstruct(open_any(folder)))
     assert error.path == str(folder / "view_01_02.png")
-    shown = CliRunner().invoke(group, ["inspect", str(folder), "--json"], catch_exceptions=False)
-    assert shown.exit_code == 0
-    assert any("view_01_02.png" in problem for problem in json.loads(shown.stdout)["problems"])
+    code, out, _ = run("inspect", folder, "--json")
+    assert code == 0
+    assert any("view_01_02.png" in problem for problem in json.loads(out)["problems"])
 
 
 @pytest.mark.parametrize(
@@ -200,15 +198,15 @@ def test_a_calibration_that_is_not_taken_up_is_said(array, tmp_path, name):
     assert any(name.rstrip("/") in problem and "not read" in problem for problem in opened.problems)
 
 
-def test_masks_that_hide_everything(array, calibrated, tmp_path):
+def test_masks_that_hide_everything(array, calibrated, tmp_path, run):
     masks = tmp_path / "masks"
     masks.mkdir()
     for path in array.iterdir():
         Image.new("L", (64, 64)).save(masks / path.name)
     error = refused(lambda: open_any(array, masks=masks))
     assert error.code == "masks-black" and "invert" in error.remedy
-    shown = CliRunner().invoke(group, ["inspect", str(array), "--masks", str(masks), "--json"], catch_exceptions=False)
-    assert sum("hides the whole photograph" in problem for problem in json.loads(shown.stdout)["problems"]) == 9
+    shown = json.loads(run("inspect", array, "--masks", masks, "--json").out)
+    assert sum("hides the whole photograph" in problem for problem in shown["problems"]) == 9
     Image.new("L", (64, 64), 255).save(masks / "view_01_01.png")
     assert len(open_any(array, masks=masks)) == 9  # some is enough here
     for number in range(9):
@@ -247,10 +245,10 @@ def test_too_few_photographs(array, tmp_path, number):
     ],
     ids=lambda words: " ".join(words),
 )  # fmt: skip
-def test_options_are_judged_first(array, tmp_path, words):
-    result = CliRunner().invoke(group, ["encode", str(array), "-o", str(tmp_path / "scene.glb"), *words])
-    assert isinstance(result.exception, EigenfieldError)
-    assert result.exception.remedy
+def test_options_are_judged_first(array, tmp_path, run, words):
+    with pytest.raises(EigenfieldError) as caught:
+        run("encode", array, "-o", tmp_path / "scene.glb", *words, "--traceback")
+    assert caught.value.remedy
     assert not list(tmp_path.glob("**/array-*"))
 
 

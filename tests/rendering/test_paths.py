@@ -6,11 +6,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from PIL import Image
 
 import eigenfield as ef
-from eigenfield.cli.render import command
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.gltf import save
 from eigenfield.rendering import path_points, write_video
@@ -25,12 +23,10 @@ def glb(tmp_path_factory):
     return path
 
 
-def invoke(*arguments):
-    """Run the verb; EigenfieldErrors come through."""
-    result = CliRunner().invoke(command, [str(a) for a in arguments])
-    if result.exception is not None and not isinstance(result.exception, SystemExit):
-        raise result.exception
-    return result
+@pytest.fixture
+def render(run):
+    """The verb; EigenfieldErrors come through."""
+    return lambda *words: run("render", *words, "--traceback")
 
 
 def decoded(path):
@@ -104,20 +100,20 @@ def test_an_interrupted_film_leaves_nothing(tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_the_verb_draws_what_the_library_draws(glb, tmp_path):
+def test_the_verb_draws_what_the_library_draws(glb, tmp_path, render):
     scene = ef.load(glb)
-    invoke(glb, "-o", tmp_path / "a.png", "--at", "0.3,-0.2", "--resolution", "64x50", "-q")
+    render(glb, "-o", tmp_path / "a.png", "--at", "0.3,-0.2", "--resolution", "64x50", "-q")
     picture = np.asarray(Image.open(tmp_path / "a.png"))
     np.testing.assert_array_equal(picture, ef.render(scene, at=(0.3, -0.2), resolution=(64, 50)).to_uint8())
-    invoke(glb, "-o", tmp_path / "b.png", "-q")
+    render(glb, "-o", tmp_path / "b.png", "-q")
     reference = ef.render(scene, camera=scene.rig.names[scene.rig.reference])
     np.testing.assert_array_equal(np.asarray(Image.open(tmp_path / "b.png")), reference.to_uint8())
 
 
-def test_backgrounds_are_a_colour_or_transparent(glb, tmp_path):
+def test_backgrounds_are_a_colour_or_transparent(glb, tmp_path, render):
     small = ("--at", "0,0", "--resolution", "48x40", "-q")
-    invoke(glb, "-o", tmp_path / "red.png", "--background", "#ff0080", *small)
-    invoke(glb, "-o", tmp_path / "clear.png", "--background", "transparent", "--samples", 2, *small)
+    render(glb, "-o", tmp_path / "red.png", "--background", "#ff0080", *small)
+    render(glb, "-o", tmp_path / "clear.png", "--background", "transparent", "--samples", 2, *small)
     red, clear = np.asarray(Image.open(tmp_path / "red.png")), np.asarray(Image.open(tmp_path / "clear.png"))
     assert tuple(red[0, 0]) == (255, 0, 128) and clear.shape == (40, 48, 4)
     alpha = clear[..., 3]
@@ -126,20 +122,20 @@ def test_backgrounds_are_a_colour_or_transparent(glb, tmp_path):
     assert np.abs(clear[covered][:, :3].astype(int) - red[covered]).mean() < 4  # red for red, not blue for red
 
 
-def test_one_channel_makes_grey_pictures(tmp_path):
+def test_one_channel_makes_grey_pictures(tmp_path, render):
     save(tiny_scene(channels=1), tmp_path / "grey.glb", codec="png")
-    invoke(tmp_path / "grey.glb", "-o", tmp_path / "a.png", "-q", "--background", "transparent")
-    invoke(tmp_path / "grey.glb", "-o", tmp_path / "b.png", "-q")
+    render(tmp_path / "grey.glb", "-o", tmp_path / "a.png", "-q", "--background", "transparent")
+    render(tmp_path / "grey.glb", "-o", tmp_path / "b.png", "-q")
     for name, mode in (("a.png", "LA"), ("b.png", "L")):
         with Image.open(tmp_path / name) as picture:
             assert picture.mode == mode
 
 
-def test_a_path_makes_a_film_or_numbered_pictures(glb, tmp_path):
-    invoke(glb, "-o", tmp_path / "way.mp4", "--path", "spiral", "--frames", 5, "--fps", 12, "-q")
+def test_a_path_makes_a_film_or_numbered_pictures(glb, tmp_path, render):
+    render(glb, "-o", tmp_path / "way.mp4", "--path", "spiral", "--frames", 5, "--fps", 12, "-q")
     stream, frames = decoded(tmp_path / "way.mp4")
     assert len(frames) == 5 and stream.average_rate == 12
-    invoke(glb, "-o", tmp_path / "%03d.png", "--path", "grid", "--frames", 3, "-q")
+    render(glb, "-o", tmp_path / "%03d.png", "--path", "grid", "--frames", 3, "-q")
     assert sorted(path.name for path in tmp_path.glob("*.png")) == ["000.png", "001.png", "002.png"]
 
 
@@ -161,10 +157,10 @@ MISTAKES = [
 
 
 @pytest.mark.parametrize(("arguments", "remedy"), MISTAKES, ids=[" ".join(a) for a, _ in MISTAKES])
-def test_mistakes_are_named_with_their_remedy_and_leave_nothing(glb, tmp_path, monkeypatch, arguments, remedy):
+def test_mistakes_are_named_with_their_remedy_and_leave_nothing(glb, tmp_path, monkeypatch, arguments, remedy, render):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(EigenfieldError) as caught:
-        invoke(glb, *arguments)
+        render(glb, *arguments)
     assert remedy in caught.value.remedy and "\n" not in str(caught.value)
     assert list(tmp_path.iterdir()) == []
 
@@ -172,18 +168,18 @@ def test_mistakes_are_named_with_their_remedy_and_leave_nothing(glb, tmp_path, m
 @pytest.mark.parametrize(
     "arguments", [("--at", "1;2"), ("--resolution", "big"), ("--background", "red"), ("--fps", "0"), ("--fps", "x")]
 )
-def test_options_that_cannot_be_read_are_refused(glb, tmp_path, arguments):
-    assert invoke(glb, "-o", tmp_path / "a.png", *arguments).exit_code == 2
+def test_options_that_cannot_be_read_are_refused(glb, tmp_path, arguments, render):
+    assert render(glb, "-o", tmp_path / "a.png", *arguments).code == 2
     assert list(tmp_path.iterdir()) == []
 
 
-def test_nothing_is_overwritten_unasked(glb, tmp_path):
+def test_nothing_is_overwritten_unasked(glb, tmp_path, render):
     for name in ("a.png", "b.mp4", "001.png"):
         (tmp_path / name).write_bytes(b"precious")
         output = "%03d.png" if name == "001.png" else name
         path = () if name == "a.png" else ("--path", "circle", "--frames", 2)
         with pytest.raises(EigenfieldError, match="exists already"):
-            invoke(glb, "-o", tmp_path / output, *path)
+            render(glb, "-o", tmp_path / output, *path)
         assert (tmp_path / name).read_bytes() == b"precious"
-        assert invoke(glb, "-o", tmp_path / output, *path, "--overwrite", "-q").exit_code == 0
+        assert render(glb, "-o", tmp_path / output, *path, "--overwrite", "-q").code == 0
         assert (tmp_path / name).read_bytes() != b"precious"

@@ -21,7 +21,7 @@ print(sum(double.stats.cache_hits.values()), sum(double.stats.cache_misses.value
 
 
 @pytest.fixture
-def run(tmp_path):
+def counts(tmp_path):
     (tmp_path / "module.py").write_text(MODULE)
 
     def call(cache):
@@ -36,13 +36,13 @@ def run(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
-def test_the_second_process_compiles_nothing(run, tmp_path):
-    assert run(tmp_path / "cache") == (0, 1)
-    assert run(tmp_path / "cache") == (1, 0)
+def test_the_second_process_compiles_nothing(counts, tmp_path):
+    assert counts(tmp_path / "cache") == (0, 1)
+    assert counts(tmp_path / "cache") == (1, 0)
     assert list((tmp_path / "cache" / "eigenfield").rglob("*.nbi"))
     assert not (tmp_path / "__pycache__").exists()  # nothing beside the source, which may be read-only
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="XDG_CACHE_HOME names the cache on Linux")
-def test_without_a_place_for_a_cache_it_still_runs(run):
-    run("/dev/null/nowhere")
+def test_without_a_place_for_a_cache_it_still_runs(counts):
+    counts("/dev/null/nowhere")

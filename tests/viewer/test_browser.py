@@ -50,7 +50,7 @@ def folder(tmp_path_factory):
     return made
 
 
-def run(path: Path, **surroundings: str) -> None:
+def run_node(path: Path, **surroundings: str) -> None:
     done = subprocess.run(
         ["node", "--test", "--test-force-exit", "--test-reporter=spec", str(path)],
         cwd=WEB, env=os.environ | {"EIGENFIELD_PYTHON": sys.executable} | surroundings,
@@ -65,9 +65,9 @@ def test_there_are_browser_tests():
 
 @pytest.mark.parametrize("path", cases(plain=True))
 def test_in_node(path):
-    run(path)
+    run_node(path)
 
 
 @pytest.mark.parametrize("path", cases(plain=False))
 def test_in_chromium(path, folder):
-    run(path, EIGENFIELD_SCENES=str(folder), EIGENFIELD_CHROMIUM=str(CHROMIUM))
+    run_node(path, EIGENFIELD_SCENES=str(folder), EIGENFIELD_CHROMIUM=str(CHROMIUM))

@@ -6,21 +6,17 @@ import errno
 import json
 import os
 import re
-import signal
-import sys
 from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 from hypothesis import example, given
 from hypothesis import strategies as st
 from PIL import Image
 
 import eigenfield as ef
-from eigenfield.cli import main
-from eigenfield.cli.export import OPTIONS, command
+from eigenfield.cli.export import OPTIONS
 from eigenfield.core.errors import OutputError
 from eigenfield.gltf import save
 from eigenfield.rendering import RenderJob
@@ -48,23 +44,14 @@ def scene_file(tmp_path_factory):
 
 
 @pytest.fixture
-def export(capsys, monkeypatch, scene_file, tmp_path):
+def export(run, scene_file, tmp_path):
     """`eigenfield export` into a folder of its own; returns exit code and standard error."""
     place = tmp_path / "out"
     place.mkdir()
 
     def call(output, *arguments):
-        monkeypatch.setattr(sys, "argv", ["eigenfield", "export", str(scene_file), "-o", str(place / output),
-                                          *map(str, arguments)])  # fmt: skip
-        before = signal.getsignal(signal.SIGTERM)
-        code = 0
-        try:
-            main()
-        except SystemExit as stop:
-            code = stop.code or 0
-        finally:
-            signal.signal(signal.SIGTERM, before)
-        return code, capsys.readouterr().err
+        code, _, err = run("export", scene_file, "-o", place / output, *arguments)
+        return code, err
 
     call.place = place
     return call
@@ -74,11 +61,11 @@ def contents(folder):
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def test_every_kind_is_documented_and_tried():
+def test_every_kind_is_documented_and_tried(run):
     page = Path(__file__).parents[2] / "docs" / "exports.md"
     listed = re.findall(r"^\| `(\w+)` \|", page.read_text(encoding="utf-8"), re.MULTILINE)
     assert list(dict.fromkeys(listed)) == list(OPTIONS) == list(dict.fromkeys(kind.split()[0] for kind in KINDS))
-    words = CliRunner().invoke(command, ["--help"]).output
+    words = run("export", "--help").out
     assert [kind for kind in OPTIONS if not re.search(rf"^ +{kind} {{2,}}\w", words, re.MULTILINE)] == []
 
 

@@ -40,13 +40,34 @@ def _cache_folder() -> str:
     return str(Path(platformdirs.user_cache_dir("eigenfield")) / "kernels" / digest.hexdigest()[:16])
 
 
-def _widen_literals(compiled: Any) -> None:
-    """Let kernels that pass constants share one compilation: otherwise numba compiles a kernel for each constant with
-    which another kernel calls it. LLVM still folds the constants of inlined kernels."""
-    resolve, widen = compiled.get_call_template, numba.types.unliteral
-    compiled.get_call_template = lambda args, kws: resolve(
+def _compiled(function: Kernel, folder: str, options: dict[str, Any]) -> Any:
+    """numba's dispatcher of a function, with a cache where one can be written."""
+    theirs, numba.config.CACHE_DIR = numba.config.CACHE_DIR, folder
+    try:
+        return numba.njit(cache=True, **options)(function)
+    except (RuntimeError, OSError):  # nowhere to write a cache
+        return numba.njit(**options)(function)
+    finally:
+        numba.config.CACHE_DIR = theirs
+
+
+def _share_calls(compiled: Any, function: Kernel, folder: str, options: dict[str, Any]) -> None:
+    """Let other kernels call a compilation of their own, which takes a fifth less time to make.
+
+    It has no wrapper for calls from Python, which unpacks every array of every argument; numba makes one for each
+    compilation otherwise. Kernels that pass constants share one: otherwise numba compiles a kernel for each constant
+    with which another kernel calls it. LLVM still folds the constants of inlined kernels.
+    """
+    widen = numba.types.unliteral
+
+    @cache
+    def inner() -> Any:
+        return _compiled(function, str(Path(folder) / "inner"), {**options, "no_cpython_wrapper": True})
+
+    compiled.get_call_template = lambda args, kws: inner().get_call_template(
         tuple(widen(kind) for kind in args), {name: widen(kind) for name, kind in kws.items()}
     )
+    compiled.get_overload = lambda signature: inner().get_overload(signature)
 
 
 def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Kernel], Kernel]:
@@ -62,15 +83,9 @@ def kernel(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callab
         options["fastmath"] = fastmath
         if inline:
             options["inline"] = "always"
-        theirs = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = theirs or _cache_folder()
-        try:
-            compiled: Kernel = numba.njit(cache=True, **options)(function)
-        except (RuntimeError, OSError):  # nowhere to write a cache
-            compiled = numba.njit(**options)(function)
-        finally:
-            numba.config.CACHE_DIR = theirs
-        _widen_literals(compiled)
+        folder = numba.config.CACHE_DIR or _cache_folder()
+        compiled: Kernel = _compiled(function, folder, options)
+        _share_calls(compiled, function, folder, options)
         return compiled
 
     return decorate

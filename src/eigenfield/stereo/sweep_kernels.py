@@ -221,7 +221,8 @@ def sweep_rows(
                         pictures, buffers, matrices, x, y, count, label, limit, height, width, max_difference, floats,
                         ints, total, mean,
                     )  # fmt: skip
-                    centre[:] = mean
+                    for i in range(len(mean)):  # numba takes two seconds longer to compile `centre[:] = mean`
+                        centre[i] = mean[i]
                 moments[:] = 0
                 for v in range(matrices.shape[0]):
                     g = sector[v]

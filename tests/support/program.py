@@ -1,0 +1,35 @@
+"""The command line in this process."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from typing import NamedTuple
+from unittest import mock
+
+
+class Ran(NamedTuple):
+    """What a call of the program left."""
+
+    code: int
+    out: str
+    err: str
+
+
+def call(*words: object) -> int:
+    """Call the program as the shell does, and give its exit code.
+
+    With --traceback among the words, an EigenfieldError is raised and not printed.
+    """
+    from eigenfield.cli import main
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGTERM, signal.SIGINT)}
+    try:
+        with mock.patch.object(sys, "argv", ["eigenfield", *map(str, words)]):
+            main()
+    except SystemExit as stop:
+        return int(stop.code or 0)
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    return 0
