@@ -5,7 +5,7 @@ const TRIANGLES = 256; // from which the median is taken
 
 /**
  * Texels of a `size` atlas along a side of a captured camera's pixel: the median over picture area of (some of) the
- * triangles in view, 0 if there are none. As `median_footprint` of eigenfield/rendering/drawing.py.
+ * triangles in view, 0 if there are none. As `median_footprint` of eigenfield/rendering/software/drawing.py.
  */
 export function medianFootprint(geometry: BufferGeometry, camera: CaptureCamera, size: [number, number]): number {
   const { index } = geometry;

@@ -1,7 +1,7 @@
 // Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,
 // which surface.glsl then draws (decision 15).
 //
-// This body is compiled as GLSL 3.30 by eigenfield/rendering/composer.py and as GLSL ES 3.00 by the web viewer. Whoever
+// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever
 // includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All
 // draw into textures whose row 0 is v = 0, and the second and third add to what is there:
 //   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies

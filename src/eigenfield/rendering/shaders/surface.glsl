@@ -1,6 +1,6 @@
 // The composed texture (compose.glsl) on the surface of the proxy.
 //
-// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl.py and as GLSL ES 3.00 by the web viewer. Whoever
+// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever
 // includes it writes the #version line, the precisions, cubic.glsl before it, and
 //   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom
 // Pixels of more than `finest` texels are left to the sampler and its mip maps.
