@@ -192,8 +192,9 @@ def photograph_of(mesh, first_ball_face, camera, seed=3):
     return np.clip(paint, 0, 1).astype(np.float32)
 
 
-@pytest.mark.parametrize("known_depth", [False, True])
-def test_a_sphere_is_found_from_a_careless_box(known_depth):
+@pytest.fixture(scope="module")
+def before_a_wall():
+    """A sphere, and cameras with their photographs of it."""
     sphere = SpherePrimitive((0.3, 0.2, 0.0), 0.7)
     wall = square(6, 1.5, 30)
     mesh = join_meshes(wall, ball(centre=sphere.centre, radius=sphere.radius, level=5))
@@ -202,7 +203,12 @@ def test_a_sphere_is_found_from_a_careless_box(known_depth):
         for y in (-0.8, 0.8)
         for x in (-1.2, 0, 1.2)
     ]
-    pictures = [photograph_of(mesh, len(wall.faces), camera) for camera in cameras]
+    return sphere, cameras, [photograph_of(mesh, len(wall.faces), camera) for camera in cameras]
+
+
+@pytest.mark.parametrize("known_depth", [False, True])
+def test_a_sphere_is_found_from_a_careless_box(before_a_wall, known_depth):
+    sphere, cameras, pictures = before_a_wall
     around = sphere_outline(sphere, cameras[1])
     low, high = around.min(axis=0), around.max(axis=0)
     box = ViewRegion("1", low[0] - 8, low[1] - 3, high[0] - low[0] + 6, high[1] - low[1] + 9)
