@@ -177,7 +177,7 @@ class Views:
     covered: list[NDArray[np.bool_]]
 
     def point(self, scene: EncodedScene, path: Path) -> dict[str, Any]:
-        """`rates.point` of the scene's file, its bytes and its textures."""
+        """Bytes and textures of the scene's file, and the means of KEYS over its views."""
         save(scene, path, overwrite=True)
         loaded = ef.load(path)
         renderer = Renderer(loaded)
@@ -188,7 +188,8 @@ class Views:
                 yield to_codes(picture.image)
 
         point = rates.point(pictures(), self.photographs, self.counted(path), self.field.names)
-        return {"bytes": path.stat().st_size, "textures": loaded.appearance.textures, **point}
+        figures = {key: point[key] for key in KEYS}
+        return {"bytes": path.stat().st_size, "textures": loaded.appearance.textures, **figures}
 
     def counted(self, path: Path) -> list[NDArray[np.bool_]]:
         if not self.covered:

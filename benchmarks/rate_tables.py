@@ -84,9 +84,9 @@ def _studies() -> str:
     text = ""
     if parts:
         text += (
-            "### What each part of the fit contributes\n\nEach cell is the fit without a part: how much larger the"
-            " file is at equal RGB PSNR, and how much worse the pictures are at equal bytes. A dense array has every"
-            f" second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
+            "### What each part of the fit contributes\n\nEach cell is the fit without a part: by how much the"
+            " file is larger at equal RGB PSNR, and the pictures are better at equal bytes. With a minus they are smaller,"
+            f" or worse. Dense arrays have every second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
         )
     held, shown = newest(
         [run for run in runs("fit-studies") if any("held_out" in one for one in run["captures"].values())]
