@@ -78,19 +78,15 @@ def _studies() -> str:
     if not (RESULTS / "fit-studies.json").exists():
         return ""
     source = "../benchmarks/results/fit-studies.json"
-    parts, shown = newest(
-        [run for run in runs("fit-studies") if any("parts" in one for one in run["captures"].values())]
-    )
+    parts, shown = newest(_runs_with("parts"))
     text = ""
     if parts:
         text += (
             "### What each part of the fit contributes\n\nEach cell is the fit without a part: by how much the"
-            " file is larger at equal RGB PSNR, and the pictures are better at equal bytes. With a minus they are smaller,"
-            f" or worse. Dense arrays have every second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
+            " file is larger at equal RGB PSNR, and the pictures are better at equal bytes. With a minus they are"
+            f" smaller, or worse. Dense arrays have every second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
         )
-    held, shown = newest(
-        [run for run in runs("fit-studies") if any("held_out" in one for one in run["captures"].values())]
-    )
+    held, shown = newest(_runs_with("held_out"))
     rows = [
         [f"`{name}`, {found['held_out']['rule']}", *_held(point)]
         for name, found in held.items()
@@ -100,6 +96,11 @@ def _studies() -> str:
         head = ["held out", "kB", "N", "captured views, RGB / luma", "held-out views", "outside circles"]
         text += f"### Views that were held out\n\n{table(head, rows)}\n{origin(shown, source)}\n"
     return text
+
+
+def _runs_with(study: str) -> list[dict[str, Any]]:
+    """The runs of benchmarks/fit_studies.py that hold one of its two studies."""
+    return [run for run in runs("fit-studies") if any(study in one for one in run["captures"].values())]
 
 
 def _parts(captures: Mapping[str, Any]) -> str:
