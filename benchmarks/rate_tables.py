@@ -82,9 +82,10 @@ def _studies() -> str:
     text = ""
     if parts:
         text += (
-            "### What each part of the fit contributes\n\nEach cell is the fit without a part: by how much the"
-            " file is larger at equal RGB PSNR, and the pictures are better at equal bytes. With a minus they are"
-            f" smaller, or worse. Dense arrays have every second row and column.\n\n{_parts(parts)}\n{origin(shown, source)}\n\n"
+            "### What each part of the fit contributes\n\nEach cell is the fit without a part: by how much the file is"
+            " larger at equal RGB PSNR, and the pictures are better at equal bytes. With a minus they are smaller, or"
+            " worse. Dense arrays have every second row and column.\n\n"
+            f"{_parts(parts)}\n{origin(shown, source)}\n\n"
         )
     held, shown = newest(_runs_with("held_out"))
     rows = [
