@@ -17,6 +17,7 @@ import io
 import re
 import socket
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
@@ -56,7 +57,7 @@ class RefusedError(Exception):
         super().__init__(status, reason)
 
 
-class StrictHandler(BaseHTTPRequestHandler):
+class StrictHandler(BaseHTTPRequestHandler, ABC):
     """Reads the requests of one connection and calls `answer` for each that is well formed.
 
     A connection ends with the answer to a malformed request, as the beginning of the next request cannot be known.
@@ -74,9 +75,9 @@ class StrictHandler(BaseHTTPRequestHandler):
     host: str | None
     has_body: bool
 
+    @abstractmethod
     def answer(self) -> None:
-        """Answer the request by `reply`, once, or raise RefusedError. Subclasses define it."""
-        raise NotImplementedError
+        """Answer the request by `reply`, once, or raise RefusedError."""
 
     def setup(self) -> None:
         super().setup()
