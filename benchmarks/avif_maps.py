@@ -10,7 +10,8 @@ import numpy as np
 from PIL import Image
 
 import eigenfield as ef
-from eigenfield.encoding.projected import make_atlas, texture_map
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.project import texture_map
 from eigenfield.imaging.metrics import ssim, to_codes
 
 SAMPLE = 12  # maps, evenly spread; their bytes are scaled up

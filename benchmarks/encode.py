@@ -47,7 +47,9 @@ def principal_components() -> None:
     from sklearn.decomposition import PCA
 
     from eigenfield import open_capture
-    from eigenfield.encoding.projected import make_atlas, mean_map, texture_maps
+    from eigenfield.encoding.projected.atlas import make_atlas
+    from eigenfield.encoding.projected.mean import mean_map
+    from eigenfield.encoding.projected.project import texture_maps
     from eigenfield.proxy import prepare_proxy
 
     capture = open_capture(tarot(), calibration=tarot() / "calibration" / "refined.json")

@@ -18,14 +18,15 @@ from eigenfield.capture import LightField
 from eigenfield.coding.pictures.quantise import basis_scale, is_photographic, mean_codes, mean_values, texture_codes
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.projected import ATLAS_SIDE_CAP_TEXELS, Atlas, Spreader, make_atlas, make_spreader
+from eigenfield.encoding.projected.atlas import ATLAS_SIDE_CAP_TEXELS, Atlas, make_atlas
+from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.evaluation import match_photographs
 from eigenfield.evaluation.image import covered_pixels
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, to_codes
 from eigenfield.rendering import camera_colour, draw_texture
-from eigenfield.rendering.exposure import undo_colour
+from eigenfield.rendering.picture import undo_colour
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
 from evidence.displacement import LIMIT, displacement, moved_back
 from evidence.spread import spread_over_array

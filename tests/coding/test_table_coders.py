@@ -74,13 +74,6 @@ def test_a_grid_with_holes():
     assert np.abs(back - weights).max() <= 0.05 + 1e-6
 
 
-def test_a_dead_zone_costs_less_and_errs_by_no_more_than_it_says():
-    weights = smooth_weights(noise=3.0)
-    plain, dead = code_weights(weights, 0.5)[0], code_weights(weights, 0.5, dead_zone=0.2)[0]
-    assert len(dead) < len(plain)
-    assert np.abs(decode_weights(dead) - weights).max() <= 0.35 + 1e-6
-
-
 def test_no_components_and_one_camera():
     assert decode_weights(code_weights(np.zeros((5, 0), np.float32), 0.1)[0]).shape == (5, 0)
     assert decode_weights(code_weights(np.ones((1, 2), np.float32), 0.1, [[0]])[0]) == pytest.approx(

@@ -11,8 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import reference
-from eigenfield.encoding import projected as basis
-from eigenfield.encoding.projected import TextureMaps, eigen, mean
+from eigenfield.encoding.projected import eigen, mean
+from eigenfield.encoding.projected.agreement import warn_of_disagreement
+from eigenfield.encoding.projected.align import align_maps
+from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import set_threads
 
 
@@ -30,21 +32,20 @@ def random_maps(cameras=7, texels=500, channels=3, seed=0, rank=None, unseen=0.3
 
 
 def decompose(maps, count):
-    average = basis.mean_map(maps)
-    spectrum = basis.spectrum(basis.gram_matrix(maps, average))
-    weights = basis.weights_of(spectrum, count)
-    return average, weights, basis.eigen_textures(maps, average, weights)
+    average = mean.mean_map(maps)
+    weights = eigen.weights_of(eigen.eigenvectors(eigen.gram_matrix(maps, average)), count)
+    return average, weights, eigen.eigen_textures(maps, average, weights)
 
 
 def test_mean_and_fill_are_equations_1_and_2():
     maps = random_maps()
-    average = basis.mean_map(maps)
+    average = mean.mean_map(maps)
     np.testing.assert_allclose(average.values, reference.mean_texture(maps.values, maps.seen), atol=1e-6)
     assert (average.count == maps.seen.sum(axis=0)).all()
     expected = reference.filled_maps(maps.values, maps.seen)
     for camera in range(maps.count):
         np.testing.assert_allclose(
-            basis.filled_map(maps.values[camera], maps.seen[camera], average.values), expected[camera], atol=1e-6
+            mean.filled_map(maps.values[camera], maps.seen[camera], average.values), expected[camera], atol=1e-6
         )
 
 
@@ -125,9 +126,9 @@ def test_weights_are_white_and_errors_fall(cameras, texels, channels, seed):
 
 
 def test_asking_for_too_many_components_is_said(caplog):
-    assert basis.component_count(40, 17) == 16
+    assert eigen.component_count(40, 17) == 16
     assert "at most 16" in caplog.text
-    assert basis.component_count(3, 17) == 3
+    assert eigen.component_count(3, 17) == 3
 
 
 def warned_of(levels, caplog):
@@ -136,7 +137,7 @@ def warned_of(levels, caplog):
     names = [f"{row}-{column}" for row, column in zip(y, x, strict=True)]
     caplog.clear()
     squares = 1000 * 3 * (np.asarray(levels).reshape(-1) / 255) ** 2
-    basis.warn_of_disagreement(squares, np.full(81, 1000), 3, 1e9, names, np.stack([x, y], axis=1).astype(float))
+    warn_of_disagreement(squares, np.full(81, 1000), 3, 1e9, names, np.stack([x, y], axis=1).astype(float))
     return [record.getMessage().split()[0] for record in caplog.records]
 
 
@@ -163,7 +164,7 @@ def test_alignment_undoes_a_shift():
     atlas = SimpleNamespace(count=height * width, texel=np.arange(height * width), width=width, height=height)
     atlas.image = lambda values, blank=0.0: values.reshape(height, width, -1).astype(np.float32)
     maps = TextureMaps(atlas, shifted.copy(), np.ones((3, height * width), np.uint8))
-    basis.align_maps(maps, 0)
+    align_maps(maps, 0)
     inner = np.zeros((height, width), bool)
     inner[10:-10, 10:-10] = True
     before = np.abs(shifted[1] - shifted[0])[inner.reshape(-1)].mean()

@@ -17,18 +17,11 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.encoding.projected import (
-    eigen_textures,
-    filled_map,
-    gram_matrix,
-    make_atlas,
-    make_spreader,
-    mean_map,
-    spectrum,
-    texture_map,
-    texture_maps,
-    weights_of,
-)
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.eigen import eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.mean import filled_map, mean_map
+from eigenfield.encoding.projected.project import texture_map, texture_maps
+from eigenfield.encoding.projected.spread import make_spreader
 from eigenfield.gltf import save
 from eigenfield.rendering import camera_weights, delaunay_triangles, renderer_of
 from eigenfield.runtime.parallel import set_threads

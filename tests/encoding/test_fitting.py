@@ -15,23 +15,14 @@ from eigenfield.core.appearance import Plane
 from eigenfield.core.errors import OptionError
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import Target
-from eigenfield.encoding.fitted import (
-    FitData,
-    Pixels,
-    PlaneSettings,
-    Rate,
-    code_plane,
-    coded_psnr,
-    fit_plane,
-    fitted_textures,
-    open_fit_data,
-    open_subsampled,
-)
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
+from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
 from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
 from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
-from eigenfield.encoding.fitted.observations import with_robust_weights
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
+from eigenfield.encoding.fitted.planes import fitted_textures
+from eigenfield.encoding.fitted.rate import Rate
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual, whiten
 from eigenfield.encoding.options import PRESETS
 from eigenfield.evaluation import evaluate

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from eigenfield.encoding.fitted.regions import REGION_BLOCK_TEXELS, best_rectangle, find_regions
+from eigenfield.encoding.fitted.start import REGION_BLOCK_TEXELS, best_rectangle, find_regions
 
 
 def test_a_square_of_large_error_is_found():

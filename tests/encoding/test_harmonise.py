@@ -13,7 +13,9 @@ from hypothesis import strategies as st
 
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.encoding.projected import fit_colours, harmonised_map, make_atlas, texture_map
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.harmonise import fit_colours, harmonised_map
+from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, save, validate
 from eigenfield.imaging.png import png_bytes

@@ -16,7 +16,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fields import options_of
 from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_for_quality
-from eigenfield.encoding.projected import RESAMPLING_FILTERS
+from eigenfield.encoding.projected.project import RESAMPLING_FILTERS
 from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 

@@ -17,17 +17,14 @@ from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.core.proxy import Proxy
-from eigenfield.encoding.residual import (
+from eigenfield.encoding.residual.make import check_residual, crf_of, video_order, with_residual
+from eigenfield.encoding.residual.views import (
     captured_pixels,
-    check_residual,
+    captured_samples,
     corrected_picture,
     difference_of,
     differences,
-    with_residual,
 )
-from eigenfield.encoding.residual.make import crf_of
-from eigenfield.encoding.residual.orders import video_order
-from eigenfield.encoding.residual.views import captured_samples
 from eigenfield.evaluation import evaluate
 from eigenfield.gltf import encode_scene, parts, read_scene, validate, without_residual
 from eigenfield.imaging.metrics import psnr, to_codes

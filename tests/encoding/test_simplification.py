@@ -10,12 +10,11 @@ import pytest
 from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice, camera_lattice
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding.geometry import depth_distortion, simplify_proxy_rd, simplify_relief_rd
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_mesh
-from eigenfield.encoding.geometry.collapse_kernels import collapse, collapsed_faces
-from eigenfield.encoding.geometry.distortion import hole_error
+from eigenfield.encoding.geometry.collapse_kernels import collapse, collapse_state, collapsed_faces
+from eigenfield.encoding.geometry.distortion import depth_distortion, hole_error
 from eigenfield.encoding.geometry.raster_kernels import TEXEL_STEPS, CostMap, mesh_cost
-from eigenfield.encoding.geometry.simplify_relief import _collapse_state, _fitted_depths
+from eigenfield.encoding.geometry.simplify_relief import _fitted_depths, simplify_proxy_rd, simplify_relief_rd
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
 from support.observations import greys, repeated
@@ -79,7 +78,7 @@ def test_a_texel_costs_its_squared_error_and_at_most_what_else_is_there():
 def test_collapses_lose_less_than_they_save_and_leave_a_manifold(limit):
     places, depth, faces = terrain()
     exact = np.concatenate([places / TEXEL_STEPS, depth[:, None]], axis=1)
-    state, below = _collapse_state(places, exact, faces), cost_map()
+    state, below = collapse_state(places, exact, faces), cost_map()
     before = mesh_cost(below, state.places, state.depth, state.faces)
     collapses, costs = collapse(below, state, limit)
     gone = len(collapses)
@@ -110,7 +109,7 @@ def test_high_costs_keep_more():
     for curve in (0.0, 0.01, 1.0):
         exact = np.stack([x, y, hills(x, y)], axis=1)
         below = cost_map(curve)._replace(depth=hills(column, row).astype(np.float32))
-        state = _collapse_state(places, exact, faces)
+        state = collapse_state(places, exact, faces)
         mesh_cost(below, state.places, state.depth, state.faces)
         collapse(below, state, 0.05)
         counts.append(len(np.unique(state.faces[state.faces[:, 0] >= 0])))
@@ -127,7 +126,7 @@ def test_a_lower_limit_is_the_same_up_to_what_costs_as_much():
     row, column = np.mgrid[0:SIDE, 0:SIDE] + 0.5
 
     def taken(limit):
-        state = _collapse_state(places, np.stack([x, y, hills(x, y)], axis=1), faces)
+        state = collapse_state(places, np.stack([x, y, hills(x, y)], axis=1), faces)
         below = cost_map()._replace(depth=hills(column, row).astype(np.float32))
         mesh_cost(below, state.places, state.depth, state.faces)
         return collapse(below, state, limit)
@@ -143,7 +142,7 @@ def test_vertices_of_two_charts_stay():
     places, depth, faces = terrain()
     exact = np.concatenate([places / TEXEL_STEPS, depth[:, None]], axis=1)
     exact[100] = exact[300]  # at one point of the lattice
-    where = _collapse_state(places, exact, faces).where
+    where = collapse_state(places, exact, faces).where
     assert where[100] == where[300] == 2 and (where[[45, 500]] == 0).all()
 
 
@@ -182,7 +181,7 @@ def test_the_distortion_is_what_the_photographs_lose():
     """Against the error itself: the photographs drawn from the middle one's texture on a plane that is a little off."""
     mesh, cameras, photographs = photographed_plane()
     lattice = plane_lattice(cameras)
-    distortion = depth_distortion(mesh, lattice, 1.0, cameras, greys(photographs))
+    distortion = depth_distortion(mesh, lattice, cameras, greys(photographs))
     assert distortion.seen == pytest.approx(9, rel=0.1)
     off = 0.5  # of the lattice's steps
     depth = 1 / (1 / 2.0 + 0.02 * off)
@@ -203,7 +202,7 @@ def test_photographs_again_at_another_time_lose_as_much_again():
     mesh, cameras, photographs = photographed_plane()
     lattice, once = plane_lattice(cameras), greys(photographs)
     twice = repeated(once.pixels, 2)
-    distortion, both = (depth_distortion(mesh, lattice, 1.0, cameras, some) for some in (once, twice))
+    distortion, both = (depth_distortion(mesh, lattice, cameras, some) for some in (once, twice))
     assert both.seen == pytest.approx(2 * distortion.seen)
     np.testing.assert_allclose(both.cost_map.curve, 2 * distortion.cost_map.curve, rtol=1e-4)
     part = replace(mesh, faces=mesh.faces[::2])
@@ -216,7 +215,7 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
     mesh, cameras, photographs = photographed_plane()
     assert mesh.uv is not None
     lattice = plane_lattice(cameras)
-    distortion = depth_distortion(mesh, lattice, 1.0, cameras, greys(photographs))
+    distortion = depth_distortion(mesh, lattice, cameras, greys(photographs))
     true = lattice.coordinates(mesh.vertices)[:, 2]
     rough = true + np.random.default_rng(2).normal(0, 1, len(true))
     kept = np.arange(0, len(true), 40)
@@ -233,7 +232,7 @@ def test_depths_are_fitted_but_for_those_of_kept_vertices():
 def test_flat_photographs_do_not_mind():
     mesh, cameras, photographs = photographed_plane()
     flat = np.full_like(photographs[0], 0.5)
-    distortion = depth_distortion(mesh, plane_lattice(cameras), 1.0, cameras, greys([flat] * 9))
+    distortion = depth_distortion(mesh, plane_lattice(cameras), cameras, greys([flat] * 9))
     assert distortion.cost_map.curve.max() == 0 and distortion.cost_map.most.max() < 1e-6
 
 
@@ -314,7 +313,7 @@ def test_where_the_surface_is_gone_and_none_lies_behind_the_picture_is_black():
     uv = np.concatenate([near.uv * [0.5, 1], near.uv * [0.5, 1] + [0.5, 0]]).astype(np.float32)
     both = Mesh(vertices, np.concatenate([patch, near.faces + len(near.vertices)]).astype(np.int32), uv)
     grey = np.tile(0.5 + 0.02 * np.sin(np.arange(64)), (48, 1)).astype(np.float32)
-    distortion = depth_distortion(both, lattice, 2.0**lattice.fine, cameras, greys([grey] * 9))
+    distortion = depth_distortion(both, lattice, cameras, greys([grey] * 9))
     cost_map = distortion.cost_map
     given, middle = cost_map.given > 0, cost_map.given.shape[1] // 2
     front = given & (np.arange(given.shape[1]) < middle)

@@ -11,8 +11,7 @@ from eigenfield import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions
-from eigenfield.encoding.geometry import triangle_count_rd
-from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view
+from eigenfield.encoding.geometry.triangle_count import _loss, _points, _view, triangle_count_rd
 from eigenfield.encoding.plan import plan_encoding
 from eigenfield.proxy import simplify_mesh, unwrap_mesh
 from support.captures import write_capture

@@ -7,20 +7,14 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
-from eigenfield.encoding.fitted import FitData, Pixels, PlaneSettings, fit_plane, open_fit_data, open_subsampled
+from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, fit_plane
 from eigenfield.encoding.fitted.model import Block, PlaneModel
-from eigenfield.encoding.fitted.observations import with_robust_weights
+from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual
-from eigenfield.encoding.projected import (
-    eigen_textures,
-    gram_matrix,
-    make_atlas,
-    mean_map,
-    spectrum,
-    texture_map,
-    texture_maps,
-    weights_of,
-)
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.eigen import eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.mean import mean_map
+from eigenfield.encoding.projected.project import texture_map, texture_maps
 from eigenfield.gltf import validate
 from eigenfield.imaging.metrics import psnr, to_codes
 from support.glb_surgery import changed, ours
@@ -80,7 +74,7 @@ def test_observations_of_a_camera_share_its_footprint():
             camera = MIXED.camera_of(index)
             for found, expected in zip(data.footprint(index), once.footprints.of(camera), strict=True):
                 np.testing.assert_array_equal(found, expected)
-            assert (data.observations.camera_of(index), data.observations.time_of(index)) == (camera, index // 3)
+            assert data.observations.camera_of(index) == camera
             np.testing.assert_array_equal(data.observations.codes_of(index), to_codes(PHOTOGRAPHS[index]))
             mask = data.observations.mask(index)
             np.testing.assert_array_equal(mask, 255 * (MASK if index == 1 else np.ones_like(MASK)))

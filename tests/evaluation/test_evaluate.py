@@ -14,7 +14,8 @@ import pytest
 from eigenfield.cli.evaluate import COLUMNS
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
-from eigenfield.encoding.projected import make_atlas, texture_map
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import PSNR_MAX_DECIBELS, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save

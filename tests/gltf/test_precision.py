@@ -12,7 +12,7 @@ from hypothesis.extra.numpy import arrays
 
 import eigenfield as ef
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
-from eigenfield.coding.pictures.precision import precision_codes, spread_precision
+from eigenfield.coding.pictures.quantise import precision_codes, spread_precision
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import mean_key
 from eigenfield.encoding.fitted.code_planes import code_mean

@@ -55,9 +55,7 @@ def test_weights_blend_the_rows_that_they_name():
     np.testing.assert_array_equal(weights.dense(5), [0, 0.25, 0, 0.75, 0])
     np.testing.assert_array_equal(ViewWeights.one(2).blend(matrix), matrix[2])
     np.testing.assert_array_equal(ViewWeights().blend(matrix), [0, 0])
-    again = ViewWeights.from_dense(weights.dense(4))
-    assert again.rows.tolist() == [1, 3] and again.values.tolist() == [0.25, 0.75]
-    assert weights.blend(matrix).dtype == again.blend(matrix).dtype == np.float64
+    assert weights.blend(matrix).dtype == np.float64
 
 
 @pytest.mark.parametrize("rows, values", [([0, 1], [1]), ([[0]], [[1]]), ([2, 2], [0.5, 0.5]), ([-1], [1])])

@@ -146,7 +146,7 @@ def test_interrupted_work_leaves_nothing(tmp_path, at):
 
     from fractions import Fraction
 
-    from eigenfield.rendering.flight import write_flight
+    from eigenfield.rendering.render_jobs import write_flight
 
     points = np.zeros((4, 2))
     work = [

@@ -125,7 +125,7 @@ def command(
 
 def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwrite: bool) -> None:
     """Refuse existing outputs, before any work; a quilt's name is known only with its scene."""
-    from eigenfield.rendering.flight import refuse_flight
+    from eigenfield.rendering.render_jobs import refuse_flight
     from eigenfield.runtime.files import refuse_existing
     from eigenfield.viewer import exports
 
@@ -145,7 +145,7 @@ def _write(
     overwrite: bool, progress: Progress | None,
 ) -> str:  # fmt: skip
     """Write the export; a line about what was written."""
-    from eigenfield.rendering.flight import write_flight
+    from eigenfield.rendering.render_jobs import write_flight
     from eigenfield.viewer import exports
 
     scene: Scene = job.scene

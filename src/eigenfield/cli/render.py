@@ -65,11 +65,10 @@ def command(
     _check_options(output, is_numbered(output), at, camera, path, frames, background)
     if residual and (at is not None or path is not None):
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
-    from eigenfield.encoding.residual import captured_pixels, difference_of
+    from eigenfield.encoding.residual.views import captured_pixels, difference_of
     from eigenfield.gltf import load
     from eigenfield.rendering import RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
-    from eigenfield.rendering.flight import refuse_flight, write_flight
-    from eigenfield.rendering.render_jobs import png
+    from eigenfield.rendering.render_jobs import png, refuse_flight, write_flight
 
     count = DEFAULT_FRAMES if frames is None else frames
     points = None if path is None else path_points(path, count)

@@ -10,7 +10,7 @@ docs/coding.md describes its bytes. What a codec's functions take and return is 
                -> bytes, intrinsics, poses               -> intrinsics (Nc, 5), poses (Nc, 3, 4)
     names      (names) -> bytes | None                   (data, count, where) -> names
     triangles  (triangles) -> bytes                      (data, where) -> triangles (T, 3)
-    weights    (weights, step, grid, *, dead_zone)       (data, where) -> weights (Ne, N)
+    weights    (weights, step, grid)                    (data, where) -> weights (Ne, N)
                -> bytes, the weights that are decoded
     picture    (codes, quality or crf) -> bytes          (data, colour, where) -> codes (H, W) or (H, W, 3)
     residual   (frames, size, crf, preset) -> bytes      (data, size, count, where) -> frames

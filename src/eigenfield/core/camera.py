@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,28 +46,25 @@ class Camera:
         Raises:
             CaptureError: `camera-shape`, `camera-not-finite`, `camera-not-rotation`, `camera-focal`, `camera-size`.
         """
+
+        def refuse(code: str, what: str, remedy: str = "mend its entry") -> NoReturn:
+            raise CaptureError(f"camera-{code}", f"camera {name}{what}", remedy=remedy)
+
         k, r, p = (np.array(a, dtype=np.float64) for a in (K, R, t))
         if k.shape != (3, 3) or r.shape != (3, 3) or p.shape != (3,):
-            raise CaptureError("camera-shape", f"camera {name}: matrices of the wrong shape", remedy="mend its entry")
+            refuse("shape", ": matrices of the wrong shape")
         if not (np.isfinite(k).all() and np.isfinite(r).all() and np.isfinite(p).all()):
-            raise CaptureError(
-                "camera-not-finite", f"camera {name} has NaN or infinite entries", remedy="mend or remove its entry"
-            )
+            refuse("not-finite", " has NaN or infinite entries", "mend or remove its entry")
         if k[0, 0] <= 0 or k[1, 1] <= 0:
-            raise CaptureError(
-                "camera-focal",
-                f"camera {name} has a focal length of {k[0, 0]:g} x {k[1, 1]:g}",
-                remedy="mend its entry",
-            )
+            refuse("focal", f" has a focal length of {k[0, 0]:g} x {k[1, 1]:g}")
         if width < 1 or height < 1:
-            raise CaptureError("camera-size", f"camera {name} has a size of {width}x{height}", remedy="mend its entry")
+            refuse("size", f" has a size of {width}x{height}")
         u, s, vt = np.linalg.svd(r)
         if np.abs(s - 1).max() > CAMERA_ROTATION_TOLERANCE or np.linalg.det(r) < 0:
-            raise CaptureError(
-                "camera-not-rotation",
-                f"camera {name}: the rotation has singular values {s.round(4).tolist()} and determinant "
-                f"{np.linalg.det(r):.4f}",
-                remedy="a pose needs an orthonormal, right-handed rotation: mend or remove its entry",
+            refuse(
+                "not-rotation",
+                f": the rotation has singular values {s.round(4).tolist()} and determinant {np.linalg.det(r):.4f}",
+                "a pose needs an orthonormal, right-handed rotation: mend or remove its entry",
             )
         return Camera(k, u @ vt, p, int(width), int(height))
 

@@ -27,12 +27,7 @@ class EigenfieldError(Exception):
     """
 
     def __init__(
-        self,
-        code: str,
-        message: str,
-        *,
-        path: str | os.PathLike[str] | None = None,
-        remedy: str | None = None,
+        self, code: str, message: str, *, path: str | os.PathLike[str] | None = None, remedy: str | None = None
     ) -> None:
         self.code = code
         self.message = message

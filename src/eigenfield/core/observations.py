@@ -123,8 +123,3 @@ def select_cameras(observations: Observations, cameras: Sequence[int]) -> Observ
 def cameras_of(observations: Observations) -> NDArray[np.int64]:
     """(No,) the camera of each observation."""
     return np.array([observations.camera_of(index) for index in range(len(observations))], np.int64)
-
-
-def times_of(observations: Observations) -> NDArray[np.int64]:
-    """(No,) the instant of each observation."""
-    return np.array([observations.time_of(index) for index in range(len(observations))], np.int64)

@@ -41,10 +41,6 @@ class Rig:
         return [self.cameras[index] for index in self.encoded]
 
     @property
-    def encoded_names(self) -> list[str]:
-        return [self.names[index] for index in self.encoded]
-
-    @property
     def encoded_reference(self) -> int:
         """The reference camera, counted among the encoded ones."""
         return int(np.searchsorted(self.encoded, self.reference))

@@ -85,15 +85,11 @@ class Grid:
         rows: Row 0 is the lowest Y.
         columns: Column 0 is the lowest X.
         index: (rows, columns) int, the camera at each node.
-        x: (columns,) mean view-plane coordinates of the columns, rising.
-        y: (rows,) mean view-plane coordinates of the rows, rising.
     """
 
     rows: int
     columns: int
     index: NDArray[np.int64]
-    x: NDArray[np.float64]
-    y: NDArray[np.float64]
 
 
 def find_grid(coordinates: ArrayLike) -> Grid | None:
@@ -122,4 +118,4 @@ def _fit_grid(points: NDArray[np.float64], rows: int, columns: int) -> Grid | No
         return None
     if min(step) <= 0 or any(j > s / 4 for j, s in zip(jitter, step, strict=True) if np.isfinite(s)):
         return None
-    return Grid(rows, columns, index.astype(np.int64), x, y)
+    return Grid(rows, columns, index.astype(np.int64))

@@ -55,7 +55,7 @@ def encode(
     from eigenfield.encoding.fitted.encode import encode_fitted
     from eigenfield.encoding.plan import plan_encoding
     from eigenfield.encoding.projected.encode import encode_projected
-    from eigenfield.encoding.residual import check_residual, with_residual
+    from eigenfield.encoding.residual.make import check_residual, with_residual
     from eigenfield.gltf import encode_scene, read_scene
 
     asked = replace(EncodeOptions() if options is None else options, **changes)

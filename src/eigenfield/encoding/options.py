@@ -212,20 +212,16 @@ class EncodeOptions:
 
         check_codec(self.codec or DEFAULT_CODEC, self.quality)
         if self.residual is not None and self.target is not None:
-            raise OptionError(
-                "residual",
-                "a target is about the textures, and a residual comes on top of them",
-                remedy="say --quality and --residual Q instead",
-            )
+            message = "a target is about the textures, and a residual comes on top of them"
+            raise OptionError("residual", message, remedy="say --quality and --residual Q instead")
 
     def _check_way(self) -> None:
         """Raise OptionError for values that are not among the choices, and for options that exclude each other."""
         for name, one in options_of(type(self)):
             value = getattr(self, name)
             if name in UNKNOWN_CHOICE_TEXTS and value is not None and value not in one.choices:
-                raise OptionError(
-                    name, f"{UNKNOWN_CHOICE_TEXTS[name]} {value}", remedy=f"use one of {', '.join(one.choices)}"
-                )
+                remedy = f"use one of {', '.join(one.choices)}"
+                raise OptionError(name, f"{UNKNOWN_CHOICE_TEXTS[name]} {value}", remedy=remedy)
         if self.target is not None:
             self.target.check()
             if self.quality is not None:
@@ -247,16 +243,12 @@ class EncodeOptions:
             raise OptionError("uv-ssim", f"an SSIM of {self.uv_ssim:g} was asked for", remedy="ask for one in (0, 1]")
         low, high = DENSITY_LIMITS
         if self.density is not None and not low <= self.density <= high:
-            raise OptionError(
-                "density", f"a density of {self.density:g} was asked for", remedy="ask for one between 0.1 and 4"
-            )
+            message = f"a density of {self.density:g} was asked for"
+            raise OptionError("density", message, remedy="ask for one between 0.1 and 4")
         sides = (self.atlas,) if self.atlas is None or isinstance(self.atlas, int) else self.atlas
         if not all(side is None or 1 <= side <= ATLAS_MAX_SIDE_TEXELS for side in sides):
-            raise OptionError(
-                "atlas",
-                f"an atlas of {self.atlas} was asked for",
-                remedy=f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}",
-            )
+            remedy = f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}"
+            raise OptionError("atlas", f"an atlas of {self.atlas} was asked for", remedy=remedy)
 
 
 def resolved_value(value: T | None) -> T:

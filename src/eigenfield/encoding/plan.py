@@ -23,11 +23,13 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
-from eigenfield.encoding.fitted import byte_lambda, fit_surface
-from eigenfield.encoding.geometry import simplify_proxy_rd, triangle_count_rd
+from eigenfield.encoding.fitted.planes import byte_lambda
+from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
+from eigenfield.encoding.geometry.simplify_relief import simplify_proxy_rd
+from eigenfield.encoding.geometry.triangle_count import triangle_count_rd
 from eigenfield.encoding.options import EncodeOptions, resolved_value
-from eigenfield.encoding.projected import atlas_side, texels_per_pixel
+from eigenfield.encoding.projected.atlas import atlas_side, texels_per_pixel
 from eigenfield.encoding.views import CaptureViews, grid_of, select_views
 from eigenfield.proxy import prepare_proxy
 from eigenfield.proxy.relief.find_lattice import relief_lattice, relief_proxy
@@ -113,8 +115,9 @@ class EncodePlan:
             colours: As in `Scene`.
             to_rgb: As in `Scene`.
         """
-        views = self.views
-        used = np.flatnonzero(np.isin(cameras_of(views.capture), views.rig.encoded)).tolist()
+        views, rig = self.views, self.views.rig
+        sizes = [rig.cameras[index].width * rig.cameras[index].height for index in views.taken_by]
+        used = np.flatnonzero(np.isin(cameras_of(views.capture), rig.encoded)).tolist()
         settings = {
             "textures": max(sum(basis.count for basis in one.bases) for one in planes),
             "atlas": list(self.atlas),
@@ -126,14 +129,12 @@ class EncodePlan:
             "photographs": {
                 "count": len(views.observations),
                 "bytes": sum(views.capture.bytes(index) for index in used),
-                "pixels": sum(
-                    views.rig.cameras[index].width * views.rig.cameras[index].height for index in views.taken_by
-                ),
+                "pixels": sum(sizes),
             },
         }
         return EncodedScene(
             proxy=Proxy(self.mesh),
-            rig=views.rig,
+            rig=rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
             settings=settings,
             generator=f"eigenfield {__version__}",

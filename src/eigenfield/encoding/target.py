@@ -95,10 +95,8 @@ def search_quality(target: Target, code: Callable[[int], Attempt[T]], first: int
         first: The quality that is tried first.
     """
     tried: dict[int, Attempt[T]] = {}
-    low, high = (
-        TARGET_MIN_QUALITY - 1,
-        TARGET_MAX_QUALITY + 1,
-    )  # the answer lies between, both excluded: low is too little or unknown
+    # The answer lies between, both excluded: low is too little or unknown
+    low, high = TARGET_MIN_QUALITY - 1, TARGET_MAX_QUALITY + 1
     quality = first
     while len(tried) < TARGET_MAX_ATTEMPTS and low + 1 < high:
         one = tried[quality] = code(quality)

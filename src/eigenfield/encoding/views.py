@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.capture import Capture
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, select_cameras
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import find_grid, fit_view_plane
@@ -83,8 +83,7 @@ def select_views(capture: CalibratedObservations, options: EncodeOptions) -> Cap
     """
     cameras = tuple(camera.to_float32() for camera in capture.cameras)
     places = fit_view_plane(cameras).coordinates([camera.centre for camera in cameras])
-    held = held_out_cameras(options.hold_out, capture.names, places)
-    reference = _reference(options.reference, capture.names, places, held)
+    held, reference = _held_and_reference(options, capture.names, places)
     return CaptureViews(capture, make_rig(capture.names, cameras, held, reference))
 
 
@@ -98,8 +97,7 @@ def check_selection(capture: Capture, options: EncodeOptions) -> None:
         return  # the cameras decide, which are not estimated yet
     else:
         places = np.zeros((len(capture), 2))
-    held = held_out_cameras(options.hold_out, capture.names, places)
-    _reference(options.reference, capture.names, places, held)
+    _held_and_reference(options, capture.names, places)
 
 
 def grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
@@ -108,15 +106,23 @@ def grid_of(coordinates: NDArray[np.float64]) -> NDArray[np.int64] | None:
     return None if grid is None else grid.index.astype(np.int64)
 
 
-def _reference(
-    name: str | None, names: Sequence[str], coordinates: NDArray[np.float64], held_out: NDArray[np.bool_]
-) -> int:
-    encoded = np.flatnonzero(~held_out)
+def nothing_seen_error() -> CaptureError:
+    """The error `nothing-seen` of a proxy that is in no photograph."""
+    remedy = "bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks"
+    return CaptureError("nothing-seen", "no camera sees any texel of the proxy", remedy=remedy)
+
+
+def _held_and_reference(
+    options: EncodeOptions, names: Sequence[str], places: NDArray[np.float64]
+) -> tuple[NDArray[np.bool_], int]:
+    """(Nc,) which cameras are held out, and the reference camera, of cameras at `places` (Nc, 2) of the view plane."""
+    held, name = held_out_cameras(options.hold_out, names, places), options.reference
+    encoded = np.flatnonzero(~held)
     if name is None:
-        return int(encoded[np.argmin(np.linalg.norm(coordinates[encoded], axis=1))])
+        return held, int(encoded[np.argmin(np.linalg.norm(places[encoded], axis=1))])
     if name not in names:
         raise OptionError("reference", f"no camera is called {name}", remedy="eigenfield inspect lists the names")
     index = names.index(name)
     if index not in encoded:
         raise OptionError("reference", f"{name} is held out", remedy="name an encoded camera as --reference")
-    return index
+    return held, index

@@ -11,7 +11,7 @@ from typing import Any
 from eigenfield.capture import LightField
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.residual import with_differences
+from eigenfield.encoding.residual.views import with_differences
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
 from eigenfield.evaluation.session import CameraScores, Session, start_session

@@ -13,15 +13,11 @@ from numpy.typing import NDArray
 from eigenfield.capture import Capture, Lens, LightField, Photograph
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.projected import (
-    RESAMPLING_FILTERS,
-    Atlas,
-    align_map,
-    harmonised_map,
-    make_atlas,
-    texture_map,
-)
-from eigenfield.encoding.residual import captured_samples, corrected_picture
+from eigenfield.encoding.projected.align import align_map
+from eigenfield.encoding.projected.atlas import Atlas, make_atlas
+from eigenfield.encoding.projected.harmonise import harmonised_map
+from eigenfield.encoding.projected.project import RESAMPLING_FILTERS, texture_map
+from eigenfield.encoding.residual.views import captured_samples, corrected_picture
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import ImageScores, measure_outside, measure_picture
 from eigenfield.evaluation.uv import MapScores, measure_map

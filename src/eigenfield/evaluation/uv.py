@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Plane
-from eigenfield.encoding.projected import Atlas
-from eigenfield.encoding.projected import measure_map as measure_pictures
+from eigenfield.encoding.projected.atlas import Atlas
+from eigenfield.encoding.projected.uv_measure import measure_map as measure_pictures
 from eigenfield.evaluation.kernels import add_textures
 
 UV_STRIDE_TEXELS = 512  # that the kernel sums at a time

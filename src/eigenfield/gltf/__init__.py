@@ -8,15 +8,6 @@ from eigenfield.gltf.read import load, outline, read_scene, validate
 from eigenfield.gltf.write import encode_scene, save
 
 __all__ = [
-    "Finding",
-    "describe",
-    "encode_scene",
-    "load",
-    "outline",
-    "parts",
-    "read_scene",
-    "save",
-    "store_scores",
-    "validate",
+    "Finding", "describe", "encode_scene", "load", "outline", "parts", "read_scene", "save", "store_scores", "validate",
     "without_residual",
-]
+]  # fmt: skip

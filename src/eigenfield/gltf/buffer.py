@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.payloads import Payload
-from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
+from eigenfield.gltf.document import DTYPES
 
 
 @dataclass
@@ -66,9 +66,7 @@ class Buffer:
         Returns:
             Its index.
         """
-        dtype = {FLOAT: "<f4", UINT32: "<u4", UINT16: "<u2", UINT8: "u1"}[component]
-        view = self.view(np.ascontiguousarray(array, dtype).tobytes(), target)
-        self.accessors.append(
-            {"bufferView": view, "componentType": component, "count": len(array), "type": kind, **more}
-        )
+        view = self.view(np.ascontiguousarray(array, DTYPES[component]).tobytes(), target)
+        entry = {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
+        self.accessors.append(entry | more)
         return len(self.accessors) - 1

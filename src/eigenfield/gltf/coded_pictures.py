@@ -78,12 +78,10 @@ def code_pictures(
         quality: Of the textures.
         progress: Reports each picture.
     """
-    fine = round(100 - MEAN_QUALITY_RATIO * (100 - quality))
+    fine, to_rgb = round(100 - MEAN_QUALITY_RATIO * (100 - quality)), scene.appearance.to_rgb
     planned = []
     for p, plane in enumerate(scene.appearance.planes):
-        one_unit = (
-            _is_harmonised(scene, plane) or quantise.is_photographic(plane.mean) or scene.appearance.to_rgb is not None
-        )
+        one_unit = to_rgb is not None or _is_harmonised(scene, plane) or quantise.is_photographic(plane.mean)
         parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
         ways = [partial(_mean, scene, plane, codec or DEFAULT_CODEC, fine)]
         ways += [partial(_textures, basis, codec or DEFAULT_CODEC, quality, one_unit) for basis in plane.bases]
@@ -98,7 +96,7 @@ def code_pictures(
         files = [[next(done) for _ in some] for some in plan]
         planes.append(PlanePictures(files[0][0], files[1:]))
     first, made = planes[0].mean, ScenePictures(None, planes)
-    plain = scene.appearance.to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
+    plain = to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
     if plain and first.codec == "png" and first.affine is None:
         return made  # the mean itself serves
     preview = cached.one("preview") if codec is None else None
@@ -140,11 +138,8 @@ def _preview(scene: Scene, coded: int) -> bytes:
 
     coded: bytes of the planes.
     """
-    mean = (
-        scene.appearance.planes[0].mean
-        if scene.appearance.to_rgb is None
-        else _rgb_mean(scene, scene.appearance.to_rgb)
-    )
+    to_rgb = scene.appearance.to_rgb
+    mean = scene.appearance.planes[0].mean if to_rgb is None else _rgb_mean(scene, to_rgb)
     if scene.appearance.colours is not None:
         mean = mean.clip(0, 1)
     shown = mean if mean.shape[2] in (1, 3) else mean[..., : 3 if mean.shape[2] > 3 else 1]
@@ -152,7 +147,7 @@ def _preview(scene: Scene, coded: int) -> bytes:
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
-    if scene.appearance.to_rgb is None:
+    if to_rgb is None:
         return encode_preview(stacked_picture(codes))
     return first_affordable((encode_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded)
 
@@ -162,9 +157,8 @@ def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:
     import cv2
 
     height, width = scene.appearance.planes[0].mean.shape[:2]
-    resized = [
-        cv2.resize(plane.mean, (width, height), interpolation=cv2.INTER_LINEAR) for plane in scene.appearance.planes
-    ]
+    means = [plane.mean for plane in scene.appearance.planes]
+    resized = [cv2.resize(mean, (width, height), interpolation=cv2.INTER_LINEAR) for mean in means]
     stacked = np.concatenate([np.atleast_3d(np.asarray(one)) for one in resized], axis=2)
     return np.asarray(stacked @ to_rgb.T, np.float32).clip(0, 1)
 

@@ -104,12 +104,8 @@ def _parse_truncated(data: bytes, length: int) -> Glb:
 
 
 def _truncation_error(size: int, length: int) -> FormatError:
-    return FormatError(
-        "truncated",
-        f"ends after {size} of {length} bytes",
-        where=f"byte {size}",
-        remedy="copy or download it again",
-    )
+    message, remedy = f"ends after {size} of {length} bytes", "copy or download it again"
+    return FormatError("truncated", message, where=f"byte {size}", remedy=remedy)
 
 
 def _chunks(data: bytes) -> dict[bytes, tuple[int, int]]:
@@ -145,10 +141,9 @@ def json_bytes(value: Any) -> bytes:
     Raises:
         ValueError: NaN, which is our own bug.
     """
-    text = json.dumps(_without_fractions(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False).encode(
-        "utf-8"
-    )
-    return text + b" " * (-len(text) % 4)
+    text = json.dumps(_without_fractions(value), separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    data = text.encode()
+    return data + b" " * (-len(data) % 4)
 
 
 def _without_fractions(value: Any) -> Any:
@@ -168,10 +163,7 @@ def file_head(text: bytes, rest: int, path: str | os.PathLike[str] | None) -> by
     """
     size = HEADER.size + CHUNK.size + len(text) + rest
     if size > limits.MAX_FILE:
-        raise OutputError(
-            "file-too-large",
-            f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}",
-            path=path,
-            remedy="use fewer textures, a smaller atlas, or --codec avif",
-        )
+        message = f"would be {size} bytes, a .glb holds at most {limits.MAX_FILE}"
+        remedy = "use fewer textures, a smaller atlas, or --codec avif"
+        raise OutputError("file-too-large", message, path=path, remedy=remedy)
     return HEADER.pack(MAGIC, 2, size) + CHUNK.pack(len(text), JSON_CHUNK) + text

@@ -13,7 +13,7 @@ from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes, parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.layout import FileLayout, find_extension
-from eigenfield.gltf.read import name_file_in_errors, open_layout, read_scene
+from eigenfield.gltf.read import layout_of, name_file_in_errors, read_scene
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
@@ -29,7 +29,7 @@ def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
         FormatError: As `load`.
     """
     with name_file_in_errors(path):
-        document, layout = open_layout(Path(path))
+        document, layout = layout_of(read_file(Path(path)))
         return layout, _parts(document)
 
 
@@ -90,12 +90,12 @@ def without_residual(data: bytes) -> bytes:
     residual = extension.pop("residual", None)
     if residual is None:
         return data
-    end = document.view_range(len(views) - 1)[0]
-    if residual["bufferView"] != len(views) - 1 or any(document.view_range(i)[1] > end for i in range(len(views) - 1)):
+    end = document.view_at(len(views) - 1).offset
+    if residual["bufferView"] != len(views) - 1 or any(document.view_at(i).end > end for i in range(len(views) - 1)):
         return data
     del views[-1]
     if residual.get("order") == len(accessors) - 1 and accessors[-1]["bufferView"] == len(views) - 1:
-        end = document.view_range(len(views) - 1)[0]
+        end = document.view_at(len(views) - 1).offset
         del views[-1], accessors[-1]
     made = {**glb.json, "bufferViews": views, "accessors": accessors, "buffers": [{"byteLength": end}]}
     made["extensions"] = {**made["extensions"], limits.EXTENSION: extension}

@@ -15,12 +15,7 @@ from eigenfield.gltf.container import Glb
 from eigenfield.gltf.strict_json import Value, quote
 
 FLOAT, UINT32, UINT16, UINT8 = 5126, 5125, 5123, 5121
-DTYPES: dict[int, np.dtype[Any]] = {
-    FLOAT: np.dtype("<f4"),
-    UINT32: np.dtype("<u4"),
-    UINT16: np.dtype("<u2"),
-    UINT8: np.dtype("u1"),
-}
+DTYPES = {kind: np.dtype(name) for kind, name in ((FLOAT, "<f4"), (UINT32, "<u4"), (UINT16, "<u2"), (UINT8, "u1"))}
 WIDTHS = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}
 
 
@@ -39,6 +34,11 @@ class BufferView:
     offset: int
     length: int
     stride: int
+
+    @property
+    def end(self) -> int:
+        """The first byte behind it."""
+        return self.offset + self.length
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,8 +78,7 @@ class Document:
 
     def cut_off(self, reference: Value) -> bool:
         """Whether the file ends before the buffer view whose index `reference` holds does. FormatError as `view`."""
-        view = self._view(self._index(reference))
-        return view.offset + view.length > len(self.glb.binary)
+        return self.view_at(self._index(reference)).end > len(self.glb.binary)
 
     @property
     def _length(self) -> int:
@@ -88,17 +87,16 @@ class Document:
     def check_overlap(self) -> None:
         """No byte belongs to two buffer views: `view-overlap`."""
         count = len(list(self.root["bufferViews"].items(limits.MAX_VIEWS)))
-        views = sorted((self._view(index) for index in range(count)), key=lambda view: (view.offset, view.length))
+        views = sorted((self.view_at(index) for index in range(count)), key=lambda view: (view.offset, view.length))
         for before, after in pairwise(views):
-            if after.offset < before.offset + before.length:
-                raise FormatError(
-                    "view-overlap", f"shares bytes with buffer view {before.index}", where=f"/bufferViews/{after.index}"
-                )
+            if after.offset < before.end:
+                message, where = f"shares bytes with buffer view {before.index}", f"/bufferViews/{after.index}"
+                raise FormatError("view-overlap", message, where=where)
 
     def view(self, reference: Value) -> BufferView:
         """The buffer view whose index `reference` holds. FormatError `view-range`, `view-missing`, `truncated`."""
-        view = self._view(self._index(reference))
-        if view.offset + view.length > len(self.glb.binary):
+        view = self.view_at(self._index(reference))
+        if view.end > len(self.glb.binary):
             raise self.glb.cut_off()
         return view
 
@@ -109,12 +107,8 @@ class Document:
             reference.fail("view-missing", f"there are {count} buffer views, {index} is none of them")
         return index
 
-    def view_range(self, index: int) -> tuple[int, int]:
-        """First byte of a buffer view in the binary chunk, and the first one behind it."""
-        view = self._view(index)
-        return view.offset, view.offset + view.length
-
-    def _view(self, index: int) -> BufferView:
+    def view_at(self, index: int) -> BufferView:
+        """A buffer view by its index; of a file that is cut off it may lie behind the end. FormatError `view-range`."""
         entry = self.root["bufferViews"].at(index)
         if entry["buffer"].integer(0, 2**31) != 0:
             entry.fail("view-range", "lies in a buffer that does not exist")
@@ -128,7 +122,7 @@ class Document:
     def data(self, reference: Value) -> memoryview:
         """The bytes of the buffer view whose index `reference` holds. FormatError as `view`."""
         view = self.view(reference)
-        return self.glb.binary[view.offset : view.offset + view.length]
+        return self.glb.binary[view.offset : view.end]
 
     def array(self, reference: Value, kind: str, components: tuple[int, ...], most: int) -> NDArray[Any]:
         """A copy of an accessor: (n,) for SCALAR, (n, 2) or (n, 3) for VEC2, VEC3.

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, TypeVar
 
 from eigenfield.core.errors import FormatError
 
+T = TypeVar("T")
 Severity = Literal["error", "warning", "information"]
 
 
@@ -50,14 +51,16 @@ class Findings:
         except FormatError as error:
             if self.strict:
                 raise
-            self.found.append(Finding("error", error.code, error.where, bare_message(error)))
+            text = error.message.removesuffix(f" (at {error.where})")  # which `where` holds already
+            text = text if error.remedy is None else f"{text}; {error.remedy}"
+            self.found.append(Finding("error", error.code, error.where, text))
+
+    def attempt(self, read: Callable[[], T]) -> T | None:
+        """What `read` returns of a part; None where it fails (only while validating)."""
+        with self.part():
+            return read()
+        return None
 
     def note(self, severity: Literal["warning", "information"], code: str, where: str, message: str) -> None:
         """Something that does not make the file unreadable."""
         self.found.append(Finding(severity, code, where, message))
-
-
-def bare_message(error: FormatError) -> str:
-    """The message without the place, which `where` holds already; with the remedy if there is one."""
-    text = error.message.removesuffix(f" (at {error.where})")
-    return text if error.remedy is None else f"{text}; {error.remedy}"

@@ -21,16 +21,9 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
+from eigenfield.gltf import layout_geometry as geometry
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
-from eigenfield.gltf.layout_geometry import (
-    CameraList,
-    read_cameras,
-    read_coded_mesh,
-    read_mesh,
-    read_triangles,
-    read_view_plane,
-)
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
 from eigenfield.gltf.streams import FEATURES, LATEST, minor
@@ -67,7 +60,7 @@ class FileLayout:
     mesh: Mesh | None
     mesh_payload: Payload | None
     planes: tuple[PlaneLayout, ...] | None
-    cameras: CameraList | None
+    cameras: geometry.CameraList | None
     view_plane: ViewPlane | None
     triangles: NDArray[np.int32] | None
     reference: int | None
@@ -86,67 +79,49 @@ class FileLayout:
 
 def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     """Check everything but the pictures' contents; None if the file is no scene at all (only while validating)."""
-    extension = None
-    with findings.part():
+
+    def root_extension() -> Value:
         found = find_extension(document)
         document.check_end(found)
-        extension = found
+        return found
+
+    attempt, note = findings.attempt, findings.note
+    extension = attempt(root_extension)
     if extension is None:
         return None
     version = extension["version"].text()
     if minor(version) > LATEST:
-        findings.note(
-            "information", "newer-version", f"{extension.where}/version", f"version {version}: what it adds is ignored"
-        )
+        text = f"version {version}: what it adds is ignored"
+        note("information", "newer-version", f"{extension.where}/version", text)
     for key in sorted(extension.mapping().keys() - _KEYS):
-        findings.note("information", "unknown-key", extension.where, f"{quote(key)} is ignored")
+        note("information", "unknown-key", extension.where, f"{quote(key)} is ignored")
     if limits.EXTENSION not in _names(document, "extensionsUsed"):
-        findings.note("warning", "extension-not-used", "/extensionsUsed", f"does not name {limits.EXTENSION}")
+        note("warning", "extension-not-used", "/extensionsUsed", f"does not name {limits.EXTENSION}")
     if limits.EXTENSION in _names(document, "extensionsRequired"):
-        findings.note(
-            "warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean"
-        )
-    mesh = mesh_payload = cameras = planes = view_plane = triangles = reference = to_rgb = residual = None
-    settings: Mapping[str, Any] = {}
-    scores: Mapping[str, Any] = {}
-    generator = ""
-    times: tuple[float, ...] = (0.0,)
+        note("warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean")
+    attempt(document.check_buffer)
+    attempt(document.check_overlap)
+    mesh = mesh_payload = None
     with findings.part():
-        document.check_buffer()
-    with findings.part():
-        document.check_overlap()
-    with findings.part():
-        mesh = read_mesh(document)  # of a coded one the coarse one, which is checked too
+        mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
         if extension.has("mesh"):
-            mesh, mesh_payload = read_coded_mesh(document, extension["mesh"])
-    with findings.part():
-        cameras = read_cameras(document, extension["cameras"])
-    with findings.part():
-        times = read_times(extension)
-    with findings.part():
-        planes = read_planes(document, extension["planes"], cameras, len(times), findings)
-    with findings.part():
-        to_rgb = read_matrix(extension, planes)
-    with findings.part():
-        check_colours(extension["cameras"], cameras, planes, to_rgb)
-    with findings.part():
-        view_plane = read_view_plane(extension["viewPlane"])
-    with findings.part():
-        triangles = read_triangles(document, extension["viewPlane"], cameras)
-    with findings.part():
-        count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
-        reference = extension["reference"].integer(0, count - 1)
+            mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
+    cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
+    times = attempt(lambda: read_times(extension)) or (0.0,)
+    planes = attempt(lambda: read_planes(document, extension["planes"], cameras, len(times), findings))
+    to_rgb = attempt(lambda: read_matrix(extension, planes))
+    attempt(lambda: check_colours(extension["cameras"], cameras, planes, to_rgb))
+    view_plane = attempt(lambda: geometry.read_view_plane(extension["viewPlane"]))
+    triangles = attempt(lambda: geometry.read_triangles(document, extension["viewPlane"], cameras))
+    count = limits.MAX_CAMERAS if cameras is None else len(cameras.names)
+    reference = attempt(lambda: extension["reference"].integer(0, count - 1))
     with findings.part():
         if not findings.strict and any(plane.lost for plane in planes or ()):
             raise document.glb.cut_off()  # a fault, though what is left can be drawn
-    with findings.part():
-        residual = read_residual(document, extension, cameras, findings)
-    with findings.part():
-        settings = extension["settings"].mapping() if extension.has("settings") else {}
-    with findings.part():
-        scores = extension["scores"].mapping() if extension.has("scores") else {}
-    with findings.part():
-        generator = extension["generator"].text() if extension.has("generator") else ""
+    residual = attempt(lambda: read_residual(document, extension, cameras, findings))
+    settings = attempt(lambda: extension["settings"].mapping() if extension.has("settings") else {}) or {}
+    scores = attempt(lambda: extension["scores"].mapping() if extension.has("scores") else {}) or {}
+    generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
     return FileLayout(
         version, mesh, mesh_payload, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings,
         scores, generator, times,
@@ -179,30 +154,18 @@ def find_extension(document: Document) -> Value:
     if not re.fullmatch(r"2\.\d+", asset.text()):
         asset.fail("gltf-version", f"glTF {quote(asset.value)}, 2.x expected")
     if not root.has("extensions") or not root["extensions"].has(limits.EXTENSION):
-        raise FormatError(
-            "not-a-scene",
-            f"a glTF file without {limits.EXTENSION}: no eigen-texture scene",
-            where="/extensions",
-            remedy="name a file that `eigenfield encode` made",
-        )
+        message = f"a glTF file without {limits.EXTENSION}: no eigen-texture scene"
+        remedy = "name a file that `eigenfield encode` made"
+        raise FormatError("not-a-scene", message, where="/extensions", remedy=remedy)
     extension = root["extensions"][limits.EXTENSION]
     version = extension["version"]
     if not re.fullmatch(r"1\.\d{1,9}", version.text()):
-        raise FormatError(
-            "version",
-            f"version {quote(version.value)} of {limits.EXTENSION}, 1.x is read here",
-            where=version.where,
-            remedy="use a later eigenfield",
-        )
+        message = f"version {quote(version.value)} of {limits.EXTENSION}, 1.x is read here"
+        version.fail("version", message, "use a later eigenfield")
     if extension.has("needs"):
         for need in extension["needs"].items(limits.MAX_VIEWS):
             if need.text() not in FEATURES:
-                raise FormatError(
-                    "needs",
-                    f"needs the unknown feature {quote(need.value)}",
-                    where=need.where,
-                    remedy="use a later eigenfield",
-                )
+                need.fail("needs", f"needs the unknown feature {quote(need.value)}", "use a later eigenfield")
     return extension
 
 

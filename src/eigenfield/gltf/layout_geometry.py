@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -112,14 +114,15 @@ def read_cameras(document: Document, entry: Value) -> CameraList:
         sizes = np.tile(np.array(one, np.int64), (count, 1))
     else:
         sizes = _table(document, entry["sizes"], UINT32, count, 2).astype(np.int64)
-    _check_calibration(entry, names, intrinsics, poses.reshape(count, 3, 4), sizes)
-    cameras = cameras_of(intrinsics, poses.reshape(count, 3, 4), sizes)
+    poses, refuse = poses.reshape(count, 3, 4), partial(_refuse, entry, names)
+    _check_calibration(refuse, intrinsics, poses, sizes)
+    cameras = cameras_of(intrinsics, poses, sizes)
     colours = None
     if entry.has("colour"):
         colours = _table(document, entry["colour"], FLOAT, count, 6).reshape(count, 2, 3)
         gain, offset = colours[:, 0], colours[:, 1]
         good = (gain >= 1 / limits.MAX_GAIN) & (gain <= limits.MAX_GAIN) & (np.abs(offset) <= limits.MAX_OFFSET)
-        _refuse(entry, names, "colour", ~good.all(axis=1), "has a gain or an offset outside their range")
+        refuse("colour", ~good.all(axis=1), "has a gain or an offset outside their range")
     return CameraList(tuple(names), cameras, held_out, colours, stream)
 
 
@@ -139,8 +142,7 @@ def _read_names(document: Document, entry: Value) -> list[str]:
         names = [name.text() for name in given.items(limits.MAX_CAMERAS, 1)]
     for index, name in enumerate(names):
         if not is_printable(name):
-            where = given.at(index) if listed else given
-            where.fail("camera-name", "a name with control characters")
+            (given.at(index) if listed else given).fail("camera-name", "a name with control characters")
     if len(set(names)) < len(names):
         given.fail("camera-name", "two cameras have one name")
     return names
@@ -151,9 +153,8 @@ def cameras_of(
 ) -> tuple[Camera, ...]:
     """Cameras of intrinsics (Nc, 5): fx, fy, skew, cx, cy; poses (Nc, 3, 4): [R t]; sizes (Nc, 2): width, height."""
     made = []
-    for (fx, fy, skew, cx, cy), pose, (width, height) in zip(
-        intrinsics.astype(float), poses.astype(float), sizes, strict=True
-    ):
+    numbers = zip(intrinsics.astype(float), poses.astype(float), sizes, strict=True)
+    for (fx, fy, skew, cx, cy), pose, (width, height) in numbers:
         K = np.array([[fx, skew, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])
         made.append(Camera(K, np.ascontiguousarray(pose[:, :3]), pose[:, 3].copy(), int(width), int(height)))
     return tuple(made)
@@ -172,24 +173,19 @@ def _refuse(entry: Value, names: list[str], key: str, bad: NDArray[np.bool_], wh
 
 
 def _check_calibration(
-    entry: Value, names: list[str], intrinsics: NDArray[Any], poses: NDArray[Any], sizes: NDArray[np.int64]
+    refuse: Callable[[str, NDArray[np.bool_], str], None],
+    intrinsics: NDArray[Any],
+    poses: NDArray[Any],
+    sizes: NDArray[np.int64],
 ) -> None:
-    def refuse(key: str, bad: NDArray[np.bool_], what: str) -> None:
-        _refuse(entry, names, key, bad, what)
-
-    inside = np.abs(intrinsics) <= limits.MAX_NUMBER
-    refuse(
-        "intrinsics",
-        ~inside.all(axis=1) | (intrinsics[:, :2] <= 1e-6).any(axis=1),
-        "has no valid focal length or centre",
-    )
+    good = (np.abs(intrinsics) <= limits.MAX_NUMBER).all(axis=1) & (intrinsics[:, :2] > 1e-6).all(axis=1)
+    refuse("intrinsics", ~good, "has no valid focal length or centre")
     refuse("poses", ~(np.abs(poses) <= limits.MAX_NUMBER).all(axis=(1, 2)), "has a pose that is not finite")
     rotations = poses[:, :, :3].astype(np.float64)
     refuse("poses", np.abs(rotations).max(axis=(1, 2)) > 2, "has a pose that is no rotation")
     off = np.abs(rotations @ rotations.transpose(0, 2, 1) - np.eye(3)).max(axis=(1, 2))
-    refuse(
-        "poses", (off > limits.ORTHONORMAL_TOLERANCE) | (np.linalg.det(rotations) < 0), "has a pose that is no rotation"
-    )
+    mirrored = np.linalg.det(rotations) < 0
+    refuse("poses", (off > limits.ORTHONORMAL_TOLERANCE) | mirrored, "has a pose that is no rotation")
     area = sizes[:, 0] * sizes[:, 1]
     bad = (sizes < 1).any(axis=1) | (sizes > limits.MAX_CAMERA_SIDE).any(axis=1) | (area > limits.MAX_CAMERA_PIXELS)
     refuse("sizes", bad, "has an impossible size")

@@ -130,10 +130,8 @@ def read_planes(
         FormatError: `plane-*`, `decoded-size`, `weights-*`, `picture-*`, `codec-unknown`, `view-*`.
     """
     rows = 0 if cameras is None else cameras.encoded * times
-    planes = tuple(
-        _read_plane(document, plane, index, rows, findings)
-        for index, plane in enumerate(entry.items(limits.MAX_PLANES, 1))
-    )
+    entries = enumerate(entry.items(limits.MAX_PLANES, 1))
+    planes = tuple(_read_plane(document, plane, index, rows, findings) for index, plane in entries)
     count = sum(basis.count for plane in planes for basis in plane.bases)
     if count > limits.MAX_COMPONENTS:
         entry.fail("plane-components", f"{count} eigen textures, {limits.MAX_COMPONENTS} are allowed")
@@ -210,9 +208,9 @@ def _region(entry: Value, size: tuple[int, int]) -> tuple[tuple[int, int] | None
     if not entry.has("grid"):
         return None, (0, 0)
     columns, rows = (item.integer(1, limits.MAX_SIDE) for item in entry["grid"].items(2, 2))
-    column, row = (
-        (item.integer(0, limits.MAX_SIDE) for item in entry["corner"].items(2, 2)) if entry.has("corner") else (0, 0)
-    )
+    column, row = 0, 0
+    if entry.has("corner"):
+        column, row = (item.integer(0, limits.MAX_SIDE) for item in entry["corner"].items(2, 2))
     if column + size[0] > columns or row + size[1] > rows:
         entry["grid"].fail("basis-region", f"{size[0]}x{size[1]} at {column}, {row} leaves a grid of {columns}x{rows}")
     return (rows, columns), (row, column)
@@ -250,16 +248,13 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
 def _picture(
     document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int
 ) -> PictureLayout:
-    data, bits = (
-        document.data(entry["bufferView"]),
-        entry["bits"].integer(8, PICTURE_MAX_BITS) if entry.has("bits") else 8,
-    )
+    data = document.data(entry["bufferView"])
+    bits = entry["bits"].integer(8, PICTURE_MAX_BITS) if entry.has("bits") else 8
     usual = _codec_of(entry, bits)
     codec = codec_named(entry, place) or usual
     if (PICTURES[codec].mime, PICTURES[codec].bits) != (PICTURES[usual].mime, bits):
-        entry["codec"].fail(
-            "picture-type", f"{codec} is no codec of {bits} bits in a picture of type {entry['mimeType'].value}"
-        )
+        mime = entry["mimeType"].value
+        entry["codec"].fail("picture-type", f"{codec} is no codec of {bits} bits in a picture of type {mime}")
     affine = None
     if place != "mean" or PICTURES[codec].bits != 8 or entry.has("scale") or entry.has("zero"):
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
@@ -314,10 +309,7 @@ def read_matrix(entry: Value, planes: tuple[PlaneLayout, ...] | None) -> NDArray
 
 
 def check_colours(
-    entry: Value,
-    cameras: CameraList | None,
-    planes: tuple[PlaneLayout, ...] | None,
-    to_rgb: NDArray[np.float32] | None,
+    entry: Value, cameras: CameraList | None, planes: tuple[PlaneLayout, ...] | None, to_rgb: NDArray[np.float32] | None
 ) -> None:
     """Check that colours of cameras are those of R, G and B.
 

@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.coding import limits
-from eigenfield.coding.pictures.precision import spread_precision
-from eigenfield.coding.pictures.quantise import mean_values
+from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import (
@@ -57,16 +56,12 @@ def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         ) from error
 
 
-def open_layout(path: Path) -> tuple[Document, FileLayout]:
-    """Container and checked layout, pictures not decoded.
+def layout_of(data: bytes) -> tuple[Document, FileLayout]:
+    """Container and checked layout of a file of these bytes, pictures not decoded.
 
     Raises:
         FormatError: As `load`.
     """
-    return _layout_of(read_file(path))
-
-
-def _layout_of(data: bytes) -> tuple[Document, FileLayout]:
     document = Document(parse_glb(data))
     layout = read_layout(document, Findings(strict=True))
     assert layout is not None
@@ -107,7 +102,7 @@ def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
 
 
 def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
-    document, layout = _layout_of(data)
+    document, layout = layout_of(data)
     bases = [basis for plane in layout.planes or () for basis in plane.bases]
     if layout.lost:
         found = sum(basis.count for basis in bases)
@@ -131,29 +126,21 @@ def _preview(document: Document, layout: FileLayout) -> Payload | None:
 
 
 def _scene(layout: FileLayout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
-    assert layout.mesh is not None and layout.cameras is not None and layout.view_plane is not None
+    mesh, given, view_plane = layout.mesh, layout.cameras, layout.view_plane
+    assert mesh is not None and given is not None and view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
     payloads = Payloads.merge(plane.payloads for plane in planes)
     if layout.mesh_payload is not None:
-        payloads |= {mesh_key(layout.mesh): [layout.mesh_payload]}
-    if layout.cameras.payload is not None:
-        payloads |= {cameras_key(layout.cameras.cameras): [layout.cameras.payload]}
+        payloads |= {mesh_key(mesh): [layout.mesh_payload]}
+    if given.payload is not None:
+        payloads |= {cameras_key(given.cameras): [given.payload]}
     if planes and preview is not None:
         means = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
-        payloads |= {preview_key(means, layout.to_rgb, layout.cameras.colours is not None): [preview]}
+        payloads |= {preview_key(means, layout.to_rgb, given.colours is not None): [preview]}
     return EncodedScene(
-        proxy=Proxy(mesh=layout.mesh),
-        rig=Rig(
-            names=layout.cameras.names,
-            cameras=layout.cameras.cameras,
-            held_out=layout.cameras.held_out,
-            reference=layout.reference,
-            view_plane=layout.view_plane,
-            triangles=layout.triangles,
-        ),
-        appearance=Appearance(
-            planes=tuple(plane.value for plane in planes), colours=layout.cameras.colours, to_rgb=layout.to_rgb
-        ),
+        proxy=Proxy(mesh),
+        rig=Rig(given.names, given.cameras, given.held_out, layout.reference, view_plane, layout.triangles),
+        appearance=Appearance(tuple(plane.value for plane in planes), layout.to_rgb, given.colours),
         settings=layout.settings,
         scores=layout.scores,
         generator=layout.generator,
@@ -266,7 +253,7 @@ def _check_bounds(document: Document, layout: FileLayout, findings: Findings) ->
         accessor = document.root["accessors"].at(position.integer(0, 2**31))
         shown = read_mesh(document).vertices  # of a coded mesh the coarse one
         for key, found in (("min", shown.min(axis=0)), ("max", shown.max(axis=0))):
-            stated = np.array(accessor[key].numbers(3), np.float32)
+            stated = np.array([item.number() for item in accessor[key].items(3, 3)], np.float32)
             if not np.array_equal(stated, found):
                 findings.note("warning", "mesh-bounds", f"{accessor.where}/{key}", "is not the bound of the vertices")
 

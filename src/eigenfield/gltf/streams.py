@@ -82,12 +82,8 @@ def codec_named(entry: Value, place: str) -> str | None:
         return PLACES[place].codec
     name, kind = entry["codec"].text(), PLACES[place].kind
     if name not in CODECS or CODECS[name].kind != kind:
-        raise FormatError(
-            "codec-unknown",
-            f"no codec of a {kind} stream is called {quote(name)} here",
-            where=entry["codec"].where,
-            remedy="use a later eigenfield",
-        )
+        message = f"no codec of a {kind} stream is called {quote(name)} here"
+        entry["codec"].fail("codec-unknown", message, "use a later eigenfield")
     return name
 
 

@@ -96,8 +96,8 @@ class Value:
     value: Any
     where: str = ""
 
-    def fail(self, code: str, message: str) -> NoReturn:
-        raise FormatError(code, message, where=self.where or "/")
+    def fail(self, code: str, message: str, remedy: str | None = None) -> NoReturn:
+        raise FormatError(code, message, where=self.where or "/", remedy=remedy)
 
     def _expect(self, kind: type | tuple[type, ...], words: str) -> Any:
         if not isinstance(self.value, kind) or (isinstance(self.value, bool) and kind is not bool):
@@ -149,9 +149,6 @@ class Value:
         if not abs(found) <= largest:
             self.fail("json-value", f"{found} is larger than {largest:g}")
         return found
-
-    def numbers(self, count: int) -> list[float]:
-        return [item.number() for item in self.items(count, count)]
 
     def text(self, most: int = limits.MAX_NAME) -> str:
         found: str = self._expect(str, "a string")

@@ -105,12 +105,8 @@ def _blocks(
     gltf = _gltf(scene, buffer, coded, cached)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
-        raise OutputError(
-            "scene-limit",
-            f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed",
-            path=path,
-            remedy="store less in it",
-        )
+        message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
+        raise OutputError("scene-limit", message, path=path, remedy="store less in it")
     head = file_head(text, CHUNK.size + buffer.length, path)
     binary = b"".join(buffer.parts)
     check_readable(text, binary)
@@ -194,10 +190,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         "materials": [
             {
                 "name": "mean",
-                "pbrMetallicRoughness": {
-                    "baseColorTexture": {"index": 0},
-                    "metallicFactor": 0.0,
-                },
+                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
                 "extensions": {"KHR_materials_unlit": {}},
                 "doubleSided": True,
             }
@@ -301,12 +294,9 @@ def _plane(
 
 
 def _precision(picture: Payload, buffer: Buffer) -> dict[str, Any]:
-    size = dimensions(memoryview(picture.data), picture.codec, "precision")
-    return {
-        "bufferView": buffer.shared_stream(picture, "precision"),
-        "size": list(size),
-        **codec_entry(picture.codec, "precision"),
-    }
+    size = list(dimensions(memoryview(picture.data), picture.codec, "precision"))
+    entry = {"bufferView": buffer.shared_stream(picture, "precision"), "size": size}
+    return entry | codec_entry(picture.codec, "precision")
 
 
 def _textures(entries: list[dict[str, Any]]) -> dict[str, Any]:
@@ -415,15 +405,8 @@ def _encode_at(place: str, value: Any) -> Payload | None:
 def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     """short: whether the triangles may be coded, which readers of 1.1 do not know."""
     plane = scene.rig.view_plane
-    made: dict[str, Any] = {
-        name: (np.asarray(value, np.float64) + 0.0).tolist()  # + 0.0: no minus zero in the file
-        for name, value in (
-            ("origin", plane.origin),
-            ("right", plane.right),
-            ("up", plane.up),
-            ("extent", plane.extent),
-        )
-    }
+    numbers = {"origin": plane.origin, "right": plane.right, "up": plane.up, "extent": plane.extent}
+    made: dict[str, Any] = {name: (value + 0.0).tolist() for name, value in numbers.items()}  # + 0.0: no minus zero
     if len(scene.rig.triangles):
         stream = _encode_at("triangles", scene.rig.triangles) if short else None
         if stream is not None:
@@ -443,12 +426,9 @@ def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     turn = capture_to_gltf(scene.rig.view_plane)
     perspective, axes = opening_view(camera, scene.proxy.mesh)
     proxy = {"name": "proxy", "mesh": 0, **_node_rotation(turn)}
-    place = _decimals(turn @ camera.centre)
+    view = {"name": "reference camera", "camera": 0, "translation": _decimals(turn @ camera.centre)}
     perspective = dict(zip(perspective, _decimals(perspective.values()), strict=True))
-    return perspective, [
-        proxy,
-        {"name": "reference camera", "camera": 0, "translation": place, **_node_rotation(turn @ axes)},
-    ]
+    return perspective, [proxy, view | _node_rotation(turn @ axes)]
 
 
 def _node_rotation(rotation: NDArray[np.float64]) -> dict[str, list[float]]:

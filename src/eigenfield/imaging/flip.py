@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.imaging.colour import linear_of_srgb
-from eigenfield.imaging.metrics import PictureArray, bounding_slices, to_codes
+from eigenfield.imaging.metrics import PictureArray, bounding_slices, code_pair
 from eigenfield.runtime.parallel import pieces
 
 
@@ -41,7 +41,6 @@ class FlipTuning:
         knee_difference_fraction: p_c, of the greatest colour difference.
         knee_error_fraction: p_t, the error at p_c, of the greatest error.
         detector_degrees: w, the width of edge and point detectors.
-        feature_power: q_f.
     """
 
     pixels_per_degree: float = 67.0
@@ -54,7 +53,6 @@ class FlipTuning:
     knee_difference_fraction: float = 0.4
     knee_error_fraction: float = 0.95
     detector_degrees: float = 0.082
-    feature_power: float = 0.5
 
 
 FLIP_TUNING = FlipTuning()
@@ -85,7 +83,7 @@ def flip(drawn: PictureArray, photograph: PictureArray, covered: NDArray[np.bool
         photograph: (H, W, 3).
         covered: (H, W) the pixels that count; None: all.
     """
-    a, b = _code_pair(drawn, photograph)
+    a, b = code_pair(drawn, photograph)
     if covered is None:
         return float(flip_map(a, b).mean(dtype=np.float64))
     rows, columns = bounding_slices(covered)
@@ -98,13 +96,8 @@ def flip(drawn: PictureArray, photograph: PictureArray, covered: NDArray[np.bool
 
 def flip_map(drawn: PictureArray, photograph: PictureArray) -> Channel:
     """(H, W) float32, 0..1: the FLIP difference of each pixel. Past its border a picture is continued by its edge."""
-    a, b = _code_pair(drawn, photograph)
+    a, b = code_pair(drawn, photograph)
     return _map_region(a, b, slice(0, a.shape[0]), slice(0, a.shape[1]))
-
-
-def _code_pair(drawn: PictureArray, photograph: PictureArray) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
-    assert drawn.shape == photograph.shape and drawn.shape[2:] == (3,), (drawn.shape, photograph.shape)
-    return to_codes(drawn), to_codes(photograph)
 
 
 def _map_region(a: NDArray[np.uint8], b: NDArray[np.uint8], rows: slice, columns: slice) -> Channel:
@@ -185,8 +178,7 @@ def _features(luminance: Channel) -> list[Channel]:
 
 
 def _feature_difference(a: list[Channel], b: list[Channel]) -> Channel:
-    """Equation 8: the greater of the two differences in strength, over √2, to the power q_f, which is a root."""
-    assert FLIP_TUNING.feature_power == 0.5
+    """Equation 8: the greater of the two differences in strength, over √2, to the power q_f = 1/2."""
     edge, point = (cv2.absdiff(x, y) for x, y in zip(a, b, strict=True))
     return np.asarray(cv2.sqrt(cv2.max(edge, point) * np.float32(math.sqrt(0.5))), np.float32)
 
@@ -231,11 +223,6 @@ def _make_detectors() -> tuple[FilterKernel, FilterKernel, FilterKernel]:
     return smooth, edge, point
 
 
-def _linear_codes() -> NDArray[np.float32]:
-    """(1, 256): linear light of each 8-bit sRGB code."""
-    return linear_of_srgb(np.arange(256) / 255).astype(np.float32)[None]
-
-
 def _max_colour_difference() -> float:
     """The greatest colour difference there is, of pure green and pure blue, to the power q_c."""
     green, blue = (_hunt_lab((FLIP_RGB_TO_WHITE @ axis)[None, None].astype(np.float32)) for axis in np.eye(3)[1:])
@@ -251,5 +238,5 @@ FLIP_LUMINANCE_FILTER, FLIP_RED_GREEN_FILTER, FLIP_BLUE_YELLOW_FILTER = (
 )
 FLIP_DETECTOR_SMOOTH, FLIP_EDGE_DETECTOR, FLIP_POINT_DETECTOR = _make_detectors()
 FLIP_MARGIN_PIXELS = max(FLIP_RADIUS_PIXELS, len(FLIP_DETECTOR_SMOOTH) // 2)
-FLIP_LINEAR_CODES = _linear_codes()
+FLIP_LINEAR_CODES = linear_of_srgb(np.arange(256) / 255).astype(np.float32)[None]  # (1, 256), of 8-bit sRGB
 FLIP_MAX_COLOUR_DIFFERENCE = _max_colour_difference()

@@ -49,7 +49,7 @@ def edge_links(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.
     return order[same + 1] // 3, order[same] // 3
 
 
-def face_edges(faces: NDArray[np.int32]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def face_edges(faces: Indices) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The edges of triangles (m, 3): edge k of triangle f, from corner k to the next, is number 3 f + k.
 
     Returns:

@@ -38,13 +38,13 @@ def psnr(drawn: PictureArray, photograph: PictureArray, covered: NDArray[np.bool
 
     At most PSNR_MAX_DECIBELS. None where no pixel is covered.
     """
-    a, b = _code_pair(drawn, photograph)
+    a, b = code_pair(drawn, photograph)
     return _decibels(_sum_squares(a, b, covered), _count_pixels(a, covered) * a.shape[2])
 
 
 def psnr_luma(drawn: PictureArray, photograph: PictureArray, covered: NDArray[np.bool_] | None = None) -> float | None:
     """PSNR of Y' = 0.2126 R + 0.7152 G + 0.0722 B of the rounded pictures; Y' itself is not rounded again."""
-    a, b = _code_pair(drawn, photograph)
+    a, b = code_pair(drawn, photograph)
     difference = cv2.subtract(a, b, dtype=cv2.CV_32F)
     luma = cv2.transform(np.asarray(difference), np.array([LUMA_BT709], np.float32))
     return _decibels(_sum_squares(np.asarray(luma), np.zeros_like(luma), covered), _count_pixels(a, covered))
@@ -59,7 +59,7 @@ def ssim(drawn: PictureArray, photograph: PictureArray, covered: NDArray[np.bool
     windows reach over the border, are left out of the average, as in Wang's program and scikit-image. Sums are float32:
     within 1e-6 of scikit-image's on photographs, 2e-5 on flat, bright pictures.
     """
-    a, b = _code_pair(drawn, photograph)
+    a, b = code_pair(drawn, photograph)
     height, width = a.shape[:2]
     if covered is None:
         covered = np.zeros((height, width), bool)
@@ -126,7 +126,8 @@ def _count_pixels(picture: PictureArray, covered: NDArray[np.bool_] | None) -> i
     return int(picture.shape[0] * picture.shape[1] if covered is None else np.count_nonzero(covered))
 
 
-def _code_pair(drawn: PictureArray, photograph: PictureArray) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+def code_pair(drawn: PictureArray, photograph: PictureArray) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """Both pictures as `to_codes`, which must have the same shape (H, W, C)."""
     assert drawn.shape == photograph.shape and drawn.ndim == 3, (drawn.shape, photograph.shape)
     return to_codes(drawn), to_codes(photograph)
 

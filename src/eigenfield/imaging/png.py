@@ -6,10 +6,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.imaging.metrics import to_codes
+
 
 def png_bytes(picture: NDArray[np.float32] | NDArray[np.uint8]) -> bytes:
     """An (H, W), (H, W, 1) or (H, W, 3) picture, float 0..1 or uint8, as 8-bit PNG."""
-    codes = picture if picture.dtype == np.uint8 else np.clip(np.rint(picture * 255), 0, 255).astype(np.uint8)
+    codes = to_codes(picture)
     ok, data = cv2.imencode(".png", codes[..., ::-1] if codes.ndim == 3 and codes.shape[2] == 3 else codes)
     assert ok
     return data.tobytes()

@@ -27,6 +27,8 @@ RASTER_EDGE_SLACK_FRACTION = 1e-7  # of the sum of edge functions: a centre on a
 RASTER_BOUND_SLACK_PIXELS = 1e-6  # by which a bounding box is widened
 RASTER_FAR_PIXELS = 1e30  # the end of a span that an edge does not bound
 
+Band = tuple[tuple[int, int], NDArray[np.int32]]  # rows [first, last), and the triangles that they show
+
 
 @dataclass(frozen=True, eq=False)
 class Raster:
@@ -132,10 +134,8 @@ def bound_faces(corners, pixels, faces, edges, width, height, slack, first, last
                 x0, x1, x2 = pixels[i, 0], pixels[j, 0], pixels[k, 0]
                 y0, y1, y2 = pixels[i, 1], pixels[j, 1], pixels[k, 1]
                 top, bottom = clamped_ceil(min(y0, y1, y2) - more, rows), clamped_floor(max(y0, y1, y2) + more, rows)
-                left, right = (
-                    clamped_ceil(min(x0, x1, x2) - more, columns),
-                    clamped_floor(max(x0, x1, x2) + more, columns),
-                )
+                left = clamped_ceil(min(x0, x1, x2) - more, columns)
+                right = clamped_floor(max(x0, x1, x2) + more, columns)
                 if (top >= bottom) | (left >= right):
                     top, bottom, left, right = np.int32(0), np.int32(0), np.int32(0), np.int32(0)
             else:
@@ -258,25 +258,52 @@ def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int
     """
     edges, pixels = np.empty((len(faces), 3, 3)), np.empty((len(corners), 2))
     bounds = np.empty((len(faces), 4), np.int32)
+    face, inverse_depth = np.empty((height, width), np.int32), np.empty((height, width), np.float32)
+
+    def draw(band: Band) -> None:
+        rows, triangles = band
+        draw_band(edges, bounds, triangles, *rows, RASTER_EDGE_SLACK_FRACTION, face, inverse_depth)
+
+    parallel_map(draw, set_up_bands(corners, faces, width, height, edges, pixels, bounds))
+    return Raster(face, inverse_depth, edges)
+
+
+def set_up_bands(
+    corners: NDArray[np.float64],
+    faces: NDArray[np.int32],
+    width: int,
+    height: int,
+    edges: NDArray[np.float64],
+    pixels: NDArray[np.float64],
+    bounds: NDArray[np.int32],
+    slack: float = 0.0,
+) -> list[Band]:
+    """Compute the edge functions and bounds of triangles, and sort them into bands of rows.
+
+    Args:
+        corners: (n, 3) homogeneous pixels.
+        faces: (m, 3) indices of corners.
+        width: Of the picture, pixels.
+        height: Likewise.
+        edges: (m, 3, 3), written.
+        pixels: (n, 2) of `project_corners`, written.
+        bounds: (m, 4) of `bound_faces`, written.
+        slack: Pixels by which bounds are widened, for samples beside the middles of pixels.
+
+    Returns:
+        For each band its triangles in rising order.
+    """
     project_corners(corners, pixels)
 
     def set_up(part: tuple[int, int]) -> None:
         edge_functions(corners, faces, *part, edges)
-        bound_faces(corners, pixels, faces, edges, width, height, RASTER_BOUND_SLACK_PIXELS, *part, bounds)
+        bound_faces(corners, pixels, faces, edges, width, height, RASTER_BOUND_SLACK_PIXELS + slack, *part, bounds)
 
     parallel_map(set_up, pieces(len(faces), RASTER_SET_UP_TRIANGLES))
     bands = pieces(height, RASTER_BAND_ROWS)
     starts = np.empty(len(bands) + 1, np.int64)
     listing = sort_into_bands(bounds, RASTER_BAND_ROWS, starts)
-    face = np.empty((height, width), np.int32)
-    inverse_depth = np.empty((height, width), np.float32)
-
-    def draw(band: int) -> None:
-        part = listing[starts[band] : starts[band + 1]]
-        draw_band(edges, bounds, part, *bands[band], RASTER_EDGE_SLACK_FRACTION, face, inverse_depth)
-
-    parallel_map(draw, range(len(bands)))
-    return Raster(face, inverse_depth, edges)
+    return [(rows, listing[starts[band] : starts[band + 1]]) for band, rows in enumerate(bands)]
 
 
 def rasterise_view(mesh: Mesh, camera: Camera) -> Raster:

@@ -1,12 +1,14 @@
-"""Many pictures of a scene with the same options, as files need them: bytes of a PNG, or RGB for a video."""
+"""Many pictures of a scene with the same options, as files need them, and a flight as a video or numbered pictures."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from fractions import Fraction
 from functools import cached_property
-from typing import Any, TypeVar
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +17,14 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
+from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.opengl.renderer import OpenGLRenderer
 from eigenfield.rendering.picture import Picture
 from eigenfield.rendering.software.renderer import at_resolution, renderer_of, viewpoint
+from eigenfield.rendering.video import write_video
 from eigenfield.rendering.weights import ViewWeights
+from eigenfield.runtime.files import atomic_files, is_numbered, numbered_files, refuse_existing
 from eigenfield.runtime.parallel import parallel_stream
 
 RENDERERS = ("software", "opengl")
@@ -119,8 +124,7 @@ class RenderJob:
             return picture.to_uint8()
         part = picture.coverage[..., None]
         straight = np.divide(picture.image, part, out=np.zeros_like(picture.image), where=part > 0)
-        values: NDArray[Any] = np.concatenate([straight, part], axis=2)
-        return np.clip(np.rint(values * np.float32(255)), 0, 255).astype(np.uint8)
+        return to_codes(np.concatenate([straight, part], axis=2))
 
     def png(self, camera: Camera, weights: ViewWeights, colour: NDArray[np.float32] | None = None) -> bytes:
         """The bytes of a .png.
@@ -132,25 +136,21 @@ class RenderJob:
         """
         return png(self.pixels(camera, weights, colour))
 
-    def pngs_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[bytes]:
-        """The bytes of a .png for each viewpoint.
+    def along(
+        self,
+        draw: Callable[[Camera, ViewWeights], Drawn],
+        points: NDArray[np.float64],
+        progress: Progress | None = None,
+    ) -> Iterator[Drawn]:
+        """draw(camera, weights) for each viewpoint, in order.
 
         Args:
+            draw: A method such as `png`.
             points: (n, 2) viewpoints.
             progress: Reports each picture.
         """
-        drawn = self.each(lambda view: self.png(*view), self._views(points))
-        return track(drawn, "drawing", len(points), progress)
-
-    def video_along(self, points: NDArray[np.float64], progress: Progress | None = None) -> Iterator[NDArray[np.uint8]]:
-        """(H, W, 3) uint8 for each viewpoint.
-
-        Args:
-            points: (n, 2) viewpoints.
-            progress: Reports each picture.
-        """
-        drawn = self.each(lambda view: self.rgb(*view), self._views(points))
-        return track(drawn, "drawing", len(points), progress)
+        views = (viewpoint(self.scene, at=(float(x), float(y)), weights=self.weights) for x, y in points)
+        return track(self.each(lambda view: draw(*view), views), "drawing", len(points), progress)
 
     def each(self, draw: Callable[[Item], Drawn], items: Iterable[Item]) -> Iterator[Drawn]:
         """draw(item) for each item, in order; in several threads where the renderer allows it.
@@ -160,10 +160,6 @@ class RenderJob:
             items: What is drawn.
         """
         return map(draw, items) if self.renderer == "opengl" else parallel_stream(draw, items)
-
-    def _views(self, points: NDArray[np.float64]) -> Iterator[tuple[Camera, ViewWeights]]:
-        for x, y in points:
-            yield viewpoint(self.scene, at=(float(x), float(y)), weights=self.weights)
 
     @cached_property
     def _opengl(self) -> OpenGLRenderer:
@@ -195,8 +191,51 @@ def refuse_attributes(channels: int) -> None:
         OptionError: `not-a-picture`: neither 1 nor 3.
     """
     if channels not in (1, 3):
-        raise OptionError(
-            "not-a-picture",
-            f"the scene has {channels} channels, which make no picture",
-            remedy="draw it with eigenfield.render from Python, which returns arrays",
-        )
+        remedy = "draw it with eigenfield.render from Python, which returns arrays"
+        raise OptionError("not-a-picture", f"the scene has {channels} channels, which make no picture", remedy=remedy)
+
+
+def write_flight(
+    job: RenderJob,
+    points: NDArray[np.float64],
+    output: Path,
+    fps: Fraction,
+    *,
+    overwrite: bool = False,
+    progress: Progress | None = None,
+) -> None:
+    """Draw viewpoints into a video, or into a .png each. All files appear at the end, or none.
+
+    Args:
+        job: What is drawn, and how.
+        points: (n, 2) viewpoints.
+        output: An .mp4, or a .png whose name has a %04d.
+        fps: Pictures a second of the video.
+        overwrite: Whether existing files are replaced.
+        progress: Reports each picture.
+
+    Raises:
+        OptionError: As `Renderer.draw`.
+        OutputError: A file cannot be written.
+    """
+    if not is_numbered(output):
+        write_video(output, job.along(job.rgb, points, progress), fps, overwrite=overwrite)
+        return
+    with atomic_files(numbered_files(output, len(points)), overwrite=overwrite) as places:
+        for place, data in zip(places, job.along(job.png, points, progress), strict=True):
+            place.write_bytes(data)
+
+
+def refuse_flight(output: Path, count: int, overwrite: bool) -> None:
+    """Before any work: check that all files may be written.
+
+    Args:
+        output: As of `write_flight`.
+        count: Number of pictures.
+        overwrite: Whether existing files may be replaced.
+
+    Raises:
+        OutputError: One of the files may not or cannot be written.
+    """
+    for path in numbered_files(output, count) if is_numbered(output) else [output]:
+        refuse_existing(path, overwrite)

@@ -14,11 +14,8 @@ from eigenfield.runtime.files import atomic_writer
 
 VIDEO_CRF = 16  # x264's constant rate factor: visually lossless
 VIDEO_ENCODER_THREADS = 2  # fixed: x264's bytes depend on it
-VIDEO_ENCODER_OPTIONS = {
-    "crf": str(VIDEO_CRF),
-    "preset": "medium",
-    "x264-params": "mbtree=0",
-}  # with it, bytes vary between runs
+# With x264's mbtree, bytes vary between runs
+VIDEO_ENCODER_OPTIONS = {"crf": str(VIDEO_CRF), "preset": "medium", "x264-params": "mbtree=0"}
 VIDEO_BT709, VIDEO_LIMITED_RANGE = 1, 1  # as libavutil numbers them
 
 
@@ -50,7 +47,7 @@ def write_video(path: Path, pictures: Iterable[NDArray[np.uint8]], fps: Fraction
                 context.thread_count = VIDEO_ENCODER_THREADS
                 context.color_primaries = context.color_trc = context.colorspace = VIDEO_BT709
                 context.color_range = VIDEO_LIMITED_RANGE
-            stacked = np.concatenate([planes[0].reshape(-1), planes[1].reshape(-1), planes[2].reshape(-1)])
+            stacked = np.concatenate([plane.reshape(-1) for plane in planes])
             frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
             frame.color_primaries = frame.color_trc = frame.colorspace = VIDEO_BT709
             frame.color_range = VIDEO_LIMITED_RANGE
@@ -73,11 +70,8 @@ def yuv420(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], NDArray[np.ui
     rgb = padded.astype(np.float32) / np.float32(255)
     luma = rgb @ np.array(LUMA_BT709, np.float32)
     cb, cr = (rgb[..., 2] - luma) / np.float32(1.8556), (rgb[..., 0] - luma) / np.float32(1.5748)
-    return (
-        _to_bytes(16 + 219 * luma),
-        _to_bytes(128 + 224 * _halve_chroma(cb)),
-        _to_bytes(128 + 224 * _halve_chroma(cr)),
-    )
+    blue, red = (_to_bytes(128 + 224 * _halve_chroma(plane)) for plane in (cb, cr))
+    return _to_bytes(16 + 219 * luma), blue, red
 
 
 def _halve_chroma(plane: NDArray[np.floating]) -> NDArray[np.floating]:

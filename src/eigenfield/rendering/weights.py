@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import signed_areas
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import find_grid
 
@@ -48,17 +49,6 @@ class ViewWeights:
             row: Its row.
         """
         return cls(np.array([row]), np.ones(1))
-
-    @classmethod
-    def from_dense(cls, weights: ArrayLike) -> ViewWeights:
-        """Those of an array that are not 0.
-
-        Args:
-            weights: (No,) a weight for each observation.
-        """
-        dense = np.asarray(weights, np.float64)
-        rows = np.flatnonzero(dense)
-        return cls(rows, dense[rows])
 
     def dense(self, observations: int) -> NDArray[np.float64]:
         """(No,) a weight for each observation.
@@ -128,7 +118,7 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse
     if not (np.isfinite(x) and np.isfinite(y)):
         raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
     point = np.clip([x, y], -1.0, 1.0)
-    places = _coordinates(scene)
+    places = encoded_coordinates(scene)
     if scene.rig.view_plane.is_line:
         point[1] = 0.0
     if mode == "delaunay":
@@ -186,23 +176,24 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
     return np.ascontiguousarray(triangles[_area(points[triangles]) > WEIGHTS_FLAT_RATIO])
 
 
-def _coordinates(scene: Scene) -> NDArray[np.float64]:
-    """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene."""
+def encoded_coordinates(scene: Scene) -> NDArray[np.float64]:
+    """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene.
+
+    Args:
+        scene: The scene.
+    """
 
     def make() -> NDArray[np.float64]:
-        return scene.rig.view_plane.coordinates(
-            np.array([scene.rig.cameras[index].centre for index in scene.rig.encoded])
-        )
+        return scene.rig.view_plane.coordinates([camera.centre for camera in scene.rig.encoded_cameras])
 
     return scene.derive("view-plane coordinates", make)
 
 
 def _area(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(T,) twice the area of (T, 3, 2) triangles over their longest side squared."""
-    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    longest = np.maximum(np.maximum((a**2).sum(1), (b**2).sum(1)), ((a - b) ** 2).sum(1))
-    cross = np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0])
-    return np.divide(cross, longest, out=np.zeros(len(cross)), where=longest > 0)
+    longest = np.square(corners - np.roll(corners, 1, axis=1)).sum(axis=2).max(axis=1)
+    double = 2 * np.abs(signed_areas(corners))
+    return np.divide(double, longest, out=np.zeros(len(corners)), where=longest > 0)
 
 
 def _barycentric(point: NDArray[np.float64], corners: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -19,6 +19,7 @@ from eigenfield.core.errors import OutputError
 
 _NUMBER_PLACE = re.compile(r"%0?\d{0,2}d")
 _DISK_FULL_ERRORS = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+_NOT_WRITABLE_ERRORS = PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError
 
 
 @contextlib.contextmanager
@@ -28,19 +29,11 @@ def output_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         yield
     except OSError as error:
         if error.errno in _DISK_FULL_ERRORS:
-            raise OutputError(
-                "disk-full", "no room left on the disk", path=path, remedy="free some or write elsewhere"
-            ) from error
-        if (
-            isinstance(error, (PermissionError, NotADirectoryError, IsADirectoryError, FileNotFoundError))
-            or error.errno == errno.EROFS
-        ):
-            raise OutputError(
-                "not-writable",
-                error.strerror or "cannot be written",
-                path=path,
-                remedy="name a place that can be written",
-            ) from error
+            message, remedy = "no room left on the disk", "free some or write elsewhere"
+            raise OutputError("disk-full", message, path=path, remedy=remedy) from error
+        if isinstance(error, _NOT_WRITABLE_ERRORS) or error.errno == errno.EROFS:
+            message, remedy = error.strerror or "cannot be written", "name a place that can be written"
+            raise OutputError("not-writable", message, path=path, remedy=remedy) from error
         raise
 
 

@@ -17,18 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
 from eigenfield.coding import limits
-from eigenfield.coding.arrays.grid import checked_grid, read_grid, write_grid
-from eigenfield.coding.entropy.range_coder import (
-    check_end,
-    check_header,
-    check_numbers,
-    coded_bytes,
-    damaged_error,
-    decoder,
-    float32_numbers,
-    pad_bytes,
-)
-from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
+from eigenfield.coding.arrays.grid import checked_grid, read_grid
+from eigenfield.coding.entropy import range_coder
+from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_cells, code_lines
 from eigenfield.core.camera import Camera
 
 VERSION = 1
@@ -65,8 +56,6 @@ def code_cameras(
         raise ValueError("cameras are needed, and steps that are positive")
     count = len(cameras)
     cells = None if grid is None else checked_grid(grid, count)
-    if cells is not None and max(cells.shape) > 65535:
-        raise ValueError("a grid has at most 65535 rows and columns")
     turn = Rotation.from_matrix([camera.R for camera in cameras])
     first = turn[0].as_quat()
     numbers = np.zeros((count, CAMERA_NUMBERS))
@@ -90,14 +79,14 @@ def code_cameras(
     def stream(kind: int) -> bytes:
         def run(coder: Any) -> None:
             if cells is not None:
-                write_grid(coder, cells)
+                code_cells(coder, cells.reshape(-1).copy())
             code_lines(coder, whole.copy(), _before(kind, count))
 
         shape = (0, 0) if cells is None else cells.shape
         front = HEADER.pack(VERSION, kind, *shape, count, *steps, *first, *base)
         surface = b"" if cells is None else planes.astype("<f4").tobytes()
-        body = coded_bytes(run, CONTEXTS, MIXTURES, room=4 * CAMERA_NUMBERS * count + 1024)
-        return pad_bytes(front + surface + body, max(CAMERA_NUMBERS * count, 0 if cells is None else cells.size))
+        body = range_coder.coded_bytes(run, CONTEXTS, MIXTURES, room=4 * CAMERA_NUMBERS * count + 1024)
+        return range_coder.pad_bytes(front + surface + body, max(CAMERA_NUMBERS * count, shape[0] * shape[1]))
 
     kind = 0 if cells is None else ON_GRID
     data = min(stream(kind), stream(kind | FROM_BEFORE), key=len)
@@ -110,34 +99,33 @@ def decode_cameras(data: bytes, where: str = "cameras") -> tuple[NDArray[np.floa
     Raises:
         FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
     """
-    check_header(data, HEADER.size, VERSION, where)
+    range_coder.check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, *rest = HEADER.unpack_from(data)
     steps, first, base = np.array(rest[:3]), np.array(rest[3:7]), np.array(rest[7:])
     gridded = bool(kind & ON_GRID)
     if kind > 3 or count == 0 or not np.isfinite(rest).all():
-        raise damaged_error("cameras of an unknown kind, none, or not finite", where)
+        raise range_coder.damaged_error("cameras of an unknown kind, none, or not finite", where)
     if count > limits.MAX_CAMERAS or (gridded and rows * columns < count):
-        raise damaged_error("a number of cameras that cannot be", where)
-    check_numbers(
-        data, max(CAMERA_NUMBERS * count, rows * columns if gridded else 0), CAMERA_NUMBERS * limits.MAX_CAMERAS, where
-    )
+        raise range_coder.damaged_error("a number of cameras that cannot be", where)
+    size = max(CAMERA_NUMBERS * count, rows * columns if gridded else 0)
+    range_coder.check_numbers(data, size, CAMERA_NUMBERS * limits.MAX_CAMERAS, where)
     body = HEADER.size + (3 * CAMERA_NUMBERS * 4 if gridded else 0)
-    check_header(data, body, VERSION, where)
+    range_coder.check_header(data, body, VERSION, where)
     planes = np.zeros((3, CAMERA_NUMBERS))
     if gridded:
-        planes = float32_numbers(data, 3 * CAMERA_NUMBERS, HEADER.size).reshape(3, CAMERA_NUMBERS)
-    coder = decoder(data[body:], CONTEXTS, MIXTURES)
+        planes = range_coder.float32_numbers(data, 3 * CAMERA_NUMBERS, HEADER.size).reshape(3, CAMERA_NUMBERS)
+    coder = range_coder.decoder(data[body:], CONTEXTS, MIXTURES)
     cells = read_grid(coder, rows, columns, count, where) if gridded else None
     whole = np.zeros((count, CAMERA_NUMBERS), np.int64)
     code_lines(coder, whole, _before(kind, count))
-    check_end(coder, where)
+    range_coder.check_end(coder, where)
     order = np.arange(count) if cells is None else cells[cells >= 0]
     unit = np.repeat(steps, [5, 3, 3])
     with np.errstate(all="ignore"):
         numbers = whole[np.argsort(order)] * unit + _base(base) + _places(cells, count) @ planes
         intrinsics, poses = _assemble(numbers, first)
     if not (np.isfinite(intrinsics).all() and np.isfinite(poses).all()):
-        raise damaged_error("cameras that are not finite", where)
+        raise range_coder.damaged_error("cameras that are not finite", where)
     return intrinsics, poses
 
 

@@ -18,22 +18,16 @@ def checked_grid(grid: ArrayLike, cameras: int) -> NDArray[np.int64]:
         ValueError: It is anything else.
     """
     cells = np.asarray(grid, np.int64)
-    if (
-        cells.ndim != 2
-        or cells.min(initial=0) < -1
-        or not np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras))
-    ):
+    complete = np.array_equal(np.sort(cells[cells >= 0]), np.arange(cameras))
+    if cells.ndim != 2 or cells.min(initial=0) < -1 or not complete:
         raise ValueError("a grid has every camera once, and -1 where there is none")
+    if max(cells.shape) > 65535:
+        raise ValueError("a grid has at most 65535 rows and columns")
     return cells
 
 
-def write_grid(coder: Any, grid: NDArray[np.int64]) -> None:
-    """Code a checked grid."""
-    code_cells(coder, grid.reshape(-1).copy())
-
-
 def read_grid(coder: Any, rows: int, columns: int, cameras: int, where: str) -> NDArray[np.int64]:
-    """The grid of `cameras` cameras that `write_grid` coded.
+    """The grid of `cameras` cameras that `code_cells` coded.
 
     Raises:
         FormatError: `coded-damaged`, no such grid.

@@ -8,15 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.entropy.range_coder import (
-    check_end,
-    check_header,
-    check_numbers,
-    coded_bytes,
-    damaged_error,
-    decoder,
-    pad_bytes,
-)
+from eigenfield.coding.entropy import range_coder
 from eigenfield.coding.entropy.table_kernels import CONTEXTS, MIXTURES, code_lines
 
 VERSION = 1
@@ -34,10 +26,10 @@ def code_triangles(triangles: NDArray[np.int32]) -> bytes:
     """Triangles (T, 3), which a decoder finds sorted."""
     count = len(triangles)
     lines = _lines(sorted_triangles(triangles))
-    body = coded_bytes(
+    body = range_coder.coded_bytes(
         lambda coder: code_lines(coder, lines.copy(), np.arange(count) - 1), CONTEXTS, MIXTURES, room=4 * count + 256
     )
-    return pad_bytes(HEADER.pack(VERSION, count) + body, 3 * count)
+    return range_coder.pad_bytes(HEADER.pack(VERSION, count) + body, 3 * count)
 
 
 def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]:
@@ -46,16 +38,16 @@ def decode_triangles(data: bytes, where: str = "triangles") -> NDArray[np.int32]
     Raises:
         FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
     """
-    check_header(data, HEADER.size, VERSION, where)
+    range_coder.check_header(data, HEADER.size, VERSION, where)
     _, count = HEADER.unpack_from(data)
-    check_numbers(data, 3 * count, 6 * limits.MAX_CAMERAS, where)
-    coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
+    range_coder.check_numbers(data, 3 * count, 6 * limits.MAX_CAMERAS, where)
+    coder = range_coder.decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
     lines = np.zeros((count, 3), np.int64)
     code_lines(coder, lines, np.arange(count) - 1)
-    check_end(coder, where)
+    range_coder.check_end(coder, where)
     found = np.stack([lines[:, 0], lines[:, 0] + lines[:, 1], lines[:, 0] + lines[:, 2]], axis=1)
     if found.min(initial=0) < 0 or found.max(initial=0) >= limits.MAX_CAMERAS:
-        raise damaged_error("triangles of cameras that there cannot be", where)
+        raise range_coder.damaged_error("triangles of cameras that there cannot be", where)
     return found.astype(np.int32)
 
 

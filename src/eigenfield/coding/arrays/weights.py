@@ -15,27 +15,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.fft import dctn, idctn
 
 from eigenfield.coding import limits
-from eigenfield.coding.arrays.grid import checked_grid, read_grid, write_grid
-from eigenfield.coding.entropy.range_coder import (
-    check_end,
-    check_header,
-    check_numbers,
-    coded_bytes,
-    damaged_error,
-    decoder,
-    float32_numbers,
-    pad_bytes,
-)
+from eigenfield.coding.arrays.grid import checked_grid, read_grid
+from eigenfield.coding.entropy import range_coder
+from eigenfield.coding.entropy import table_kernels as tables
 from eigenfield.coding.entropy.range_kernels import AT, HIGH, LOW
-from eigenfield.coding.entropy.table_kernels import (
-    CONTEXTS,
-    FREQUENCIES,
-    MIXTURES,
-    SLOPES,
-    VALUES,
-    code_table,
-    code_way,
-)
 
 VERSION = 1
 HEADER = struct.Struct("<BBHHII")  # version, whether there is a grid, its rows and columns, cameras, components
@@ -43,7 +26,7 @@ WEIGHT_MAX_STEPS = 2**20  # steps
 
 
 def code_weights(
-    weights: NDArray[np.float32], step: ArrayLike, grid: ArrayLike | None = None, *, dead_zone: float = 0.0
+    weights: NDArray[np.float32], step: ArrayLike, grid: ArrayLike | None = None
 ) -> tuple[bytes, NDArray[np.float32]]:
     """The bytes, and the weights that they decode to.
 
@@ -51,7 +34,6 @@ def code_weights(
         weights: (Ne, N) float32.
         step: (N,) or one for all, positive: the weights, or their cosine transform, are off by at most half of it.
         grid: (rows, columns) camera indices, -1 where there is none; None where the cameras stand on no grid.
-        dead_zone: In steps, up to 0.5: numbers are rounded towards 0 by this much more; the error grows by as much.
 
     Raises:
         ValueError: Numbers beyond 2^20 steps, or not finite; steps that are not positive; no grid.
@@ -62,26 +44,28 @@ def code_weights(
         raise ValueError("weights and steps must be finite, steps positive")
     cells = None if grid is None else checked_grid(grid, count)
     rows, columns = (1, count) if cells is None else cells.shape
-    if max(rows, columns) > 65535 and cells is not None:
-        raise ValueError("a grid has at most 65535 rows and columns")
     result = np.zeros((count, components), np.float32)
 
     def run(coder: Any) -> None:
         if cells is not None:
-            write_grid(coder, cells)
+            tables.code_cells(coder, cells.reshape(-1).copy())
         before = _no_tables(rows, columns)
         for k in range(components):
-            scaled = np.zeros((rows, columns))
-            _put(scaled, cells, weights[:, k].astype(np.float64) / float(steps[k]))
-            way, table = _cheapest(coder, scaled, before, _ways(cells), dead_zone)
-            code_way(coder, way)
-            code_table(coder, table, before[way], way)
+            scaled, values = np.zeros((rows, columns)), weights[:, k].astype(np.float64) / float(steps[k])
+            if cells is None:
+                scaled[0] = values
+            else:
+                scaled[cells >= 0] = values[cells[cells >= 0]]
+            way, table = _cheapest(coder, scaled, before, _ways(cells))
+            tables.code_way(coder, way)
+            tables.code_table(coder, table, before[way], way)
             before[way] = table
             result[:, k] = _values(table, way, cells, float(steps[k]))
 
-    front = HEADER.pack(VERSION, int(cells is not None), *((0, 0) if cells is None else cells.shape), count, components)
-    body = coded_bytes(run, CONTEXTS, MIXTURES, room=2 * weights.size + rows * columns + 1024)
-    return pad_bytes(front + steps.astype("<f4").tobytes() + body, max(rows * columns, 1) * components), result
+    shape = (0, 0) if cells is None else cells.shape
+    front = HEADER.pack(VERSION, int(cells is not None), *shape, count, components) + steps.astype("<f4").tobytes()
+    body = range_coder.coded_bytes(run, tables.CONTEXTS, tables.MIXTURES, room=2 * weights.size + rows * columns + 1024)
+    return range_coder.pad_bytes(front + body, max(rows * columns, 1) * components), result
 
 
 def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
@@ -90,57 +74,51 @@ def decode_weights(data: bytes, where: str = "weights") -> NDArray[np.float32]:
     Raises:
         FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
     """
-    check_header(data, HEADER.size, VERSION, where)
+    range_coder.check_header(data, HEADER.size, VERSION, where)
     _, kind, rows, columns, count, components = HEADER.unpack_from(data)
     if kind > 1 or count == 0:
-        raise damaged_error("weights of no camera, or of an unknown kind", where)
+        raise range_coder.damaged_error("weights of no camera, or of an unknown kind", where)
     if kind == 0:
         rows, columns = 1, count
-    check_numbers(data, rows * columns * max(components, 1), limits.MAX_WEIGHTS, where)
+    range_coder.check_numbers(data, rows * columns * max(components, 1), limits.MAX_WEIGHTS, where)
     body = HEADER.size + 4 * components
-    check_header(data, body, VERSION, where)
-    steps = float32_numbers(data, components, HEADER.size)
+    range_coder.check_header(data, body, VERSION, where)
+    steps = range_coder.float32_numbers(data, components, HEADER.size)
     if not (np.isfinite(steps).all() and (steps > 0).all()) or rows * columns < count:
-        raise damaged_error("steps that are not positive, or a grid with too few cells", where)
-    coder = decoder(data[body:], CONTEXTS, MIXTURES)
+        raise range_coder.damaged_error("steps that are not positive, or a grid with too few cells", where)
+    coder = range_coder.decoder(data[body:], tables.CONTEXTS, tables.MIXTURES)
     cells = read_grid(coder, rows, columns, count, where) if kind == 1 else None
     result = np.zeros((count, components), np.float32)
     before = _no_tables(rows, columns)
     for k in range(components):
-        way = int(code_way(coder, 0))
+        way = int(tables.code_way(coder, 0))
         table = np.zeros((rows, columns), np.int64)
-        code_table(coder, table, before[way], way)
+        tables.code_table(coder, table, before[way], way)
         if way not in _ways(cells) or np.abs(table).max() > 4 * WEIGHT_MAX_STEPS * max(rows, columns):
-            raise damaged_error(f"numbers of component {k} that cannot be", where)
+            raise range_coder.damaged_error(f"numbers of component {k} that cannot be", where)
         before[way] = table
         with np.errstate(over="ignore", invalid="ignore"):
             result[:, k] = _values(table, way, cells, steps[k])
-        check_end(coder, where)
+        range_coder.check_end(coder, where)
     if not np.isfinite(result).all():
-        raise damaged_error("weights that are not finite", where)
+        raise range_coder.damaged_error("weights that are not finite", where)
     return result
 
 
 def _no_tables(rows: int, columns: int) -> list[NDArray[np.int64]]:
-    return [np.zeros((rows, columns), np.int64) for _ in (VALUES, SLOPES, FREQUENCIES)]
+    return [np.zeros((rows, columns), np.int64) for _ in (tables.VALUES, tables.SLOPES, tables.FREQUENCIES)]
 
 
 def _ways(cells: NDArray[np.int64] | None) -> tuple[int, ...]:
     """What may be tried: a transform needs a camera in every cell."""
-    return (VALUES, SLOPES) if cells is None or (cells < 0).any() else (VALUES, SLOPES, FREQUENCIES)
-
-
-def _put(table: NDArray[np.float64], cells: NDArray[np.int64] | None, values: NDArray[np.float64]) -> None:
-    if cells is None:
-        table[0] = values
-    else:
-        table[cells >= 0] = values[cells[cells >= 0]]
+    always = tables.VALUES, tables.SLOPES
+    return always if cells is None or (cells < 0).any() else (*always, tables.FREQUENCIES)
 
 
 def _values(table: NDArray[np.int64], way: int, cells: NDArray[np.int64] | None, step: float) -> NDArray[np.float32]:
     """(Ne,) the weights of a table."""
     numbers = table * step
-    if way == FREQUENCIES:
+    if way == tables.FREQUENCIES:
         numbers = idctn(numbers, norm="ortho")
     if cells is None:
         return numbers[0].astype(np.float32)
@@ -150,21 +128,21 @@ def _values(table: NDArray[np.int64], way: int, cells: NDArray[np.int64] | None,
 
 
 def _cheapest(
-    coder: Any, scaled: NDArray[np.float64], before: list[NDArray[np.int64]], ways: tuple[int, ...], dead_zone: float
+    coder: Any, scaled: NDArray[np.float64], before: list[NDArray[np.int64]], ways: tuple[int, ...]
 ) -> tuple[int, NDArray[np.int64]]:
     """The way of shortest code in the coder's present state, which is restored."""
     kept = [part.copy() for part in coder[1:]]
-    best, found = np.inf, (VALUES, np.zeros(scaled.shape, np.int64))
+    best, found = np.inf, (tables.VALUES, np.zeros(scaled.shape, np.int64))
     for way in ways:
-        exact = dctn(scaled, norm="ortho") if way == FREQUENCIES else scaled
-        table = np.sign(exact) * np.floor(np.abs(exact) + 0.5 - dead_zone)
+        exact = dctn(scaled, norm="ortho") if way == tables.FREQUENCIES else scaled
+        table = np.sign(exact) * np.floor(np.abs(exact) + 0.5)
         if np.abs(table).max(initial=0) > WEIGHT_MAX_STEPS:
-            if way == VALUES:
+            if way == tables.VALUES:
                 raise ValueError(f"weights of more than {WEIGHT_MAX_STEPS} steps")
             continue
         whole = table.astype(np.int64)
-        code_way(coder, way)
-        code_table(coder, whole, before[way], way)
+        tables.code_way(coder, way)
+        tables.code_table(coder, whole, before[way], way)
         bits = 8.0 * float(coder.state[AT]) - float(np.log2(coder.state[HIGH] - coder.state[LOW] + 1))
         if bits < best:
             best, found = bits, (way, whole)

@@ -21,28 +21,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
-from eigenfield.coding.entropy.range_coder import (
-    check_end,
-    check_header,
-    check_numbers,
-    coded_bytes,
-    damaged_error,
-    decoder,
-    pad_bytes,
-)
-from eigenfield.coding.mesh.charts import chart_kinds, mapped_texture
-from eigenfield.coding.mesh.corner_kernels import MAPPED, Corners, code_corners, corner_lists, new_vertices, no_corners
+from eigenfield.coding.entropy import range_coder
+from eigenfield.coding.mesh import corner_kernels
+from eigenfield.coding.mesh.corner_kernels import MAPPED, MIRRORED, code_corners, corner_lists
 from eigenfield.coding.mesh.face_kernels import Source, new_built, no_source, traverse
 from eigenfield.coding.mesh.front_kernels import new_front
 from eigenfield.coding.mesh.value_kernels import CONTEXTS, MIXTURES, code_depths, code_textures
 from eigenfield.core.lattice import Lattice
-from eigenfield.core.mesh import Mesh
+from eigenfield.core.mesh import Mesh, signed_areas
+from eigenfield.imaging.graph import vertex_components
 
 VERSION = 1
 HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
 MESH_MAX_STEPS = 2**20 - 1  # of lattice coordinates, either way
 MESH_MAX_FINE_DIGITS = 8  # binary, the last ones of x and y
 MESH_MAX_UV_DIGITS = 18  # binary, of texture coordinates in 0..1
+MAPPED_CHART_MIN_VERTICES = 24  # of a chart with a map of its own, which takes 24 bytes
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,9 +47,9 @@ class _Welded:
         places: (n, 3) int64.
         place: (v,) of each vertex.
         faces: (m, 3) of vertices, no two corners at one place.
-        label: See `chart_kinds`.
-        kinds: See `chart_kinds`.
-        maps: See `chart_kinds`.
+        label: See `_chart_kinds`.
+        kinds: See `_chart_kinds`.
+        maps: See `_chart_kinds`.
         codes: (v, 2) int64 texture coordinates.
     """
 
@@ -103,10 +97,9 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         if lattice.flat:
             code_depths(coder, built, first, corners)
         blank = np.full(v, -1, np.int32)
-        given = Corners(
-            welded.faces, welded.label, source.number[welded.place], welded.kinds, welded.maps, blank, blank.copy()
-        )
-        vertices = new_vertices(v, n, m)
+        place, kinds, maps = source.number[welded.place], welded.kinds, welded.maps
+        given = corner_kernels.Corners(welded.faces, welded.label, place, kinds, maps, blank, blank.copy())
+        vertices = corner_kernels.new_vertices(v, n, m)
         complete = complete and code_corners(coder, given, source.face_order, built, vertices, first, corners)
         assert complete
         codes = welded.codes[given.order]
@@ -114,8 +107,8 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
 
     header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
-    body = coded_bytes(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
-    return pad_bytes(header + body, max(n, m, v)), found[0]
+    body = range_coder.coded_bytes(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
+    return range_coder.pad_bytes(header + body, max(n, m, v)), found[0]
 
 
 def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
@@ -124,37 +117,33 @@ def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     Raises:
         FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
     """
-    check_header(data, HEADER.size, VERSION, where)
+    range_coder.check_header(data, HEADER.size, VERSION, where)
     _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
     if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
-        raise damaged_error(f"{v} vertices and {m} faces, more than a scene may have", where)
-    check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
-    if (
-        flat > 1
-        or not 1 <= uv_bits <= MESH_MAX_UV_DIGITS
-        or fine > MESH_MAX_FINE_DIGITS * flat
-        or not np.isfinite(numbers).all()
-    ):
-        raise damaged_error("a lattice that cannot be", where)
+        raise range_coder.damaged_error(f"{v} vertices and {m} faces, more than a scene may have", where)
+    range_coder.check_numbers(data, max(n, m, v), limits.MAX_TRIANGLES, where)
+    possible = flat <= 1 and 1 <= uv_bits <= MESH_MAX_UV_DIGITS and fine <= MESH_MAX_FINE_DIGITS * flat
+    if not possible or not np.isfinite(numbers).all():
+        raise range_coder.damaged_error("a lattice that cannot be", where)
     lattice = Lattice(np.array(numbers).reshape(4, 4), bool(flat))
-    coder = decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
+    coder = range_coder.decoder(data[HEADER.size :], CONTEXTS, MIXTURES)
     built = new_built(n, m)
     if not traverse(coder, no_source(), built, new_front(n, m), lattice.flat, fine):
-        raise damaged_error("faces that cannot be", where)
-    check_end(coder, where)
+        raise range_coder.damaged_error("faces that cannot be", where)
+    range_coder.check_end(coder, where)
     first, corners = corner_lists(built.faces, n)
     if lattice.flat:
         code_depths(coder, built, first, corners)
-    vertices = new_vertices(v, n, m)
-    if not code_corners(coder, no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
-        raise damaged_error("corners of faces that cannot be", where)
+    vertices = corner_kernels.new_vertices(v, n, m)
+    if not code_corners(coder, corner_kernels.no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
+        raise range_coder.damaged_error("corners of faces that cannot be", where)
     codes = np.zeros((v, 2), np.int64)
     code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
-    check_end(coder, where)
+    range_coder.check_end(coder, where)
     mesh = _mesh(lattice, uv_bits, built, vertices, codes)
     assert mesh.uv is not None
     if not (np.abs(mesh.vertices) <= limits.MAX_NUMBER).all() or not (np.abs(mesh.uv) <= limits.MAX_NUMBER).all():
-        raise damaged_error("positions or texture coordinates that are not finite", where)
+        raise range_coder.damaged_error("positions or texture coordinates that are not finite", where)
     return mesh
 
 
@@ -169,7 +158,7 @@ def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
     scale = 2.0**uv_bits
     if not (np.abs(uv) * scale <= MESH_MAX_STEPS).all():
         raise ValueError("texture coordinates that are not finite, or far beyond 0 to 1")
-    label, kinds, maps = chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
+    label, kinds, maps = _chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
     codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)
     alike = np.concatenate([steps.astype(np.int64), codes, label[:, None]], axis=1)
     _, first, same = np.unique(alike, axis=0, return_index=True, return_inverse=True)
@@ -205,6 +194,61 @@ def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDAr
     uv = codes / 2.0**uv_bits
     mapped = vertices.kinds[vertices.chart] == MAPPED
     place = vertices.place
-    uv[mapped] = mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
+    uv[mapped] = _mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
     with np.errstate(over="ignore", invalid="ignore"):
         return Mesh(lattice.points(built.points)[place].astype(np.float32), vertices.faces, uv.astype(np.float32))
+
+
+def _chart_kinds(
+    faces: NDArray[np.int32], places: NDArray[np.float64], uv: NDArray[np.float64], tolerance: float
+) -> tuple[NDArray[np.int32], NDArray[np.int8], NDArray[np.int64]]:
+    """(v,) the chart of every vertex, (charts,) kinds, (charts, 6) bits of the maps' float32 numbers.
+
+    Charts are components connected by vertices. Those of a relief, laid out as a camera sees it, are an affine map of
+    the lattice coordinates `places` (v, 3): a chart is MAPPED if u and v are within `tolerance` of a x + b y + c.
+    """
+    label = vertex_components(faces, len(places))
+    charts = int(label.max(initial=-1)) + 1
+    area = np.bincount(label[faces[:, 0]], signed_areas(uv[faces]), charts)
+    kinds = np.where(area < 0, MIRRORED, 0).astype(np.int8)
+    maps = np.zeros((charts, 6), np.int64)
+    order = np.argsort(label, kind="stable")
+    first = np.searchsorted(label[order], np.arange(charts + 1))
+    last = None
+    for chart in range(charts):
+        members = order[first[chart] : first[chart + 1]]
+        found = _affine(places[members, :2], uv[members], last, tolerance) if len(members) else None
+        if found is not None:
+            kinds[chart], maps[chart], last = MAPPED, found.view(np.uint32), found
+    return label, kinds, maps
+
+
+def _affine(
+    xy: NDArray[np.float64], uv: NDArray[np.float64], last: NDArray[np.float32] | None, tolerance: float
+) -> NDArray[np.float32] | None:
+    """(6,) a u-row, a v-row, the offset; with the linear part of the last if that will do, which is cheaper."""
+    if last is not None:
+        same = _with_offset(last[:4], xy, uv, tolerance)
+        if same is not None:
+            return same
+    if len(xy) < MAPPED_CHART_MIN_VERTICES:
+        return None
+    middle = xy.mean(axis=0)
+    slope = np.linalg.lstsq(xy - middle, uv - uv.mean(axis=0), rcond=None)[0]
+    return _with_offset(np.ascontiguousarray(slope.T, np.float32).reshape(4), xy, uv, tolerance)
+
+
+def _with_offset(
+    linear: NDArray[np.float32], xy: NDArray[np.float64], uv: NDArray[np.float64], tolerance: float
+) -> NDArray[np.float32] | None:
+    rest = uv - xy @ linear.astype(np.float64).reshape(2, 2).T
+    offset = ((rest.min(axis=0) + rest.max(axis=0)) / 2).astype(np.float32)
+    return np.concatenate([linear, offset]) if np.abs(rest - offset).max() <= tolerance else None
+
+
+def _mapped_texture(places: NDArray[np.int64], maps: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(v, 2) texture coordinates at lattice coordinates places (v, 3) by maps (v, 6)."""
+    x, y = places[:, 0].astype(np.float64), places[:, 1].astype(np.float64)
+    with np.errstate(all="ignore"):
+        m = maps.astype(np.uint32).view(np.float32).astype(np.float64)
+        return np.stack([m[:, 0] * x + m[:, 1] * y + m[:, 4], m[:, 2] * x + m[:, 3] * y + m[:, 5]], axis=1)

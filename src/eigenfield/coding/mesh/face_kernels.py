@@ -15,17 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.entropy.range_kernels import binary_digits, code_flag, code_raw
-from eigenfield.coding.mesh.front_kernels import (
-    BORDER,
-    GATES,
-    OPEN,
-    add_gate,
-    close_left,
-    close_right,
-    link,
-    next_gate,
-    open_out,
-)
+from eigenfield.coding.mesh.front_kernels import BORDER, OPEN, close_left, close_right, next_gate, open_out, open_patch
 from eigenfield.coding.mesh.place_kernels import PLACES, code_place, code_seed_place, off_grid
 from eigenfield.runtime.jit import kernel
 
@@ -200,11 +190,7 @@ def _code_seed(coder, source, built, front, planar, room, face):
     if corner[0] == corner[1] or corner[1] == corner[2] or corner[2] == corner[0]:
         return False
     _add_face(built, corner[0], corner[1], corner[2])
-    first = front.sizes[GATES]
-    for k in range(3):
-        add_gate(front, built.points, corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3])
-    for k in range(3):
-        link(front, first + k, first + (k + 1) % 3)
+    open_patch(front, built.points, corner)
     return True
 
 

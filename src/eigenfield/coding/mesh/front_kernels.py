@@ -111,6 +111,16 @@ def link(front, one, other):
 
 
 @kernel()
+def open_patch(front, points, corner):
+    """The gates round the first face of a patch; corner: (3,) its vertices."""
+    first = front.sizes[GATES]
+    for k in range(3):
+        add_gate(front, points, corner[k], corner[(k + 1) % 3], corner[(k + 2) % 3])
+    for k in range(3):
+        link(front, first + k, first + (k + 1) % 3)
+
+
+@kernel()
 def close_left(front, points, gate):
     """The face in front of `gate` ends at the start of the gate before it: one gate takes the place of both, none if
     the gate behind ends there too."""

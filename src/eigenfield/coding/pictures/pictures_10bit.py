@@ -6,10 +6,12 @@ bits (a browser) finds the same picture in codes of 8 bits.
 
 from __future__ import annotations
 
+import contextlib
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +26,6 @@ PICTURE_BITS = 10
 MAX_CODE = 2**PICTURE_BITS - 1
 MIDDLE_CODE = 2 ** (PICTURE_BITS - 1)
 MIN_SIDE_TEXELS = 64  # that the encoder takes
-MIME = "image/avif"
 # Quantiser steps of AV1 at 10 bits, in codes, at every fourth crf from 0 (its table of AC steps over 8, rounded)
 _STEPS = (0.5, 7, 14, 21, 28, 36, 43, 50, 58, 67, 79, 95, 116, 150, 206, 312, 668)
 CRFS = (*range(0, 61, 4), 63)
@@ -69,13 +70,9 @@ def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
         }  # fmt: skip
         with ordinary_scheduling():
             stream.codec_context.open()
-        frame = av.VideoFrame(width, height, PIXEL_FORMAT)
+        flat = np.full((height // 2, width // 2), MIDDLE_CODE, np.uint16)
+        frame = frame_of((codes, flat, flat))
         frame.pts = 0
-        for number, plane in enumerate(frame.planes):
-            values = np.full((plane.height, plane.line_size // 2), MIDDLE_CODE, "<u2")
-            if number == 0:
-                values[:, :width] = codes
-            plane.update(values.tobytes())
         for packet in [*stream.encode(frame), *stream.encode()]:
             container.mux(packet)
     return buffer.getvalue()
@@ -99,20 +96,43 @@ def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[
     """
     import av
 
-    try:
-        with av.open(io.BytesIO(data), format="mov") as container:
-            stream = container.streams.video[0]
-            stream.codec_context.options = {"max_pixels": str(limits.MAX_TEXELS)}
-            stream.codec_context.thread_count = 1
-            frame = next(container.decode(stream))
-    except MemoryError:
-        raise
-    except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
-        reason = " ".join(str(error).split())[:80] or type(error).__name__
-        raise FormatError("picture-damaged", f"the picture cannot be decoded: {reason}", where=where) from error
+    with decoder_errors("picture", where), av.open(io.BytesIO(data), format="mov") as container:
+        stream = container.streams.video[0]
+        stream.codec_context.options = {"max_pixels": str(limits.MAX_TEXELS)}
+        stream.codec_context.thread_count = 1
+        frame = next(container.decode(stream))
     if frame.format.components[0].bits != PICTURE_BITS:
         bits = frame.format.components[0].bits
         raise FormatError("picture-channels", f"a picture of {bits} bits, {PICTURE_BITS} are announced", where=where)
-    plane = frame.planes[0]
-    values = np.frombuffer(plane, "<u2").reshape(plane.height, -1)
-    return np.ascontiguousarray(values[:, : plane.width], np.uint16)
+    return samples_of(frame.planes[0])
+
+
+@contextlib.contextmanager
+def decoder_errors(kind: str, where: str) -> Iterator[None]:
+    """Turn whatever a decoder raises on damaged bytes, which is not our bug, into FormatError `KIND-damaged`."""
+    try:
+        yield
+    except MemoryError:
+        raise
+    except Exception as error:
+        reason = " ".join(str(error).split())[:80] or type(error).__name__
+        raise FormatError(f"{kind}-damaged", f"the {kind} cannot be decoded: {reason}", where=where) from error
+
+
+def frame_of(planes: Sequence[NDArray[np.uint16]]) -> Any:
+    """A frame of a video of PIXEL_FORMAT, from luma (rows, columns) and both chroma planes of half that, each way."""
+    import av
+
+    height, width = planes[0].shape
+    frame = av.VideoFrame(width, height, PIXEL_FORMAT)
+    for target, plane in zip(frame.planes, planes, strict=True):
+        values = np.zeros((target.height, target.line_size // 2), "<u2")
+        values[:, : plane.shape[1]] = plane
+        target.update(values.tobytes())
+    return frame
+
+
+def samples_of(plane: Any) -> NDArray[np.uint16]:
+    """(rows, columns) of a plane of a decoded frame."""
+    values = np.frombuffer(plane, "<u2").reshape(-1, plane.line_size // 2)
+    return np.ascontiguousarray(values[: plane.height, : plane.width], np.uint16)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import AvifImagePlugin, Image, ImageFile, JpegImagePlugin, PngImagePlugin, WebPImagePlugin, features
 
+from eigenfield.coding.pictures.pictures_10bit import decoder_errors
 from eigenfield.core.errors import FormatError, OptionError
 
 Codes = NDArray[np.uint8]
@@ -47,11 +48,8 @@ def encode_webp(picture: Codes, quality: int) -> bytes:
     """
     image = Image.fromarray(picture)
     if max(image.size) > _WEBP_MAX_SIDE_TEXELS:
-        raise OptionError(
-            "codec-side",
-            f"webp holds {_WEBP_MAX_SIDE_TEXELS} texels a side, {max(image.size)} needed",
-            remedy="use png",
-        )
+        message = f"webp holds {_WEBP_MAX_SIDE_TEXELS} texels a side, {max(image.size)} needed"
+        raise OptionError("codec-side", message, remedy="use png")
     return _image_bytes(image, "WEBP", lossless=True, quality=80, method=4)
 
 
@@ -93,8 +91,7 @@ def header_size(data: memoryview, where: str, *, mime: str) -> tuple[int, int]:
     Raises:
         FormatError: `codec-missing`, `picture-damaged`.
     """
-    width, height = _webp_size(bytes(data[:30]), where) if mime == "image/webp" else _open(data, mime, where).size
-    return int(width), int(height)
+    return _webp_size(bytes(data[:30]), where) if mime == "image/webp" else _open(data, mime, where).size
 
 
 def decode_picture(data: memoryview, colour: bool, where: str, *, mime: str) -> Codes:
@@ -108,39 +105,19 @@ def decode_picture(data: memoryview, colour: bool, where: str, *, mime: str) -> 
     modes = ("RGB",) if colour else ("L", "RGB") if grey_in_colour else ("L",)
     if image.mode not in modes:
         raise FormatError("picture-channels", f"a picture of mode {image.mode}, {modes[0]} expected", where=where)
-    pixels = _load(image, where)
+    with decoder_errors("picture", where):
+        pixels = np.asarray(image)
     return pixels if colour or pixels.ndim == 2 else pixels[..., 0]
 
 
 def _open(data: memoryview, mime: str, where: str) -> ImageFile.ImageFile:
     """Parse a header with the one reader that `mime` names: Image.open would guess, and warn of large sizes."""
     if mime in ("image/avif", "image/webp") and not features.check(mime.removeprefix("image/")):
-        raise FormatError(
-            "codec-missing",
-            f"this Pillow cannot read {mime}",
-            where=where,
-            remedy="install a wheel of pillow 11.3 or later",
-        )
-    try:
-        return _READERS[mime](io.BytesIO(data))
-    except MemoryError:
-        raise
-    except Exception as error:  # a decoder on damaged bytes: Pillow raises whatever comes, none of it our bug
-        raise _damage_error(error, where) from error
-
-
-def _load(image: ImageFile.ImageFile, where: str) -> Codes:
-    try:
-        return np.asarray(image)
-    except MemoryError:
-        raise
-    except Exception as error:  # as in _open
-        raise _damage_error(error, where) from error
-
-
-def _damage_error(error: Exception, where: str) -> FormatError:
-    reason = " ".join(str(error).split())[:80] or type(error).__name__
-    return FormatError("picture-damaged", f"the picture cannot be decoded: {reason}", where=where)
+        remedy = "install a wheel of pillow 11.3 or later"
+        raise FormatError("codec-missing", f"this Pillow cannot read {mime}", where=where, remedy=remedy)
+    with decoder_errors("picture", where):
+        image = _READERS[mime](io.BytesIO(data))
+    return image
 
 
 def _webp_size(head: bytes, where: str) -> tuple[int, int]:

@@ -89,14 +89,10 @@ def check_picture(
     Raises:
         FormatError: As `dimensions`, and `picture-size`.
     """
-    found = dimensions(data, codec, where)
-    expected = picture_size(width, height, channels, count, PICTURES[codec].bits)
+    found, expected = dimensions(data, codec, where), picture_size(width, height, channels, count, PICTURES[codec].bits)
     if found != expected:
-        raise FormatError(
-            "picture-size",
-            f"the picture is {found[0]}x{found[1]}, {expected[0]}x{expected[1]} are announced",
-            where=where,
-        )
+        shown, asked = (f"{columns}x{rows}" for columns, rows in (found, expected))
+        raise FormatError("picture-size", f"the picture is {shown}, {asked} are announced", where=where)
 
 
 def decode(

@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.pictures_10bit import PICTURE_BITS
+from eigenfield.coding.pictures.pictures_10bit import PICTURE_BITS, PIXEL_FORMAT, decoder_errors, frame_of, samples_of
 from eigenfield.core.errors import FormatError
 from eigenfield.runtime.parallel import ordinary_scheduling
 
 Planes = tuple[NDArray[np.uint16], NDArray[np.uint16], NDArray[np.uint16]]
 
-PIXEL_FORMAT = "yuv420p10le"
 CONTAINER = "obu"
 FRAME_RATE_HZ = 25  # without meaning here, but a video has one
 SVT_PARALLELISM = 2  # SVT-AV1's level, fixed: its memory grows with it, and the bytes are the same
@@ -54,22 +53,11 @@ def encode_video(frames: Iterable[Planes], size: tuple[int, int], crf: int, pres
         with ordinary_scheduling():
             context.open()
         for number, planes in enumerate(frames):
-            container.mux(stream.encode(_frame(planes, number)))
+            frame = frame_of(planes)
+            frame.pts, frame.time_base = number, Fraction(1, FRAME_RATE_HZ)
+            container.mux(stream.encode(frame))
         container.mux(stream.encode(None))
     return buffer.getvalue()
-
-
-def _frame(planes: Planes, number: int) -> Any:
-    import av
-
-    height, width = planes[0].shape
-    frame = av.VideoFrame(width, height, PIXEL_FORMAT)
-    for target, plane in zip(frame.planes, planes, strict=True):
-        values = np.zeros((target.height, target.line_size // 2), "<u2")
-        values[:, : plane.shape[1]] = plane
-        target.update(values.tobytes())
-    frame.pts, frame.time_base = number, Fraction(1, FRAME_RATE_HZ)
-    return frame
 
 
 def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> Iterator[Planes]:
@@ -94,17 +82,13 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
     context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged video
     number = 0
     for unit in chain(_units(data), [None]):
-        try:
+        with decoder_errors("residual", where):
             frames = context.decode(None if unit is None else av.Packet(unit))
-        except MemoryError:
-            raise
-        except Exception as error:  # a decoder on damaged bytes: whatever comes is not our bug
-            raise damage_error(" ".join(str(error).split())[:80] or type(error).__name__) from error
         for frame in frames:
             if (frame.height, frame.width) != size or frame.format.name != PIXEL_FORMAT:
                 found = f"{frame.width}x{frame.height}, {frame.format.name}"
                 raise damage_error(f"a frame of {found}; {size[1]}x{size[0]} of {PICTURE_BITS} bits announced")
-            luma, blue, red = (_samples(plane) for plane in frame.planes)
+            luma, blue, red = map(samples_of, frame.planes)
             yield luma, blue, red
             number += 1
             if number == count:
@@ -134,8 +118,3 @@ def _units(data: bytes) -> Iterator[bytes]:
             return
         yield data[start : at + length]
         start = at + length
-
-
-def _samples(plane: Any) -> NDArray[np.uint16]:
-    values = np.frombuffer(plane, "<u2").reshape(-1, plane.line_size // 2)
-    return np.ascontiguousarray(values[: plane.height, : plane.width], np.uint16)

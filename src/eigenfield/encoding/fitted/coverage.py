@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
-from eigenfield.encoding.projected import push_pull
+from eigenfield.encoding.projected.spread import push_pull
 from eigenfield.imaging.raster import rasterise
 from eigenfield.rendering.software.drawing import Surface
 from eigenfield.runtime.parallel import parallel_map
@@ -47,7 +47,7 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
     pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
     """
-    known = _seen_mask(scales.mean)
+    known = (scales.mean > 0).astype(np.float32)
     if not known.any():
         return None
     share = np.minimum(scales.mean / np.median(scales.mean[known > 0]), 1).astype(np.float32)
@@ -70,10 +70,6 @@ def _observed_mask(share: NDArray[np.float32], surface: Surface) -> NDArray[np.f
     inside = rasterise(corners, surface.faces, columns, rows).face >= 0
     usual = float(np.median(share[share > 0])) if (share > 0).any() else 0.0
     return ((share > 0) & (inside | (share > OBSERVED_MIN_SHARE_RATIO * usual))).astype(np.float32)
-
-
-def _seen_mask(share: NDArray[np.float32]) -> NDArray[np.float32]:
-    return (share > 0).astype(np.float32)
 
 
 def _fill_smoothly(picture: NDArray[np.float32], observed: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -1,15 +1,36 @@
-"""Means, eigen textures and weights fitted to the photographs: from a plan to a scene."""
+"""Means, eigen textures and weights fitted to the photographs: from a plan to a scene, of a quality or for a target.
+
+A file that is to reach a size, a PSNR or an SSIM gets a second fit where another mesh or atlas belongs to it.
+"""
+
+# mypy: disable-error-code="no-untyped-call"
 
 from __future__ import annotations
 
+import logging
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
-from eigenfield.encoding.fitted.encoder import open_encoder
-from eigenfield.encoding.fitted.reach import reach_target
+from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder
+from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
+from eigenfield.encoding.target import TARGET_FIRST_QUALITY, Attempt, Target, search_quality
+from eigenfield.gltf import encode_scene
+from eigenfield.imaging.metrics import psnr, ssim
+from eigenfield.rendering import Renderer, ViewWeights
+from eigenfield.runtime.parallel import parallel_stream
+
+log = logging.getLogger("eigenfield.encode")
+
+REFIT_MIN_MESH_RATIO = 0.03  # of a file's bytes by which another mesh must differ for a second fit
+REFIT_MAX_NEAR_QUALITIES = 3  # from the plan's quality, within which mesh and atlas are nearly the same
+REFIT_MIN_ATLAS_RATIO = 0.1  # of its side by which another atlas must differ for a second fit
+TARGET_MAX_OBSERVATIONS = 48  # evenly spread, over which a PSNR or SSIM is measured
 
 
 def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
@@ -30,3 +51,97 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
         return reach_target(plan, plan.asked.target, work, progress)
     with open_encoder(plan, work, progress) as encoder:
         return encoder.encode(resolved_value(plan.options.quality))
+
+
+def reach_target(plan: EncodePlan, target: Target, work: Path | None, progress: Progress | None) -> EncodedScene:
+    """The scene whose file reaches the target, or with a warning the nearest.
+
+    Mesh and atlas belong to a quality. Where the target is met at one that has clearly others than the plan's, there is
+    a second fit, on those, and the better file of both is taken.
+
+    Args:
+        plan: Made for the preset's quality.
+        target: A size, a PSNR or an SSIM.
+        work: Folder for scratch files.
+        progress: Reports each stage.
+    """
+    with open_encoder(plan, work, progress) as encoder:
+        found = _search(target, encoder)
+        scene = encoder.with_figures(found.result)
+        other = _other_plan(plan, found, work, progress)
+        if other is not None:
+            found = _with_psnr(target, found, encoder.data)
+    if other is not None:
+        words = "fitted again for quality %d: mesh %d bytes instead of %d, atlas %dx%d instead of %dx%d"
+        log.info(words, found.quality, other.mesh_bytes, plan.mesh_bytes, *other.atlas, *plan.atlas)
+        with open_encoder(other, work, progress, warn=False) as encoder:
+            second = _with_psnr(target, _search(target, encoder, found.quality), encoder.data)
+            sizes = second.size, second.measured, found.size, found.measured
+            if target.merit(second) > target.merit(found):
+                log.info("kept: %d bytes, %.4f instead of %d, %.4f", *sizes)
+                found, scene = second, encoder.with_figures(second.result)
+            else:
+                log.info("not kept: %d bytes, %.4f, and the first has %d, %.4f", *sizes)
+    if not target.is_met(found):
+        _warn_of_miss(target, found)
+    return scene
+
+
+def _other_plan(
+    plan: EncodePlan, found: Attempt[EncodedScene], work: Path | None, progress: Progress | None
+) -> EncodePlan | None:
+    """The plan for the quality that was found, where its mesh or atlas differs enough for a second fit; else None."""
+    if abs(found.quality - resolved_value(plan.options.quality)) <= REFIT_MAX_NEAR_QUALITIES:
+        return None
+    other = plan.at_quality(found.quality, work, progress)
+    mesh = abs(other.mesh_bytes - plan.mesh_bytes) >= REFIT_MIN_MESH_RATIO * found.size
+    atlas = abs(other.atlas[0] / plan.atlas[0] - 1) >= REFIT_MIN_ATLAS_RATIO
+    return other if mesh or atlas else None
+
+
+def _search(target: Target, encoder: FittedEncoder, first: int = TARGET_FIRST_QUALITY) -> Attempt[EncodedScene]:
+    """As `search_quality`, of what the encoder makes."""
+
+    def code(quality: int) -> Attempt[EncodedScene]:
+        scene = encoder.encode_without_figures(quality)
+        measured = 0.0 if target.size else _mean_measure(target, scene, encoder.data)
+        return Attempt(quality, len(encode_scene(scene)), measured, scene)
+
+    return search_quality(target, code, first)
+
+
+def _with_psnr(target: Target, found: Attempt[EncodedScene], data: FitData) -> Attempt[EncodedScene]:
+    """What was found, measured too where the target is a size: for `Target.merit`."""
+    return found if target.size is None else replace(found, measured=_mean_measure(target, found.result, data))
+
+
+def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
+    """The mean PSNR or SSIM over covered pixels of some observations, drawn as they are."""
+    renderer, observations, count = Renderer(scene), data.observations, len(data)
+    cameras = scene.rig.encoded_cameras
+
+    def of_observation(index: int) -> float | None:
+        picture = renderer.draw(cameras[observations.camera_of(index)], ViewWeights.one(index))
+        covered, mask = picture.covered, observations.mask(index)
+        if mask.size:
+            covered &= mask > 0
+        measure = psnr if target.ssim is None else ssim
+        return measure(picture.image, observations.codes_of(index), covered)
+
+    some = np.unique(np.linspace(0, count - 1, min(count, TARGET_MAX_OBSERVATIONS)).round().astype(int))
+    values = [value for value in parallel_stream(of_observation, some.tolist()) if value is not None]
+    return float(np.mean(values)) if values else 0.0
+
+
+def _warn_of_miss(target: Target, nearest: Attempt[EncodedScene]) -> None:
+    """Say that no file reaches the target, and why."""
+    if target.size is not None:
+        log.warning(
+            "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
+            target.size, nearest.size,
+        )  # fmt: skip
+    else:
+        log.warning(
+            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.goal,
+            nearest.measured,
+        )  # fmt: skip

@@ -18,7 +18,8 @@ from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.fitted.planes import Fits, fitted_textures, open_fits
 from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan, plan_encoding
-from eigenfield.encoding.projected import component_count, warn_of_disagreement
+from eigenfield.encoding.projected.agreement import warn_of_disagreement
+from eigenfield.encoding.projected.eigen import component_count
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,18 +19,17 @@ from numpy.typing import NDArray
 
 from eigenfield.coding.codecs import encoder
 from eigenfield.core.appearance import Plane
-from eigenfield.core.errors import CaptureError
 from eigenfield.core.payloads import Coded, Payload
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.code_planes import CodedBasis, coded_plane, with_weights
 from eigenfield.encoding.fitted.coverage import fill_unseen
 from eigenfield.encoding.fitted.model import AtlasComposer, Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData
-from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
+from eigenfield.encoding.fitted.passes import psnr_of
 from eigenfield.encoding.fitted.rate import Rate, code_block_rd, plane_lambda
-from eigenfield.encoding.fitted.regions import find_regions
 from eigenfield.encoding.fitted.solve import Scales, fit_textures, fit_weights, measure_scales, residual, whiten
-from eigenfield.encoding.fitted.start import principal_block, residual_energy
+from eigenfield.encoding.fitted.start import find_regions, principal_block, residual_energy
+from eigenfield.encoding.views import nothing_seen_error
 
 log = logging.getLogger("eigenfield.fit")
 
@@ -43,6 +42,7 @@ FIT_CLOSING_ITERATIONS = 3  # for the mean, after coding
 WEIGHT_QUANTISER_STEP = 0.0008  # of a weight times what its component draws, in the photographs' range: 0.2 grey levels
 WEIGHT_MAX_QUANTISER_STEP = 1.5  # of weights of variance 1
 WEIGHTS_CODEC = "weights-1"
+MEAN_WANTED, NOTHING_WANTED = (True, False, False), (False, False, False)  # of mean, textures and weights
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,11 +146,7 @@ def fit_plane(
     tick = _ticker(progress, f"fit {name}", 3 + 2 * rounds)
     scales = measure_scales(fitted, model)
     if not scales.mean.any():
-        raise CaptureError(
-            "nothing-seen",
-            "no camera sees any texel of the proxy",
-            remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
-        )
+        raise nothing_seen_error()
     mean_alone = fit_mean(fitted, model, scales)
     tick()
     count = min(settings.textures, len(fitted) - 1)
@@ -218,11 +214,9 @@ def code_plane(
         coded = code_block_rd(block, model.grid, scales, rate, lambda_)
         if not coded.count:
             continue
-        values, weights = (
-            coded.basis.values().transpose(0, 3, 1, 2),
-            np.ascontiguousarray(block.weights[:, : coded.count]),
-        )
-        model.blocks.append(replace(block, textures=np.ascontiguousarray(values), weights=weights))
+        textures = np.ascontiguousarray(coded.basis.values().transpose(0, 3, 1, 2))
+        weights = np.ascontiguousarray(block.weights[:, : coded.count])
+        model.blocks.append(replace(block, textures=textures, weights=weights))
         bases.append(coded)
     tick()
     if bases:
@@ -231,7 +225,7 @@ def code_plane(
             stream, block.weights = encoder(WEIGHTS_CODEC)(block.weights, _weight_steps(block, scales), grid)
             bases[number] = with_weights(bases[number], block.weights, Payload(WEIGHTS_CODEC, stream))
     tick()
-    left = residual(pixels.fitted, model, True, fit.composer)
+    left = residual(pixels.fitted, model, MEAN_WANTED, fit.composer)
     fit_textures(pixels.fitted, model, scales, left, FIT_CLOSING_ITERATIONS, mean_only=True)
     mean = np.ascontiguousarray(model.mean.transpose(1, 2, 0))
     plane = coded_plane(mean, bases, rate.mean_step, rate.coder, precision)
@@ -253,24 +247,18 @@ def coded_psnr(fit: OpenFit, plane: Plane) -> float:
 
 def _drawn_psnr(data: FitData, model: PlaneModel, composer: AtlasComposer) -> float:
     """dB of the photographs as the renderers draw the model."""
-    found = render_and_backproject(
-        data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
-        weights=[block.weights for block in model.blocks], photographs=True, wanted=(False, False, False),
-        composer=composer,
-    )  # fmt: skip
+    found = residual(data, model, NOTHING_WANTED, composer)
     return psnr_of(found.squares, found.pixels, model.channels)
 
 
 def fit_mean(data: FitData, model: PlaneModel, scales: Scales) -> MeanAlone:
-    """Fit the model's mean alone, from one colour."""
-    left = residual(data, model, mean_only=True)
+    """Fit the mean of a model without components, from one colour."""
+    left = residual(data, model, MEAN_WANTED)
     # the filter's weights sum to 1, so that G^T leaves the sum of what it brings back as it is
     sums = left.mean.sum(axis=(1, 2), dtype=np.float64)
     total = float(left.squares.sum() - np.square(sums).sum() / max(float(left.pixels.sum()), 1.0))
     fit_textures(data, model, scales, left, FIT_MEAN_ITERATIONS, mean_only=True)
-    found = render_and_backproject(
-        data, model, mean=model.mean, textures=None, weights=[], photographs=True, wanted=(False, False, False)
-    )
+    found = residual(data, model, NOTHING_WANTED)
     return MeanAlone(found.squares, found.pixels, model.channels, total)
 
 

@@ -16,7 +16,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts
 from eigenfield.rendering.software.drawing import Framebuffer, Surface, rasterise_surface, smooth_edges
 from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import parallel_map
 
 Footprint = tuple[NDArray[np.uint8], NDArray[np.float32]]
 
@@ -90,10 +90,9 @@ def open_footprints(
         )  # fmt: skip
 
     with scratch_array((int(pixels[-1]),), np.uint8, work) as counts:
-        offsets = offsets_of(list(parallel_stream(count, range(len(cameras)))))
+        offsets = offsets_of(parallel_map(count, range(len(cameras))))
         with scratch_array((int(offsets[-1]), 2), np.float32, work) as coordinates:
-            for _ in parallel_stream(put, range(len(cameras))):
-                pass
+            parallel_map(put, range(len(cameras)))
             yield Footprints(shapes, counts, pixels, coordinates, offsets, surface, detail)
 
 

@@ -150,8 +150,6 @@ def make_upsampler(surface: Surface, grid: tuple[int, int]) -> Upsampler:
     spans = np.zeros((height, 2), np.int64)
     for row in np.flatnonzero(surface.used.any(axis=1)):
         used = np.flatnonzero(surface.used[row])
-        spans[row * TILE_TEXELS : (row + 1) * TILE_TEXELS] = (
-            used[0] * TILE_TEXELS,
-            min((used[-1] + 1) * TILE_TEXELS, width),
-        )
+        first, last = used[0] * TILE_TEXELS, min((used[-1] + 1) * TILE_TEXELS, width)
+        spans[row * TILE_TEXELS : (row + 1) * TILE_TEXELS] = first, last
     return Upsampler(make_taps(height, grid[0]), make_taps(width, grid[1]), spans, grid, (height, width))

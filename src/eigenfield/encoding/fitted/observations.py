@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.observations import Observations, cameras_of, times_of
+from eigenfield.core.observations import Observations, cameras_of
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.fitted.footprints import (
     Footprint,
@@ -35,7 +35,6 @@ class DecodedObservations:
 
     Attributes:
         cameras: (No,) the camera of each observation.
-        times: (No,) the instant of each observation.
         shapes: (h, w) of each observation.
         codes: (pixels of all, 3) uint8, R, G, B, observation by observation.
         offsets: (No + 1,) where the pixels of each observation begin.
@@ -45,7 +44,6 @@ class DecodedObservations:
     """
 
     cameras: NDArray[np.int64]
-    times: NDArray[np.int64]
     shapes: tuple[tuple[int, int], ...]
     codes: NDArray[np.uint8]
     offsets: NDArray[np.int64]
@@ -57,9 +55,6 @@ class DecodedObservations:
 
     def camera_of(self, index: int) -> int:
         return int(self.cameras[index])
-
-    def time_of(self, index: int) -> int:
-        return int(self.times[index])
 
     def codes_of(self, index: int) -> NDArray[np.uint8]:
         """(h, w, 3) of an observation."""
@@ -143,7 +138,7 @@ def open_fit_data(
 def _open_observations(
     cameras: Sequence[Camera], observations: Observations, work: Path | None, progress: Progress | None
 ) -> Iterator[DecodedObservations]:
-    by, times, total = cameras_of(observations), times_of(observations), len(observations)
+    by, total = cameras_of(observations), len(observations)
     shapes = tuple((cameras[camera].height, cameras[camera].width) for camera in by)
     offsets = offsets_of([h * w for h, w in shapes])
     with (
@@ -159,7 +154,7 @@ def _open_observations(
             return mask is not None
 
         masked = list(track(parallel_stream(put, range(total)), "photographs", total, progress))
-        yield DecodedObservations(by, times, shapes, codes, offsets, masks if any(masked) else None)
+        yield DecodedObservations(by, shapes, codes, offsets, masks if any(masked) else None)
 
 
 @contextlib.contextmanager
@@ -198,7 +193,7 @@ def open_subsampled(data: FitData, step: int, work: Path | None = None) -> Itera
                 if given.masks is not None:
                     masks[part] = given.mask(index)[taken[index]].reshape(-1)
             few = None if given.masks is None else masks
-            yield FitData(DecodedObservations(given.cameras, given.times, shapes, codes, offsets, few), footprints)
+            yield FitData(DecodedObservations(given.cameras, shapes, codes, offsets, few), footprints)
 
 
 @contextlib.contextmanager

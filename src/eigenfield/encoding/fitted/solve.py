@@ -81,33 +81,28 @@ def _median(values: NDArray[np.float32]) -> float:
 def residual(
     data: FitData,
     model: PlaneModel,
-    mean_only: bool = False,
+    wanted: tuple[bool, bool, bool] = (True, True, False),
     composer: AtlasComposer | None = None,
     variance: float | None = None,
 ) -> NormalEquations:
-    """The model's residual in the photographs, brought back to mean and textures.
+    """The model's residual in the photographs, brought back to mean and textures unless something else is wanted.
 
     Args:
         data: The observations.
         model: Is drawn.
-        mean_only: Whether only the mean's part is wanted.
+        wanted: As `render_and_backproject`.
         composer: As `render_and_backproject`.
         variance: As `render_and_backproject`.
     """
     return render_and_backproject(
         data, model, mean=model.mean, textures=[block.textures for block in model.blocks],
-        weights=[block.weights for block in model.blocks], photographs=True, wanted=(True, not mean_only, False),
-        composer=composer, variance=variance,
+        weights=[block.weights for block in model.blocks], photographs=True, wanted=wanted, composer=composer,
+        variance=variance,
     )  # fmt: skip
 
 
 def fit_textures(
-    data: FitData,
-    model: PlaneModel,
-    scales: Scales,
-    left: NormalEquations,
-    iterations: int,
-    mean_only: bool = False,
+    data: FitData, model: PlaneModel, scales: Scales, left: NormalEquations, iterations: int, mean_only: bool = False
 ) -> None:
     """Mean and textures of the model for its weights, or the mean alone for its textures as well.
 

@@ -36,13 +36,13 @@ from eigenfield.core.observations import Observations, cameras_of, select_camera
 from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
-from eigenfield.encoding.fitted.kernels import adjoint, forward, target
+from eigenfield.encoding.fitted.kernels import adjoint, forward, gather_steps, target
 from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_on_mesh, open_subsampled
 from eigenfield.encoding.fitted.passes import MINUS, psnr_of
 from eigenfield.encoding.fitted.solve import measure_scales
-from eigenfield.encoding.fitted.surface_kernels import gather_steps
-from eigenfield.encoding.geometry import spread_cameras, texels_of
+from eigenfield.encoding.geometry.distortion import spread_cameras, texels_of
+from eigenfield.imaging.graph import face_edges
 from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.fit")
@@ -118,23 +118,6 @@ class MovableMesh:
         return replace(self.given, vertices=vertices.astype(np.float32))
 
 
-@dataclass(frozen=True, eq=False)
-class StepEquations:
-    """Least squares of the steps of points in t texels: the sum of weight (step - pull / weight)^2.
-
-    Attributes:
-        pull: (t,) the right-hand side.
-        weight: (t,) the squared change for a unit over the mean squared error around, less for fewer cameras.
-        scale: (t,) by which both are greater than in the pictures.
-        squares: Squared error of all pictures.
-    """
-
-    pull: NDArray[np.float64]
-    weight: NDArray[np.float64]
-    scale: NDArray[np.float64]
-    squares: float
-
-
 def fit_surface(
     mesh: Mesh,
     lattice: Lattice | None,
@@ -160,7 +143,7 @@ def fit_surface(
         CaptureError: A photograph cannot be read.
         OutputError: `disk-full`.
     """
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), SURFACE_TUNING.max_cameras)
+    chosen = spread_cameras(cameras, SURFACE_TUNING.max_cameras)
     some, used = select_cameras(observations, chosen), [cameras[index] for index in chosen]
     shape = (min(side, SURFACE_TUNING.max_side_texels),) * 2
     pixels = sum(used[camera].width * used[camera].height for camera in cameras_of(some))
@@ -228,20 +211,25 @@ def _step(
     step, spread, free = np.zeros(len(off)), movable.spread, np.flatnonzero(movable.free)
     if not len(free):
         return step, 0.0
-    asked = _step_equations(movable, mesh, data, cameras, model)
-    normal = (spread.T @ diags_array(asked.weight) @ spread + movable.prior).tocsr()[free][:, free]
-    pull = np.asarray(spread.T @ asked.pull - movable.prior @ off)[free]
-    found, _ = cg(normal, pull, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
+    pull, weight, scale, squares = _step_equations(movable, mesh, data, cameras, model)
+    normal = (spread.T @ diags_array(weight) @ spread + movable.prior).tocsr()[free][:, free]
+    right = np.asarray(spread.T @ pull - movable.prior @ off)[free]
+    found, _ = cg(normal, right, rtol=1e-4, maxiter=400, M=diags_array(1 / normal.diagonal()))
     step[free] = found.clip(-SURFACE_TUNING.max_step_pixels, SURFACE_TUNING.max_step_pixels)
     moved = spread @ step
-    less = ((2 * moved * asked.pull - moved * moved * asked.weight) / asked.scale).sum()
-    return step, float(less) / max(asked.squares, 1e-12)
+    less = ((2 * moved * pull - moved * moved * weight) / scale).sum()
+    return step, float(less) / max(squares, 1e-12)
 
 
 def _step_equations(
     movable: MovableMesh, mesh: Mesh, data: FitData, cameras: Sequence[Camera], model: PlaneModel
-) -> StepEquations:
-    """The equations of the covered texels, summed over all observations."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], float]:
+    """Least squares of the steps of points in t covered texels: the sum of weight (step - pull / weight)^2.
+
+    Returns:
+        (t,) pull. (t,) weight: the squared change for a unit over the mean squared error around, less for fewer
+        cameras. (t,) by which both are greater than in the pictures. The squared error of all pictures.
+    """
     covered, mean, observations = movable.owners >= 0, model.mean[0], data.observations
     places = np.zeros(movable.lines.shape)
     places[movable.same] = mesh.vertices
@@ -277,9 +265,7 @@ def _step_equations(
     error = gaussian_filter(squares, sigma) / np.maximum(gaussian_filter(often, sigma), 1e-6)
     sure = len(cameras) / SURFACE_TUNING.max_cameras  # fewer cameras separate light from depth less well
     scale = sure / (usual * np.maximum(error[covered].astype(np.float64), SURFACE_TUNING.min_error**2))
-    return StepEquations(
-        np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum())
-    )
+    return np.where(trusted, pull, 0) * scale, np.where(trusted, weight, 0) * scale, scale, float(squares.sum())
 
 
 def _lines(
@@ -324,9 +310,8 @@ def _tangents(mesh: Mesh, lattice: Lattice | None, shape: tuple[int, int]) -> ND
 
 def _open_points(faces: NDArray[np.int64]) -> NDArray[np.int64]:
     """Points on edges of one face only. faces: (m, 3) of points."""
-    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-    ends, count = np.unique(edges, axis=0, return_counts=True)
-    return np.unique(ends[count == 1])
+    ends, edge = face_edges(faces)
+    return np.unique(ends[np.bincount(edge)[edge] == 1])
 
 
 def _laplacian(same: NDArray[np.int64], faces: NDArray[np.int32], uv: NDArray[np.float64]) -> coo_array:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.encoding.geometry.raster_kernels import face_cost
+from eigenfield.imaging.graph import face_edges
 from eigenfield.runtime.jit import kernel
 
 INSIDE, BORDER, FIXED = 0, 1, 2  # where a vertex is; FIXED: it stays, where borders meet
@@ -39,6 +40,25 @@ class CollapseState(NamedTuple):
     head: NDArray[np.int32]
     after: NDArray[np.int32]
     where: NDArray[np.uint8]
+
+
+def collapse_state(places: NDArray[np.int64], exact: NDArray[np.float64], faces: NDArray[np.int32]) -> CollapseState:
+    """The state before any collapse. Fixed are vertices where borders or two charts meet, which would come apart."""
+    n, corners = len(places), faces.reshape(-1)
+    order = np.argsort(corners, kind="stable").astype(np.int32)
+    last = np.flatnonzero(np.diff(corners[order])) if len(order) else np.zeros(0, np.int64)
+    head, after = np.full(n, -1, np.int32), np.full(len(corners), -1, np.int32)
+    head[corners[order[np.r_[0, last + 1]]]] = order[np.r_[0, last + 1]]
+    along = np.setdiff1d(np.arange(len(order) - 1), last)
+    after[order[along]] = order[along + 1]
+    ends, edge = face_edges(faces)
+    count = np.bincount(edge)[edge]
+    borders = np.bincount(ends[count == 1].reshape(-1), minlength=n)
+    where = np.where(borders == 0, INSIDE, np.where(borders == 2, BORDER, FIXED)).astype(np.uint8)
+    where[ends[count > 2].reshape(-1)] = FIXED
+    _, same, many = np.unique(np.rint(exact), axis=0, return_inverse=True, return_counts=True)
+    where[many[same.reshape(-1)] > 1] = FIXED
+    return CollapseState(places, exact[:, 2].copy(), faces.copy(), head, after, where)
 
 
 @kernel()

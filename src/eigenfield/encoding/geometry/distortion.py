@@ -63,31 +63,31 @@ def luma_of(observations: Observations, index: int) -> NDArray[np.float32]:
 
 
 def depth_distortion(
-    mesh: Mesh, lattice: Lattice, pixel: float, cameras: Sequence[Camera], observations: Observations
+    mesh: Mesh, lattice: Lattice, cameras: Sequence[Camera], observations: Observations
 ) -> DistortionMap:
     """Squared error of all photographs together for wrong depths of a relief.
 
     Args:
         mesh: The relief, with UVs.
         lattice: Of the relief.
-        pixel: Steps of the lattice for one pixel.
         cameras: Of the observations.
         observations: Those of DISTORTION_MAX_CAMERAS cameras, spread over the array, are decoded.
     """
     assert mesh.uv is not None
-    exact = lattice.coordinates(mesh.vertices)
+    exact, pixel = lattice.coordinates(mesh.vertices), 2.0**lattice.fine  # steps
     side = _side(mesh, exact, pixel)
     start = 1 - _phase(mesh.uv.astype(np.float64) * side)
     places = _places(mesh.uv, side, start)
     owners = np.zeros((side + 2, side + 2), np.int32)
     draw_owners(places, mesh.faces, owners)
     given = owners >= 0
-    points = texel_values(places, mesh.faces, owners, exact)
+    corners, weights = texel_weights(places, mesh.faces, owners)
+    points = np.einsum("tk,tkx->tx", weights, exact[corners])
     depth = np.zeros(owners.shape, np.float32)
     depth[given] = points[:, 2]
     world, deeper = lattice.points(points), lattice.points(points + np.array([0, 0, 1]))
 
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), DISTORTION_MAX_CAMERAS)
+    chosen = spread_cameras(cameras, DISTORTION_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
 
     def of_observation(index: int) -> NDArray[np.float64]:
@@ -109,14 +109,6 @@ def depth_distortion(
     return DistortionMap(cost_map, (side, start), float(np.median(seen[seen > 0])) * of_texel)
 
 
-def texel_values(
-    places: NDArray[np.int64], faces: NDArray[np.int32], owners: NDArray[np.int32], values: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """(t, ...) what vertices' values are at the texels that are covered, row by row."""
-    corners, weights = texel_weights(places, faces, owners)
-    return np.asarray(np.einsum("tk,tk...->t...", weights, values[corners]))
-
-
 def texels_of(mesh: Mesh, shape: tuple[int, ...]) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float64]]:
     """Of an atlas of (rows, columns): (rows, columns) the face that covers each texel or -1, and as `texel_weights`."""
     assert mesh.uv is not None
@@ -131,10 +123,8 @@ def texel_weights(
 ) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """(t, 3) the corners of the faces over covered texels, and their barycentric coordinates."""
     row, column = np.nonzero(owners >= 0)
-    corners = faces[owners[row, column]]
-    return corners, barycentric_coordinates(
-        places[corners], np.stack([column, row], axis=1) * TEXEL_STEPS + HALF_TEXEL_STEPS
-    )
+    corners, centres = faces[owners[row, column]], np.stack([column, row], axis=1) * TEXEL_STEPS + HALF_TEXEL_STEPS
+    return corners, barycentric_coordinates(places[corners], centres)
 
 
 def _camera_distortion(
@@ -143,20 +133,34 @@ def _camera_distortion(
     """(6, t): whether the camera sees each texel, error for a step of depth and its square, variance around, the
     photograph's square, and how many pixels see the mesh."""
     drawn = rasterise_view(mesh, camera)
-    (at, depth), (beside, _) = camera.project(world), camera.project(deeper)
-    column, row = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
-    inside = (depth > 0) & (column >= 0) & (row >= 0) & (column < camera.width) & (row < camera.height)
-    column, row = np.where(inside, column, 0), np.where(inside, row, 0)
-    with np.errstate(divide="ignore"):
-        inside &= 1 / depth >= drawn.inverse_depth[row, column] * (1 - VISIBLE_MAX_DEPTH_RATIO)
-    down, right = np.gradient(photograph, axis=0), np.gradient(photograph, axis=1)
-    mean = uniform_filter(photograph, VARIANCE_WINDOW_PX)
-    varies = np.maximum(uniform_filter(np.square(photograph), VARIANCE_WINDOW_PX) - np.square(mean), 0)
-    shift = np.nan_to_num(beside - at)
+    inside, row, column, at = visible_points(camera, world, drawn.inverse_depth)
+    down, right = map(np.asarray, np.gradient(photograph))
+    shift = np.nan_to_num(camera.project(deeper)[0] - at)
     error = np.where(inside, right[row, column] * shift[:, 0] + down[row, column] * shift[:, 1], 0)
     pixels = np.full(len(world), float((drawn.face >= 0).sum()))
-    found = [np.where(inside, picture[row, column], 0) for picture in (varies, np.square(photograph))]
+    pictures = local_variance(photograph), np.square(photograph)
+    found = [np.where(inside, picture[row, column], 0) for picture in pictures]
     return np.stack([inside, error, np.square(error), *found, pixels])
+
+
+def visible_points(
+    camera: Camera, world: NDArray[np.float64], inverse_depth: NDArray[np.float32]
+) -> tuple[NDArray[np.bool_], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Whether a camera sees each of n points of a mesh that it draws with these inverse depths; the row and the column
+    of the pixel, (0, 0) for points that are not in the picture; (n, 2) their places in it."""
+    at, depth = camera.project(world)
+    column, row = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
+    seen = (depth > 0) & (column >= 0) & (row >= 0) & (column < camera.width) & (row < camera.height)
+    column, row = np.where(seen, column, 0), np.where(seen, row, 0)
+    with np.errstate(divide="ignore"):
+        seen &= 1 / depth >= inverse_depth[row, column] * (1 - VISIBLE_MAX_DEPTH_RATIO)
+    return seen, row, column, at
+
+
+def local_variance(picture: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(h, w) the variance of a picture in a window of VARIANCE_WINDOW_PX."""
+    mean = uniform_filter(picture, VARIANCE_WINDOW_PX)
+    return np.maximum(uniform_filter(np.square(picture), VARIANCE_WINDOW_PX) - np.square(mean), 0)
 
 
 def _has_surface_behind(points: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -184,7 +188,7 @@ def hole_error(
     Returns:
         The error, and the vertices of `given` that are seen there.
     """
-    chosen = spread_cameras(np.stack([camera.centre for camera in cameras]), HOLE_MAX_CAMERAS)
+    chosen = spread_cameras(cameras, HOLE_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
     error, seen = 0.0, []
     for index in range(len(some)):
@@ -238,7 +242,8 @@ def _side(mesh: Mesh, exact: NDArray[np.float64], pixel: float) -> int:
     return int(np.clip(round(np.sqrt(pixels)), 16, DISTORTION_MAX_SIDE_TEXELS))
 
 
-def spread_cameras(centres: NDArray[np.float64], count: int) -> list[int]:
+def spread_cameras(cameras: Sequence[Camera], count: int) -> list[int]:
     """Indices of cameras, each the farthest from those before; the first is the middle one."""
+    centres = np.array([camera.centre for camera in cameras])
     middle = int(np.argmin(np.linalg.norm(centres - centres.mean(axis=0), axis=1)))
     return farthest_points(distances_to(centres), middle, count).tolist()

@@ -9,6 +9,7 @@ relief of least cost is taken. Where a camera sees through it, the vertices that
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import logging
 from collections.abc import Sequence
@@ -24,15 +25,10 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations
-from eigenfield.encoding.geometry.coded import MESH_CODEC, UV_BITS
-from eigenfield.encoding.geometry.collapse_kernels import (
-    BORDER,
-    FIXED,
-    INSIDE,
-    CollapseState,
-    collapse,
-    collapsed_faces,
-)
+from eigenfield.core.payloads import Coded
+from eigenfield.core.proxy import Proxy
+from eigenfield.encoding.geometry.coded import MESH_CODEC, UV_BITS, coded_mesh, mesh_of_stream
+from eigenfield.encoding.geometry.collapse_kernels import FIXED, collapse, collapse_state, collapsed_faces
 from eigenfield.encoding.geometry.distortion import DistortionMap, depth_distortion, hole_error, texel_weights
 from eigenfield.encoding.geometry.raster_kernels import draw_owners, mesh_cost
 
@@ -66,13 +62,28 @@ class CodedRelief:
         return self.loss + lambda_ * len(self.stream)
 
 
+def simplify_proxy_rd(
+    proxy: Proxy, cameras: Sequence[Camera], reference: int, observations: Observations, lambda_: float, texels: float
+) -> Coded[Mesh]:
+    """The mesh as a file keeps it: a relief simplified by rate and distortion, other meshes with all their triangles.
+
+    Args:
+        proxy: With its lattice, if it is a relief.
+        cameras: The encoded ones.
+        reference: Index of the reference camera among them.
+        observations: Theirs.
+        lambda_: Rate-distortion weight: squared error for one byte, for each pixel that a texel is seen in.
+        texels: Of the atlas, for one pixel of the reference camera.
+    """
+    if proxy.lattice is not None:
+        with contextlib.suppress(ValueError):  # too far off the picture for the lattice
+            made = simplify_relief_rd(proxy.mesh, proxy.lattice, cameras, observations, lambda_, texels)
+            return mesh_of_stream(made.stream, made.mesh)
+    return coded_mesh(proxy, cameras, reference)
+
+
 def simplify_relief_rd(
-    mesh: Mesh,
-    lattice: Lattice,
-    cameras: Sequence[Camera],
-    observations: Observations,
-    lambda_: float,
-    texels: float,
+    mesh: Mesh, lattice: Lattice, cameras: Sequence[Camera], observations: Observations, lambda_: float, texels: float
 ) -> CodedRelief:
     """The relief of least rate-distortion cost.
 
@@ -88,22 +99,22 @@ def simplify_relief_rd(
         ValueError: The relief cannot be coded on its lattice.
     """
     assert mesh.uv is not None
-    fine, exact = lattice.fine, lattice.coordinates(mesh.vertices)
-    distortion = depth_distortion(mesh, lattice, 2.0**fine, cameras, observations)
+    exact = lattice.coordinates(mesh.vertices)
+    distortion = depth_distortion(mesh, lattice, cameras, observations)
     lambda_ *= distortion.seen / texels / REMAINING_LOSS_RATIO
     found: list[tuple[float, CodedRelief]] = []
-    whole = _coded_relief(mesh, lattice, fine, distortion, 0, 1.0)  # all of a grid is cheap
+    whole = _coded_relief(mesh, lattice, distortion, 0, 1.0)  # all of a grid is cheap
     limit, kept, start = lambda_ * VERTEX_BYTES, np.zeros(0, np.int64), (0, 0)
     for number in range(HOLE_ROUNDS + 2):
-        state = _collapse_state(distortion.places(mesh.uv), exact, mesh.faces)
+        state = collapse_state(distortion.places(mesh.uv), exact, mesh.faces)
         state.where[kept] = FIXED
         mesh_cost(distortion.cost_map, state.places, state.depth, state.faces)
         collapses, _ = collapse(distortion.cost_map, state, limit)
         simplified = _collapsed_mesh(mesh, lattice, distortion, exact, collapses, kept)
-        best, start = _best_steps(simplified, lattice, fine, distortion, lambda_, start)
+        best, start = _best_steps(simplified, lattice, distortion, lambda_, start)
         last = limit == 0
         if whole is not None and (best is None or whole.cost(lambda_) < best.cost(lambda_)):
-            best, _ = _best_steps(mesh, lattice, fine, distortion, lambda_, (0, 0))
+            best, _ = _best_steps(mesh, lattice, distortion, lambda_, (0, 0))
             last = True  # no vertex collapses
         more = kept
         if best is not None:
@@ -145,7 +156,7 @@ def _collapsed_mesh(
 
 
 def _best_steps(
-    mesh: Mesh, lattice: Lattice, fine: int, distortion: DistortionMap, lambda_: float, start: tuple[int, int]
+    mesh: Mesh, lattice: Lattice, distortion: DistortionMap, lambda_: float, start: tuple[int, int]
 ) -> tuple[CodedRelief | None, tuple[int, int]]:
     """The coded relief whose steps of depth and contours no single change makes cheaper, and these: the digits less,
     and the index in DEPTH_STEP_RATIOS.
@@ -153,13 +164,14 @@ def _best_steps(
     start: the steps that are tried first. Where the mesh cannot be coded with these, all are tried.
     """
     tried: dict[tuple[int, int], CodedRelief | None] = {}
+    fine = lattice.fine
 
     def cost(at: tuple[int, int]) -> float:
         digits, step = at
         if not (0 <= digits <= fine and 0 <= step < len(DEPTH_STEP_RATIOS)):
             return np.inf
         if at not in tried:
-            tried[at] = _coded_relief(mesh, lattice, fine, distortion, digits, DEPTH_STEP_RATIOS[step])
+            tried[at] = _coded_relief(mesh, lattice, distortion, digits, DEPTH_STEP_RATIOS[step])
         relief = tried[at]
         return np.inf if relief is None else relief.cost(lambda_)
 
@@ -176,41 +188,21 @@ def _best_steps(
 
 
 def _coded_relief(
-    mesh: Mesh, lattice: Lattice, fine: int, distortion: DistortionMap, digits: int, step: float
+    mesh: Mesh, lattice: Lattice, distortion: DistortionMap, digits: int, step: float
 ) -> CodedRelief | None:
     """The mesh coded with so many of the contours' fine digits less, and depths in steps so many times the lattice's;
     None where it cannot be."""
     coarse = Lattice(lattice.matrix @ np.diag([2.0**digits, 2.0**digits, step, 1.0]), True)
     try:
-        stream, found = encoder(MESH_CODEC)(mesh, coarse, uv_bits=UV_BITS, fine=fine - digits)
+        stream, found = encoder(MESH_CODEC)(mesh, coarse, uv_bits=UV_BITS, fine=lattice.fine - digits)
     except ValueError:
         return None
     if not len(found.faces):
         return None
     assert found.uv is not None
     depth = lattice.coordinates(found.vertices)[:, 2]
-    return CodedRelief(
-        stream, found, float(mesh_cost(distortion.cost_map, distortion.places(found.uv), depth, found.faces))
-    )
-
-
-def _collapse_state(places: NDArray[np.int64], exact: NDArray[np.float64], faces: NDArray[np.int32]) -> CollapseState:
-    """The state before any collapse. Fixed are vertices where borders or two charts meet, which would come apart."""
-    n, corners = len(places), faces.reshape(-1)
-    order = np.argsort(corners, kind="stable").astype(np.int32)
-    last = np.flatnonzero(np.diff(corners[order])) if len(order) else np.zeros(0, np.int64)
-    head, after = np.full(n, -1, np.int32), np.full(len(corners), -1, np.int32)
-    head[corners[order[np.r_[0, last + 1]]]] = order[np.r_[0, last + 1]]
-    along = np.setdiff1d(np.arange(len(order) - 1), last)
-    after[order[along]] = order[along + 1]
-    edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=1)
-    ends, count = np.unique(edges, axis=0, return_counts=True)
-    borders = np.bincount(ends[count == 1].reshape(-1), minlength=n)
-    where = np.where(borders == 0, INSIDE, np.where(borders == 2, BORDER, FIXED)).astype(np.uint8)
-    where[ends[count > 2].reshape(-1)] = FIXED
-    _, same, many = np.unique(np.rint(exact), axis=0, return_inverse=True, return_counts=True)
-    where[many[same.reshape(-1)] > 1] = FIXED
-    return CollapseState(places, exact[:, 2].copy(), faces.copy(), head, after, where)
+    loss = mesh_cost(distortion.cost_map, distortion.places(found.uv), depth, found.faces)
+    return CodedRelief(stream, found, float(loss))
 
 
 def _fitted_depths(

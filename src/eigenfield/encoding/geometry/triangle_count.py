@@ -16,13 +16,12 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, select_cameras
-from eigenfield.encoding.geometry.distortion import VARIANCE_WINDOW_PX, VISIBLE_MAX_DEPTH_RATIO, luma_of, spread_cameras
+from eigenfield.encoding.geometry.distortion import local_variance, luma_of, spread_cameras, visible_points
 from eigenfield.encoding.geometry.simplify_relief import REMAINING_LOSS_RATIO
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, simplify_mesh, weld_vertices
@@ -98,7 +97,7 @@ def triangle_count_rd(mesh: Mesh, cameras: Sequence[Camera], observations: Obser
     Returns:
         The number; None where that of the mesh, at most PROXY_DEFAULT_TRIANGLES, is best.
     """
-    chosen = spread_cameras(np.array([camera.centre for camera in cameras]), TRIANGLE_MAX_CAMERAS)
+    chosen = spread_cameras(cameras, TRIANGLE_MAX_CAMERAS)
     some = select_cameras(observations, chosen)
 
     def view(index: int) -> _View:
@@ -135,10 +134,9 @@ def _view(mesh: Mesh, camera: Camera, time: int, grey: NDArray[np.float32]) -> _
     if pixels > 1:
         camera = camera.resize(int(camera.width / np.sqrt(pixels)), int(camera.height / np.sqrt(pixels)))
         grey = np.asarray(cv2.resize(grey, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.float32)
-    mean = uniform_filter(grey, VARIANCE_WINDOW_PX)
-    around = np.maximum(uniform_filter(np.square(grey), VARIANCE_WINDOW_PX) - np.square(mean), 0)
-    down, right = np.asarray(np.gradient(grey, axis=0)), np.asarray(np.gradient(grey, axis=1))
-    return _View(camera, time, grey, right, down, around, rasterise_view(mesh, camera).inverse_depth, pixels)
+    down, right = map(np.asarray, np.gradient(grey))
+    inverse_depth = rasterise_view(mesh, camera).inverse_depth
+    return _View(camera, time, grey, right, down, local_variance(grey), inverse_depth, pixels)
 
 
 def _points(views: Sequence[_View], number: int) -> _Points:
@@ -149,12 +147,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     beside = []
     for other in views:
         if other is not view and other.time == view.time:
-            (at, depth), camera = other.camera.project(world), other.camera
-            x, y = np.floor(np.nan_to_num(at, nan=-1.0).clip(-1, 1e6)).astype(np.int64).T
-            there = (depth > 0) & (x >= 0) & (y >= 0) & (x < camera.width) & (y < camera.height)
-            x, y = np.where(there, x, 0), np.where(there, y, 0)
-            with np.errstate(divide="ignore"):
-                there &= 1 / depth >= other.inverse_depth[y, x] * (1 - VISIBLE_MAX_DEPTH_RATIO)
+            there, y, x, at = visible_points(other.camera, world, other.inverse_depth)
             gradient = np.stack([other.right[y, x], other.down[y, x]], axis=1).astype(np.float64)
             beside.append((other, there, at, gradient))
     each = float((view.inverse_depth > 0).sum()) / max(len(row), 1)

@@ -83,14 +83,12 @@ def warn_of_disagreement(
     typical = float(np.nanmedian(error))
     spread = NORMAL_DEVIATION_RATIO * float(np.nanmedian(np.abs(error - typical)))
     beyond = max(OUTLIER_MIN_DEVIATIONS * spread, OUTLIER_MIN_RATIO * typical, OUTLIER_MIN_GREY_LEVELS)
-    why = (
-        "an alignment that failed, another scene, or a wrong camera" if aligned else "another scene, or a wrong camera"
-    )
+    why = "an alignment that failed, another scene" if aligned else "another scene"
     outliers = np.flatnonzero(error > np.maximum(typical, _neighbours_error(error, places)) + beyond).tolist()
     for index in outliers:
         log.warning(
             "%s does not show what the others do: it differs by %.0f grey levels from the mean texture (they by %.0f); "
-            "%s? take it out of the capture, or leave it out with --hold-out",
+            "%s, or a wrong camera? take it out of the capture, or leave it out with --hold-out",
             names[index], error[index], typical, why,
         )  # fmt: skip
     shared = 1 - float(squares.sum()) / total if total > 0 else 1.0

@@ -65,9 +65,8 @@ def make_atlas(mesh: Mesh, width: int, height: int) -> Atlas:
     raster = rasterise_atlas(mesh, width, height)
     texel = np.flatnonzero(raster.face >= 0)
     if len(texel) == 0:
-        raise ProxyError(
-            "atlas-empty", f"no texel of a {width}x{height} atlas lies in a triangle", remedy="ask for a larger --atlas"
-        )
+        message = f"no texel of a {width}x{height} atlas lies in a triangle"
+        raise ProxyError("atlas-empty", message, remedy="ask for a larger --atlas")
     face = raster.face.reshape(-1)[texel]
     row, column = np.divmod(texel, width)
     centre = np.stack([column + 0.5, row + 0.5, np.ones(len(texel))], axis=1)
@@ -77,17 +76,8 @@ def make_atlas(mesh: Mesh, width: int, height: int) -> Atlas:
     for start in range(0, len(texel), 1 << 18):  # the gathered matrices are the largest thing here
         part = slice(start, start + (1 << 18))
         position[part] = np.einsum("nxe,ne->nx", affine[face[part]], centre[part])
-    return Atlas(
-        mesh,
-        width,
-        height,
-        texel,
-        face,
-        position,
-        mesh.face_normals().astype(np.float32),
-        affine[:, :, 0].astype(np.float32),
-        affine[:, :, 1].astype(np.float32),
-    )
+    normal, along, down = (a.astype(np.float32) for a in (mesh.face_normals(), affine[:, :, 0], affine[:, :, 1]))
+    return Atlas(mesh, width, height, texel, face, position, normal, along, down)
 
 
 def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
@@ -105,11 +95,9 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     area = np.abs(signed_areas(flat.reshape(-1, 3, 2)))
     usable &= area > 0
     if not usable.any():
-        raise ProxyError(
-            "proxy-not-seen",
-            "the camera nearest the centre of the array sees nothing of the mesh",
-            remedy="bring the mesh into the frame of the cameras (eigenfield inspect --overlay shows both)",
-        )
+        message = "the camera nearest the centre of the array sees nothing of the mesh"
+        remedy = "bring the mesh into the frame of the cameras (eigenfield inspect --overlay shows both)"
+        raise ProxyError("proxy-not-seen", message, remedy=remedy)
     ratio = np.sqrt(np.abs(signed_areas(uv))[usable] / area[usable])
     order = np.argsort(ratio, kind="stable")
     mass = np.cumsum(pixels[usable][order])
@@ -127,15 +115,7 @@ def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = 
             where most of the surface is seen by one camera alone, as behind a ring of them, more would hold nothing.
     """
     side = density / texels_per_pixel(mesh, camera)
-    cap = (
-        ATLAS_SIDE_CAP_TEXELS
-        if pixels is None
-        else min(ATLAS_SIDE_CAP_TEXELS, math.sqrt(ATLAS_MAX_TEXELS_PER_PIXEL * pixels))
-    )
-    return int(
-        np.clip(
-            np.ceil(min(side, cap) / ATLAS_SIDE_STEP_TEXELS) * ATLAS_SIDE_STEP_TEXELS,
-            ATLAS_SIDE_STEP_TEXELS,
-            ATLAS_SIDE_CAP_TEXELS,
-        )
-    )
+    if pixels is not None:
+        side = min(side, math.sqrt(ATLAS_MAX_TEXELS_PER_PIXEL * pixels))
+    steps = math.ceil(min(side, ATLAS_SIDE_CAP_TEXELS) / ATLAS_SIDE_STEP_TEXELS)
+    return min(max(steps, 1) * ATLAS_SIDE_STEP_TEXELS, ATLAS_SIDE_CAP_TEXELS)

@@ -9,10 +9,10 @@ for one tile of them.
 from __future__ import annotations
 
 import logging
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import helmert
 from threadpoolctl import threadpool_limits
 
 from eigenfield.core.progress import Progress, track
@@ -21,20 +21,6 @@ from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.runtime.parallel import parallel_stream, pieces
 
 log = logging.getLogger("eigenfield.basis")
-
-
-@dataclass(frozen=True, eq=False)
-class Spectrum:
-    """The decomposition of the observations, before any texture is formed.
-
-    Attributes:
-        vectors: (No, No - 1) float64, orthonormal columns by falling eigenvalue, each orthogonal to (1, ..., 1) and
-            with its entry of largest magnitude positive.
-        values: (No - 1,) float64, eigenvalues of the Gram matrix: squared singular values of equation 4.
-    """
-
-    vectors: NDArray[np.float64]
-    values: NDArray[np.float64]
 
 
 def _deviations(maps: TextureMaps, mean: Mean, first: int, last: int) -> NDArray[np.float32]:
@@ -60,28 +46,18 @@ def gram_matrix(maps: TextureMaps, mean: Mean, progress: Progress | None = None)
     return total
 
 
-def spectrum(gram: NDArray[np.float64]) -> Spectrum:
-    """Eigenvectors of a Gram matrix within the complement of (1, ..., 1), on which deviations from a mean live.
+def eigenvectors(gram: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(No, No - 1) float64 eigenvectors of a Gram matrix within the complement of (1, ..., 1), on which deviations from
+    a mean live: orthonormal columns by falling eigenvalue, each with its entry of largest magnitude positive.
 
     Working there leaves exactly No - 1 components, which span every set of maps even where eigenvalues vanish.
     """
-    count = len(gram)
-    complement = _helmert(count)
+    complement = np.ascontiguousarray(helmert(len(gram)).T)
     with threadpool_limits(1, "blas"):
-        values, inner = np.linalg.eigh(complement.T @ gram @ complement)
+        _, inner = np.linalg.eigh(complement.T @ gram @ complement)
         vectors = complement @ inner[:, ::-1]
     largest = np.abs(vectors).argmax(axis=0)
-    vectors *= np.where(vectors[largest, np.arange(count - 1)] < 0, -1.0, 1.0)
-    return Spectrum(vectors, np.maximum(values[::-1], 0.0))
-
-
-def _helmert(count: int) -> NDArray[np.float64]:
-    """(count, count - 1) orthonormal columns, all orthogonal to (1, ..., 1)."""
-    columns = np.zeros((count, count - 1))
-    for k in range(1, count):
-        columns[:k, k - 1] = 1 / np.sqrt(k * (k + 1))
-        columns[k, k - 1] = -k / np.sqrt(k * (k + 1))
-    return columns
+    return vectors * np.where(vectors[largest, np.arange(len(gram) - 1)] < 0, -1.0, 1.0)
 
 
 def component_count(asked: int, observations: int) -> int:
@@ -92,10 +68,9 @@ def component_count(asked: int, observations: int) -> int:
     return min(asked, most)
 
 
-def weights_of(decomposition: Spectrum, count: int) -> NDArray[np.float32]:
+def weights_of(vectors: NDArray[np.float64], count: int) -> NDArray[np.float32]:
     """(No, N) float32 ω(c, j), scaled to unit mean square over the observations: the textures carry the amplitudes."""
-    vectors = decomposition.vectors[:, :count]
-    return (vectors * np.sqrt(len(vectors))).astype(np.float32)
+    return (vectors[:, :count] * np.sqrt(len(vectors))).astype(np.float32)
 
 
 def eigen_textures(

@@ -2,28 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis, Plane
-from eigenfield.core.errors import CaptureError
-from eigenfield.core.progress import Progress
+from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.encoding.projected.agreement import disagreement_of
 from eigenfield.encoding.projected.align import align_maps
 from eigenfield.encoding.projected.atlas import make_atlas
-from eigenfield.encoding.projected.eigen import component_count, eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.eigen import component_count, eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.harmonise import harmonise_maps
 from eigenfield.encoding.projected.mean import Mean, mean_map
 from eigenfield.encoding.projected.project import TextureMaps, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.encoding.projected.uv_measure import smallest_count
-from eigenfield.encoding.projected.write_maps import write_maps
-from eigenfield.encoding.views import CaptureViews
+from eigenfield.encoding.views import CaptureViews, nothing_seen_error
+from eigenfield.imaging.png import png_bytes
+from eigenfield.runtime.files import output_errors, write_bytes
+from eigenfield.runtime.parallel import parallel_stream
 
 
 def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
@@ -56,23 +58,14 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
         if options.align:
             reference = views.taken_by.tolist().index(views.rig.reference)
             align_maps(maps, reference, progress)
-        mean = _mean_of(maps, progress)  # equation 1
+        mean = mean_map(maps, progress)  # equation 1
+        if not mean.seen.any():
+            raise nothing_seen_error()
         spreader = make_spreader(maps.atlas, mean.seen)
         basis = _basis_of(maps, mean, spreader, plan, work, progress)  # equations 2 to 6
         if options.keep_maps is not None:
             write_maps(maps, mean.values, spreader, views.observation_names, Path(options.keep_maps), progress=progress)
     return plan.scene((Plane(spreader(mean.values), (basis,)),), own, colours=colours)
-
-
-def _mean_of(maps: TextureMaps, progress: Progress | None) -> Mean:
-    mean = mean_map(maps, progress)
-    if not mean.seen.any():
-        raise CaptureError(
-            "nothing-seen",
-            "no camera sees any texel of the proxy",
-            remedy="bring mesh and cameras into one frame (eigenfield inspect --overlay shows both); look at the masks",
-        )
-    return mean
 
 
 def _basis_of(
@@ -86,13 +79,13 @@ def _basis_of(
     gram = gram_matrix(maps, mean, progress)  # equation 3
     names, places = views.observation_names, views.coordinates[views.taken_by]
     disagreement_of(maps, mean, gram, names, places, aligned=bool(options.align))
-    decomposition = spectrum(gram)  # equation 4
+    vectors = eigenvectors(gram)  # equation 4
     if options.uv_ssim is None:
         count = component_count(resolved_value(options.textures), maps.count)
     else:
         average = spreader(mean.values)
-        count = smallest_count(maps, mean, average, decomposition, options.uv_ssim, work=work, progress=progress)
-    weights = weights_of(decomposition, count)
+        count = smallest_count(maps, mean, average, vectors, options.uv_ssim, work=work, progress=progress)
+    weights = weights_of(vectors, count)
     compact = eigen_textures(maps, mean, weights, progress)  # equations 5 and 6
     pictures = np.zeros((count, maps.atlas.height, maps.atlas.width, maps.channels), np.float32)
     for index in range(count):
@@ -107,3 +100,42 @@ def _for_all_cameras(fitted: NDArray[np.float32], views: CaptureViews) -> NDArra
     colours[:, 0] = 1
     colours[views.taken_by] = fitted
     return colours
+
+
+def write_maps(
+    maps: TextureMaps,
+    mean: NDArray[np.float32],
+    spreader: Spreader,
+    names: Sequence[str],
+    folder: Path,
+    progress: Progress | None = None,
+) -> None:
+    """Write `NAME.map.png` (filled by equation 2, gutters dilated) and `NAME.seen.png` for every observation, and
+    `mean.png`. Existing files of these names are replaced; each is whole or absent.
+
+    Args:
+        maps: Of No observations.
+        mean: (n, C) at the chart texels.
+        spreader: Of the maps' atlas.
+        names: Of the observations, each once.
+        folder: Is made if it does not exist.
+        progress: Reports the maps that are written.
+    """
+    with output_errors(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+
+    flat = [name.replace("/", "_").replace("\\", "_") for name in names]
+    stems = [Path(name).stem for name in flat]
+    labels = stems if len(set(stems)) == len(stems) else flat
+
+    def write(index: int) -> None:
+        seen = np.array(maps.seen[index])
+        stem = labels[index]
+        filled = spreader(np.where(seen[:, None] > 0, maps.values[index], mean))
+        visibility = maps.atlas.image(seen[:, None].astype(np.float32))
+        write_bytes(folder / f"{stem}.map.png", png_bytes(filled), overwrite=True)
+        write_bytes(folder / f"{stem}.seen.png", png_bytes(visibility), overwrite=True)
+
+    write_bytes(folder / "mean.png", png_bytes(spreader(mean)), overwrite=True)
+    for _ in track(parallel_stream(write, range(maps.count)), "maps as pictures", maps.count, progress):
+        pass

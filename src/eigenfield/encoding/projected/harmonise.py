@@ -31,6 +31,8 @@ from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
 log = logging.getLogger("eigenfield.texturing")
 
+Numbers = NDArray[np.float64]
+
 
 @dataclass(frozen=True)
 class HarmoniseTuning:
@@ -117,9 +119,7 @@ def harmonised_map(
     return result
 
 
-def fit_colours(
-    values: NDArray[np.float64], weights: NDArray[np.float64], blocks: NDArray[np.int64], model: str = "gain"
-) -> NDArray[np.float64]:
+def fit_colours(values: Numbers, weights: Numbers, blocks: NDArray[np.int64], model: str = "gain") -> Numbers:
     """(No, 2) gains and offsets of one channel.
 
     Iteratively reweighted least squares (Cauchy's weights) of T - a M - b with a = 1 / g, b = -o / g. Each round is a
@@ -163,14 +163,7 @@ def fit_colours(
     return result
 
 
-def _shrinkage(
-    T: NDArray[np.float64],
-    w: NDArray[np.float64],
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    M: NDArray[np.float64],
-    blocks: NDArray[np.int64],
-) -> float:
+def _shrinkage(T: Numbers, w: Numbers, a: Numbers, b: Numbers, M: Numbers, blocks: NDArray[np.int64]) -> float:
     """From 0 to 1, max(0, 1 - V / (n E)): the positive part of James and Stein's factor, n = `independent_blocks`.
 
     E: squares of what the colours change, Σ w (a M + b - M)². V: what gains of each block's own would change on top of
@@ -189,7 +182,7 @@ def _shrinkage(
     return max(0.0, 1 - apart / (HARMONISE_TUNING.independent_blocks * explained)) if explained > 0 else 0.0
 
 
-def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _sharing(weights: Numbers) -> NDArray[np.bool_]:
     """(No,) cameras with enough places that some other such camera shows too."""
     active = np.ones(len(weights), bool)
     while True:
@@ -201,9 +194,7 @@ def _sharing(weights: NDArray[np.float64]) -> NDArray[np.bool_]:
         active = kept
 
 
-def _map(
-    T: NDArray[np.float64], w: NDArray[np.float64], a: NDArray[np.float64], b: NDArray[np.float64]
-) -> NDArray[np.float64]:
+def _map(T: Numbers, w: Numbers, a: Numbers, b: Numbers) -> Numbers:
     """(m,) the best M for given a and b."""
     above = (w * a[:, None] * (T - b[:, None])).sum(axis=0)
     below = (w * a[:, None] ** 2).sum(axis=0)
@@ -211,14 +202,8 @@ def _map(
 
 
 def _step(
-    residual: NDArray[np.float64],
-    w: NDArray[np.float64],
-    a: NDArray[np.float64],
-    b: NDArray[np.float64],
-    M: NDArray[np.float64],
-    prior: float,
-    affine: bool,
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    residual: Numbers, w: Numbers, a: Numbers, b: Numbers, M: Numbers, prior: float, affine: bool
+) -> tuple[Numbers, Numbers]:
     """The Gauss-Newton step of a and b, M following.
 
     M is the best one, so its own gradient is zero and the step solves (H - B Bᵀ) δ = gradient: H the cameras' own
@@ -244,7 +229,7 @@ def _step(
     return step[:n], step[n:] if affine else np.zeros(n)
 
 
-def _blocks(positions: NDArray[np.float64]) -> NDArray[np.int64]:
+def _blocks(positions: Numbers) -> NDArray[np.int64]:
     """(m,) the block of each of (m, 3) positions: as many in each quarter along the longest axis, and across it."""
     centred = positions - positions.mean(axis=0)
     axes = np.linalg.eigh(centred.T @ centred)[1][:, :0:-1]
@@ -253,9 +238,7 @@ def _blocks(positions: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.asarray(quarter[:, 0] * HARMONISE_TUNING.blocks_per_axis + quarter[:, 1], np.int64)
 
 
-def _cells(
-    maps: TextureMaps, progress: Progress | None
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[Numbers, Numbers, NDArray[np.int64]]:
     """(No, m, C) averages over square cells of the atlas and (No, m, C) how much each counts: the part of the cell that
     charts cover where the camera sees the cell and no texel of it is at an end of the range, else 0. (m,) the block of
     the surface in which the cell lies.

@@ -10,6 +10,7 @@ from eigenfield.runtime.jit import kernel
 
 BILINEAR, BICUBIC, LANCZOS = 0, 1, 2
 MAX_FOOTPRINT_PX = 16.0  # that a texel may average over, each way
+GRAZING_COSINE = 0.0872  # cosine of 85 degrees
 
 
 @kernel(inline=True)
@@ -69,22 +70,21 @@ def _is_hidden(x, y, q, inverse_depth, bias):
 
 @kernel()
 def project_texels(
-    first, last, position, face, normal, along, down, matrix, centre, photograph, mask, masked, inverse_depth, bias,
-    grazing, kind, values, seen,
+    position, face, normal, along, down, matrix, centre, photograph, mask, inverse_depth, bias, kind, values, seen
 ):  # fmt: skip
-    """Texels [first, last): values (n, C) and seen (n,) out.
+    """All texels: values (n, C) and seen (n,) out. mask: (0, 0) for none.
 
     A texel at X projects to (x, y) at depth z = (P X)_3. It is seen if it is in front, inside the photograph, not
-    hidden (see `_is_hidden`), |n . v| > grazing, and, with a mask, most of its filter lies where the mask counts. Its
-    footprint per axis is the length of the row of d(x, y)/d(column, row); where it exceeds one pixel the filter is
-    stretched to it, so that the texel averages what it covers. With a mask, taps are weighted by it.
+    hidden (see `_is_hidden`), |n . v| > GRAZING_COSINE, and, with a mask, most of its filter lies where the mask
+    counts. Its footprint per axis is the length of the row of d(x, y)/d(column, row); where it exceeds one pixel the
+    filter is stretched to it, so that the texel averages what it covers. With a mask, taps are weighted by it.
     """
     height, width, channels = photograph.shape
     radius = 1.0 if kind == 0 else (2.0 if kind == 1 else 3.0)
     most = int(2 * 3 * MAX_FOOTPRINT_PX) + 4
     ix, iy = np.empty(most, np.int64), np.empty(most, np.int64)
     wx, wy = np.empty(most), np.empty(most)
-    for n in range(first, last):
+    for n in range(position.shape[0]):
         seen[n] = 0
         for c in range(channels):
             values[n, c] = 0
@@ -99,7 +99,7 @@ def project_texels(
         f = face[n]
         vx, vy, vz = centre[0] - px, centre[1] - py, centre[2] - pz
         cosine = abs(normal[f, 0] * vx + normal[f, 1] * vy + normal[f, 2] * vz)
-        if cosine <= grazing * np.sqrt(vx * vx + vy * vy + vz * vz):
+        if cosine <= GRAZING_COSINE * np.sqrt(vx * vx + vy * vy + vz * vz):
             continue
         if _is_hidden(x, y, 1.0 / z, inverse_depth, bias):
             continue
@@ -114,18 +114,14 @@ def project_texels(
         sy = min(max(np.sqrt(ya * ya + yd * yd), 1.0), MAX_FOOTPRINT_PX)
         nx = _taps(kind, radius, x, sx, width, ix, wx)
         ny = _taps(kind, radius, y, sy, height, iy, wy)
-        if masked:
+        kept = 1.0
+        if mask.size:
             kept = 0.0
             for j in range(ny):
                 for i in range(nx):
                     kept += wy[j] * wx[i] * mask[iy[j], ix[i]]
             if kept < 0.5:
                 continue
-            for j in range(ny):
-                for i in range(nx):
-                    w = wy[j] * wx[i] * mask[iy[j], ix[i]] / kept
-                    for c in range(channels):
-                        values[n, c] += np.float32(w * photograph[iy[j], ix[i], c])
         elif channels == 3:
             r, g, b = 0.0, 0.0, 0.0
             for j in range(ny):
@@ -140,10 +136,10 @@ def project_texels(
                 g += wy[j] * gg
                 b += wy[j] * bb
             values[n, 0], values[n, 1], values[n, 2] = r, g, b
-        else:
+        if mask.size or channels != 3:
             for j in range(ny):
                 for i in range(nx):
-                    w = wy[j] * wx[i]
+                    w = wy[j] * wx[i] * (mask[iy[j], ix[i]] if mask.size else np.float32(1)) / kept
                     for c in range(channels):
                         values[n, c] += np.float32(w * photograph[iy[j], ix[i], c])
         seen[n] = 1

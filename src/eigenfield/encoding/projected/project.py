@@ -21,7 +21,6 @@ from eigenfield.runtime.parallel import parallel_stream
 
 RESAMPLING_FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
 DEPTH_BIAS_RATIO = 2e-3  # of a view's range of inverse depths
-GRAZING_COSINE = 0.0872  # cosine of 85 degrees
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,9 +75,9 @@ def texture_map(
     values = np.empty((atlas.count, pixels.shape[2]), np.float32)
     seen = np.empty(atlas.count, np.uint8)
     kernels.project_texels(
-        0, atlas.count, atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
-        np.ascontiguousarray(pixels), np.ones((1, 1), np.float32) if mask is None else np.ascontiguousarray(mask),
-        mask is not None, depth, bias, GRAZING_COSINE, RESAMPLING_FILTERS[resampling], values, seen,
+        atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
+        np.ascontiguousarray(pixels), np.zeros((0, 0), np.float32) if mask is None else np.ascontiguousarray(mask),
+        depth, bias, RESAMPLING_FILTERS[resampling], values, seen,
     )  # fmt: skip
     return values, seen
 

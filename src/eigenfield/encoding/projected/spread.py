@@ -74,9 +74,8 @@ def push_pull(picture: NDArray[np.float32], weight: NDArray[np.float32]) -> NDAr
     height, width = picture.shape[:2]
     if min(height, width) == 1 or (weight >= 1).all():
         average = picture.sum(axis=(0, 1)) / max(float(weight.sum()), 1e-12)
-        return np.where(weight[..., None] > 0, picture / np.maximum(weight, 1e-12)[..., None], average).astype(
-            np.float32
-        )
+        shown = picture / np.maximum(weight, 1e-12)[..., None]
+        return np.where(weight[..., None] > 0, shown, average).astype(np.float32)
     even = np.pad(picture, ((0, height % 2), (0, width % 2), (0, 0)))
     even_weight = np.pad(weight, ((0, height % 2), (0, width % 2)))
     half_weight = halve_picture(even_weight[..., None])[..., 0]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.atlas import Atlas
-from eigenfield.encoding.projected.eigen import Spectrum, eigen_textures, weights_of
+from eigenfield.encoding.projected.eigen import eigen_textures, weights_of
 from eigenfield.encoding.projected.mean import Mean
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.imaging.metrics import psnr, ssim, to_codes
@@ -58,7 +59,7 @@ def smallest_count(
     maps: TextureMaps,
     mean: Mean,
     average: NDArray[np.float32],
-    decomposition: Spectrum,
+    vectors: NDArray[np.float64],
     target: float,
     *,
     work: Path | None = None,
@@ -72,25 +73,22 @@ def smallest_count(
         maps: Of No observations.
         mean: Of the maps.
         average: (H, W, C), the mean without holes, as the file will keep it.
-        decomposition: Of the maps.
+        vectors: (No, No - 1) of `eigenvectors`.
         target: The SSIM to reach.
         work: Folder for a scratch file.
         progress: Reports each pass.
     """
-    most = maps.count - 1
-    sample = np.unique(
-        np.linspace(0, maps.count - 1, min(UV_SAMPLE_OBSERVATIONS, maps.count)).round().astype(int)
-    ).tolist()
-    everyone = list(range(maps.count))
+    most, everyone = maps.count - 1, list(range(maps.count))
+    sample = np.unique(np.linspace(0, most, min(UV_SAMPLE_OBSERVATIONS, maps.count)).round().astype(int)).tolist()
     limit = min(8, most)
     while True:
-        weights = weights_of(decomposition, limit)
+        weights = weights_of(vectors, limit)
         with scratch_array((limit, maps.atlas.count, maps.channels), np.float32, work) as textures:
             textures[:] = eigen_textures(maps, mean, weights, progress)
-            near = _first(_curve(maps, mean, average, textures, weights, sample, range(limit + 1), progress), target)
+            curve = partial(_curve, maps, mean, average, textures, weights, progress)
+            near = _first(curve(sample, range(limit + 1)), target)
             if near is not None or limit == most:
-                guess = limit if near is None else near
-                count = _decide(maps, mean, average, textures, weights, everyone, guess, target, progress)
+                count = _decide(partial(curve, everyone), limit if near is None else near, limit, target)
                 if count is not None:
                     return count
                 if limit == most:
@@ -99,25 +97,16 @@ def smallest_count(
         limit = min(2 * limit, most)
 
 
-def _decide(
-    maps: TextureMaps,
-    mean: Mean,
-    average: NDArray[np.float32],
-    textures: NDArray[np.float32],
-    weights: NDArray[np.float32],
-    chosen: Sequence[int],
-    guess: int,
-    target: float,
-    progress: Progress | None,
-) -> int | None:
-    """From a guess outwards, a few counts at a time, until all of them say which count is the first to reach it."""
-    low, high = max(guess - 1, 0), min(guess + 1, len(textures))
+def _decide(curve: Callable[[range], list[float]], guess: int, limit: int, target: float) -> int | None:
+    """From a guess outwards, a few counts at a time, until all observations say which count, up to a limit, is the
+    first to reach the target."""
+    low, high = max(guess - 1, 0), min(guess + 1, limit)
     while True:
-        first = _first(_curve(maps, mean, average, textures, weights, chosen, range(low, high + 1), progress), target)
+        first = _first(curve(range(low, high + 1)), target)
         if first is None:
-            if high == len(textures):
+            if high == limit:
                 return None
-            low, high = high + 1, min(high + 3, len(textures))
+            low, high = high + 1, min(high + 3, limit)
         elif first > 0 or low == 0:
             return low + first
         else:
@@ -134,9 +123,9 @@ def _curve(
     average: NDArray[np.float32],
     textures: NDArray[np.float32],
     weights: NDArray[np.float32],
+    progress: Progress | None,
     chosen: Sequence[int],
     counts: range,
-    progress: Progress | None,
 ) -> list[float]:
     """Mean SSIM over the chosen observations for each number of textures in `counts`."""
 

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS
 from eigenfield.coding.video.av1 import Planes, encode_video
 from eigenfield.core.camera import Camera
@@ -12,8 +15,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import EncodedScene, Residual
+from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.residual.colour import to_planes
-from eigenfield.encoding.residual.orders import video_order
 from eigenfield.encoding.residual.views import surface_colours
 from eigenfield.rendering import Renderer, camera_colour, camera_weights
 from eigenfield.runtime.parallel import parallel_stream
@@ -45,13 +48,9 @@ def with_residual(
         CaptureError: A photograph cannot be read.
     """
     if scene.appearance.channels != 3:
-        raise OptionError(
-            "not-photographs",
-            f"the scene has {scene.appearance.channels} channels, not R, G, B",
-            remedy="leave the residual out",
-        )
-    encoded = scene.rig.encoded
-    cameras = [scene.rig.cameras[index] for index in encoded]
+        message = f"the scene has {scene.appearance.channels} channels, not R, G, B"
+        raise OptionError("not-photographs", message, remedy="leave the residual out")
+    encoded, cameras = scene.rig.encoded, scene.rig.encoded_cameras
     rows, columns = check_residual(cameras, quality)
     scale = RESIDUAL_CODE_UNIT, RESIDUAL_CODE_UNIT / RESIDUAL_CHROMA_GAIN
     renderer, full = Renderer(scene), quality >= RESIDUAL_FULL_CHROMA_QUALITY
@@ -84,13 +83,10 @@ def check_residual(cameras: Sequence[Camera], quality: int) -> tuple[int, int]:
     rows, columns = (_even_side(max(sides)) for sides in ([c.height for c in cameras], [c.width for c in cameras]))
     high = 3 * rows if quality >= RESIDUAL_FULL_CHROMA_QUALITY else rows
     if columns > RESIDUAL_MAX_COLUMNS_PX or high > RESIDUAL_MAX_ROWS_PX:
-        raise OptionError(
-            "residual",
-            f"frames of {columns}x{high}, the film's encoder takes {RESIDUAL_MAX_COLUMNS_PX}x{RESIDUAL_MAX_ROWS_PX}",
-            remedy=f"ask for less than {RESIDUAL_FULL_CHROMA_QUALITY}"
-            if rows <= RESIDUAL_MAX_ROWS_PX
-            else "scale the photographs down",
-        )
+        most, half_chroma_fits = f"{RESIDUAL_MAX_COLUMNS_PX}x{RESIDUAL_MAX_ROWS_PX}", rows <= RESIDUAL_MAX_ROWS_PX
+        less = f"ask for less than {RESIDUAL_FULL_CHROMA_QUALITY}"
+        remedy = less if half_chroma_fits else "scale the photographs down"
+        raise OptionError("residual", f"frames of {columns}x{high}, the film's encoder takes {most}", remedy=remedy)
     return rows, columns
 
 
@@ -101,3 +97,29 @@ def crf_of(quality: int) -> int:
 
 def _even_side(side: int) -> int:
     return max(MIN_SIDE_TEXELS, side + side % 2)
+
+
+def video_order(cameras: Sequence[Camera]) -> NDArray[np.int64]:
+    """The order of the cameras: a grid's row by row, to and fro; else from each to the nearest that is left.
+
+    On Tarot the grid's rows all in one direction take 3 % more bytes at equal luma, from the middle outwards 9 %.
+    """
+    centres = np.array([camera.centre for camera in cameras])
+    grid = find_grid(fit_view_plane(cameras).coordinates(centres))
+    if grid is None:
+        return _nearest(centres)
+    order = grid.index.astype(np.int64)
+    order[1::2] = order[1::2, ::-1].copy()
+    return np.ascontiguousarray(order.ravel())
+
+
+def _nearest(centres: NDArray[np.float64]) -> NDArray[np.int64]:
+    """From the camera farthest from the middle, each time to the nearest one left."""
+    left = np.ones(len(centres), bool)
+    order = [int(np.argmax(np.linalg.norm(centres - centres.mean(axis=0), axis=1)))]
+    left[order[0]] = False
+    while left.any():
+        distance = np.linalg.norm(centres - centres[order[-1]], axis=1)
+        order.append(int(np.argmin(np.where(left, distance, np.inf))))
+        left[order[-1]] = False
+    return np.array(order, np.int64)

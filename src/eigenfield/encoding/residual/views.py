@@ -60,9 +60,8 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     """
     residual = _residual(scene)
     if scene.rig.held_out[index]:
-        raise OptionError(
-            "residual", f"{scene.rig.names[index]} is held out: it has no residual", remedy="name an encoded camera"
-        )
+        message = f"{scene.rig.names[index]} is held out: it has no residual"
+        raise OptionError("residual", message, remedy="name an encoded camera")
     position = int(np.flatnonzero(residual.order == scene.rows(index))[0])
     camera = scene.rig.cameras[index]
     for number, planes in enumerate(residual_frames(residual)):
@@ -115,11 +114,8 @@ def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32])
     }
     for name, given in changed.items():
         if given:
-            raise OptionError(
-                "residual",
-                f"--{name} draws other pictures than the residual belongs to",
-                remedy="leave one of them out",
-            )
+            message = f"--{name} draws other pictures than the residual belongs to"
+            raise OptionError("residual", message, remedy="leave one of them out")
     job = replace(job, samples=captured_samples(scene, index))
     picture = job.picture(scene.rig.cameras[index], camera_weights(scene, index), camera_colour(scene, index))
     return job.pixels_of(corrected_picture(picture, difference, job.background or (0.0,)))

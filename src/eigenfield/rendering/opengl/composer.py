@@ -323,12 +323,8 @@ def _colours_of(scene: Scene) -> NDArray[np.float64]:
         return scene.appearance.to_rgb.T.astype(np.float64)
     if channels in ([1], [3]):
         return np.eye(3) if channels == [3] else np.ones((1, 3))
-    raise FormatError(
-        "unsupported-layout",
-        "OpenGL draws one plane of one or three channels, or planes that a matrix makes R, G and B of",
-        where="planes",
-        remedy="use the software renderer",
-    )
+    message = "OpenGL draws one plane of one or three channels, or planes that a matrix makes R, G and B of"
+    raise FormatError("unsupported-layout", message, where="planes", remedy="use the software renderer")
 
 
 def _on_plane(view: ViewPlane, points: ArrayLike) -> NDArray[np.float64]:

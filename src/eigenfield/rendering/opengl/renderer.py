@@ -71,7 +71,6 @@ class OpenGLRenderer:
         self._composer: Composer | None = None
         self._multisample = multisample
         self._owned = context is None
-        self._made: list[Any] = []
         self._kept: tuple[tuple[int, int], Any, Any] | None = None
         self.context: Any = make_context() if context is None else context
         try:
@@ -79,11 +78,8 @@ class OpenGLRenderer:
         except Exception as error:
             self.close()
             if type(error).__module__.startswith("moderngl"):
-                raise OptionError(
-                    "opengl-memory",
-                    f"the textures of this scene do not fit the OpenGL driver: {error}",
-                    remedy="use the software renderer",
-                ) from error
+                message = f"the textures of this scene do not fit the OpenGL driver: {error}"
+                raise OptionError("opengl-memory", message, remedy="use the software renderer") from error
             raise
 
     @property
@@ -99,9 +95,6 @@ class OpenGLRenderer:
 
     def close(self) -> None:
         """Free everything on the GPU."""
-        for made in self._made:
-            made.release()
-        self._made.clear()
         if self._composer is not None:
             self._composer.release()
         self._composer = None
@@ -132,33 +125,12 @@ class OpenGLRenderer:
         Raises:
             OptionError: `textures`, `background`.
         """
-        data = self.draw_rgba(camera, weights, textures=textures, colour=colour).astype(np.float32) / np.float32(255)
+        frame = self.paint(camera, weights, textures=textures, colour=colour)  # R, G and B are times coverage
+        codes = np.frombuffer(frame.read(components=4), np.uint8).reshape(camera.height, camera.width, 4)[::-1]
+        data = codes.astype(np.float32) / np.float32(255)
         image, coverage = data[..., :3], np.ascontiguousarray(data[..., 3])
         image = image + (1 - coverage)[..., None] * background_of(background, 3)
         return Picture(np.ascontiguousarray(image), coverage)
-
-    def draw_rgba(
-        self,
-        camera: Camera,
-        weights: ViewWeights | None = None,
-        *,
-        textures: int | None = None,
-        colour: NDArray[np.float32] | None = None,
-    ) -> NDArray[np.uint8]:
-        """(H, W, 4) uint8: R, G, B times coverage, and coverage.
-
-        Args:
-            camera: As of `draw`.
-            weights: As of `draw`.
-            textures: As of `draw`.
-            colour: As of `draw`.
-
-        Raises:
-            OptionError: `textures`.
-        """
-        frame = self.paint(camera, weights, textures=textures, colour=colour)
-        data = np.frombuffer(frame.read(components=4), np.uint8)
-        return data.reshape(camera.height, camera.width, 4)[::-1]
 
     def paint(
         self,
@@ -168,7 +140,9 @@ class OpenGLRenderer:
         textures: int | None = None,
         colour: NDArray[np.float32] | None = None,
     ) -> Any:
-        """Draw into a framebuffer that stays on the GPU, bottom row first, until the next call overwrites it.
+        """Draw R, G, B times coverage, and coverage, into a framebuffer, bottom row first.
+
+        It stays on the GPU until the next call overwrites it.
 
         Args:
             camera: As of `draw`.
@@ -199,18 +173,19 @@ class OpenGLRenderer:
     def _set_up(self, filter: str, weights: str) -> None:
         context, scene, mesh = self.context, self._scene, self._scene.proxy.mesh
         self._composer = Composer(context, scene, weights)
+        keep = self._composer.keep
         head = f"{GLSL_HEAD}#define BICUBIC {TEXTURE_FILTERS.index(filter)}\n"
         source = head + shader("cubic") + shader("surface") + SURFACE_FRAGMENT_GLSL
-        self._program = self._keep(context.program(vertex_shader=SURFACE_VERTEX_GLSL, fragment_shader=source))
+        self._program = keep(context.program(vertex_shader=SURFACE_VERTEX_GLSL, fragment_shader=source))
         # about the middle of the mesh: float32 keeps few digits where the world's origin is far away
         low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
         self._middle, self._radius = (low + high) / 2, float(np.linalg.norm(high - low) / 2) or 1.0
         assert mesh.uv is not None
         corners = np.concatenate([mesh.vertices - self._middle, mesh.uv], axis=1).astype(np.float32)
-        vertices = self._keep(context.buffer(corners.tobytes()))
-        faces = self._keep(context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes()))
+        vertices = keep(context.buffer(corners.tobytes()))
+        faces = keep(context.buffer(np.ascontiguousarray(mesh.faces, np.int32).tobytes()))
         layout = [(vertices, "3f 2f", "position", "coordinate")]
-        self._array = self._keep(context.vertex_array(self._program, layout, index_buffer=faces))
+        self._array = keep(context.vertex_array(self._program, layout, index_buffer=faces))
         detail = median_footprint(make_surface(mesh, *scene.appearance.atlas), scene.rig.cameras[scene.rig.reference])
         set_uniforms(self._program, composed=np.int32(0), finest=RENDER_ONE_SAMPLE_PX * max(detail, 1.0))
 
@@ -223,10 +198,8 @@ class OpenGLRenderer:
             drawn = resolved
             if self._multisample:
                 samples = min(self._multisample, context.max_samples)
-                drawn = context.framebuffer(
-                    [context.renderbuffer(size, 4, samples=samples)],
-                    context.depth_renderbuffer(size, samples=samples),
-                )
+                depth = context.depth_renderbuffer(size, samples=samples)
+                drawn = context.framebuffer([context.renderbuffer(size, 4, samples=samples)], depth)
             self._kept = (size, drawn, resolved)
         return self._kept[1], self._kept[2]
 
@@ -237,11 +210,6 @@ class OpenGLRenderer:
                     part.release()
                 frame.release()
         self._kept = None
-
-    def _keep(self, made: Any) -> Any:
-        """Return an object of the GPU, which `close` will free."""
-        self._made.append(made)
-        return made
 
 
 def make_context() -> Any:
@@ -263,11 +231,8 @@ def make_context() -> Any:
             return moderngl.create_standalone_context(require=OPENGL_VERSION, **option)
         except Exception as error:  # what backends raise is not documented, and no context is no bug of ours
             problems.append(str(error))
-    raise OptionError(
-        "opengl-context",
-        f"no OpenGL 3.3 without a display here ({problems[0]})",
-        remedy="install a GPU driver with EGL (Debian: libegl1 libgl1-mesa-dri), or use the software renderer",
-    )
+    remedy = "install a GPU driver with EGL (Debian: libegl1 libgl1-mesa-dri), or use the software renderer"
+    raise OptionError("opengl-context", f"no OpenGL 3.3 without a display here ({problems[0]})", remedy=remedy)
 
 
 def _clip_matrix(camera: Camera, middle: NDArray[np.float64], radius: float) -> NDArray[np.float64]:

@@ -74,7 +74,6 @@ class Composite:
 
     Attributes:
         size: (H, W) of the atlas.
-        channels: D, of the texture that is drawn.
         number: (tile rows, tile columns) each tile's index in `base`; -1: the tile is left out.
         base: (tiles, D, TILE_AREA) float32, what is drawn without eigen textures.
         matrix: (D, K) float32 from the planes' channels to the texture's.
@@ -83,7 +82,6 @@ class Composite:
     """
 
     size: tuple[int, int]
-    channels: int
     number: NDArray[np.int64]
     base: NDArray[np.float32]
     matrix: NDArray[np.float32]
@@ -98,36 +96,26 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
         scene: The scene.
         used: (tile rows, tile columns) the tiles of the atlas that are ever drawn.
     """
-    size = scene.appearance.atlas
-    total = sum(int(plane.mean.shape[2]) for plane in scene.appearance.planes)
-    matrix = (
-        np.eye(total, dtype=np.float32)
-        if scene.appearance.to_rgb is None
-        else scene.appearance.to_rgb.astype(np.float32)
-    )
-    groups = _groups(scene)
-    plain = (
-        scene.appearance.to_rgb is None
-        and len(scene.appearance.planes) == 1
-        and scene.appearance.planes[0].mean.shape[:2] == size
-    )
-    plain &= len(groups) <= 1 and all(_whole(bases, size) for _, _, bases in groups)
-    places = np.flatnonzero(used)
-    if plain:
-        plane = scene.appearance.planes[0]
+    planes, to_rgb, size = scene.appearance.planes, scene.appearance.to_rgb, scene.appearance.atlas
+    total = sum(int(plane.mean.shape[2]) for plane in planes)
+    matrix = np.eye(total, dtype=np.float32) if to_rgb is None else to_rgb.astype(np.float32)
+    groups, places = _groups(scene), np.flatnonzero(used)
+    plain = to_rgb is None and len(planes) == 1 and planes[0].mean.shape[:2] == size
+    if plain and len(groups) <= 1 and all(_whole(bases, size) for _, _, bases in groups):
+        plane = planes[0]
         tiled = tile(plane.mean, plane.bases, used, total)
         weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
         part = Part(0, total, size, tiled, weights, _numbers(used), None, None)
-        return Composite(size, total, part.number, tiled.mean, matrix, (part,), True)
+        return Composite(size, part.number, tiled.mean, matrix, (part,), True)
     base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
     first = 0
-    for plane in scene.appearance.planes:
+    for plane in planes:
         depth = int(plane.mean.shape[2])
         share = np.ascontiguousarray(matrix[:, first : first + depth])
         _add_mean(plane.mean, size, places, share, base)
         first += depth
     parts = tuple(_part(first, depth, bases, size, used) for first, depth, bases in groups)
-    return Composite(size, len(matrix), _numbers(used), base, matrix, parts, False)
+    return Composite(size, _numbers(used), base, matrix, parts, False)
 
 
 def compose_scene(

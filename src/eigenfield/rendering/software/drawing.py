@@ -17,23 +17,8 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.graph import face_edges
-from eigenfield.imaging.raster import (
-    RASTER_BAND_ROWS,
-    RASTER_BOUND_SLACK_PIXELS,
-    RASTER_EDGE_SLACK_FRACTION,
-    RASTER_SET_UP_TRIANGLES,
-    bound_faces,
-    edge_functions,
-    project_corners,
-    sort_into_bands,
-)
-from eigenfield.rendering.software.edge_kernels import (
-    BLOCK_PX,
-    draw_samples,
-    find_edge_pixels,
-    keep_multisampled,
-    mark_rims,
-)
+from eigenfield.imaging.raster import RASTER_BAND_ROWS, RASTER_EDGE_SLACK_FRACTION, Band, set_up_bands
+from eigenfield.rendering.software import edge_kernels
 from eigenfield.rendering.software.kernels import LAYER_CHANNELS, TILE_TEXELS, draw_texels, mark_tiles, shade_rows
 from eigenfield.rendering.software.simd import LANE_PX
 from eigenfield.runtime.parallel import parallel_map, pieces
@@ -148,9 +133,9 @@ class Scratch:
         Args:
             width: W, of the picture.
         """
-        blocks = -(-width // BLOCK_PX)
+        blocks = -(-width // edge_kernels.BLOCK_PX)
         self.coordinates = np.empty((2, RASTER_BAND_ROWS + 2, width), np.float32)
-        self.marks = np.empty((RASTER_BAND_ROWS, blocks * BLOCK_PX), np.bool_)
+        self.marks = np.empty((RASTER_BAND_ROWS, blocks * edge_kernels.BLOCK_PX), np.bool_)
         self.places = np.empty(RASTER_BAND_ROWS * width, np.int32)
         self.starts = np.empty((RASTER_BAND_ROWS, blocks + 1), np.int64)
         self.sums = np.empty((RASTER_BAND_ROWS + 1, blocks + 1), np.int64)
@@ -225,56 +210,35 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
     matrix = (camera.resize(camera.width * k, camera.height * k) if k > 1 else camera).matrix
     corners = surface.vertices @ matrix[:, :3].T
     corners += matrix[:, 3]
-    height, width = camera.height * k, camera.width * k
-    slack = RASTER_BOUND_SLACK_PIXELS + float(np.abs(offsets).max())
+    size, reach = (camera.width * k, camera.height * k), float(np.abs(offsets).max())
+    bands = set_up_bands(corners, surface.faces, *size, frame.edges, frame.pixels, frame.bounds, reach)
     frame.seen[:] = 0
-    project_corners(corners, frame.pixels)
-
-    def set_up(part: tuple[int, int]) -> None:
-        edge_functions(corners, surface.faces, *part, frame.edges)
-        bound_faces(corners, frame.pixels, surface.faces, frame.edges, width, height, slack, *part, frame.bounds)
-
-    parallel_map(set_up, pieces(len(surface.faces), RASTER_SET_UP_TRIANGLES))
-    bands = pieces(height, RASTER_BAND_ROWS)
-    starts = np.empty(len(bands) + 1, np.int64)
-    listing = sort_into_bands(frame.bounds, RASTER_BAND_ROWS, starts)
     middles = frame.inverse_depth, frame.column_of, frame.row_of
+    triangles = surface.faces, surface.texels, frame.edges, frame.bounds
 
-    def triangles_of(band: int) -> tuple[NDArray[Any], ...]:
-        some = listing[starts[band] : starts[band + 1]]
-        return surface.faces, surface.texels, frame.edges, frame.bounds, some
+    def draw(band: Band) -> None:
+        rows, some = band
+        draw_texels(*triangles, some, *rows, RASTER_EDGE_SLACK_FRACTION, *middles, frame.seen)
 
-    def draw(band: int) -> None:
-        draw_texels(*triangles_of(band), *bands[band], RASTER_EDGE_SLACK_FRACTION, *middles, frame.seen)
-
-    def smooth(band: int) -> None:
+    def smooth(band: Band) -> None:
+        rows, some = band
         try:
             room = frame.scratch.pop()
         except IndexError:  # this thread is the first, or another was faster
-            room = Scratch(width)
-        triangles, rows, limit = triangles_of(band), bands[band], np.float32(sampling.limit)
-        mark_rims(*triangles[2:], surface.rims, middles[0], *rows, RASTER_EDGE_SLACK_FRACTION, offsets, room.marks)
+            room = Scratch(size[0])
+        drawn, limit, slack = (*triangles, some), np.float32(sampling.limit), RASTER_EDGE_SLACK_FRACTION
+        edge_kernels.mark_rims(*drawn[2:], surface.rims, middles[0], *rows, slack, offsets, room.marks)
         listed = room.places, room.starts, room.sums
-        find_edge_pixels(
-            *middles, *rows, limit * np.float32(EDGE_CANDIDATE_RATIO), *room.coordinates, room.marks, *listed
-        )
-        draw_samples(*triangles, *rows, RASTER_EDGE_SLACK_FRACTION, offsets, *listed, room.samples, frame.seen)
-        keep_multisampled(
-            *middles,
-            room.places,
-            room.starts,
-            room.samples,
-            limit,
-            *rows,
-            frame.spans,
-            frame.multisampled,
-            frame.subsamples,
-        )
+        candidate = limit * np.float32(EDGE_CANDIDATE_RATIO)
+        edge_kernels.find_edge_pixels(*middles, *rows, candidate, *room.coordinates, room.marks, *listed)
+        edge_kernels.draw_samples(*drawn, *rows, slack, offsets, *listed, room.samples, frame.seen)
+        found, kept = (room.places, room.starts, room.samples), (frame.spans, frame.multisampled, frame.subsamples)
+        edge_kernels.keep_multisampled(*middles, *found, limit, *rows, *kept)
         frame.scratch.append(room)
 
-    parallel_map(draw, range(len(bands)))
+    parallel_map(draw, bands)
     if len(offsets) > 1:
-        parallel_map(smooth, range(len(bands)))
+        parallel_map(smooth, bands)
     mark_tiles(frame.seen, surface.reach, frame.needed)
 
 

@@ -81,10 +81,8 @@ def mark_rims(edges, bounds, listing, rims, near, first, last, slack, offsets, m
             narrow[i, 2] -= more
         a, b, c, _ = edge_spans(wide, slack)
         a_in, b_in, c_in, q = edge_spans(narrow, slack)
-        x, y = (
-            q[0] * NEARER_RATIO,
-            q[1] * NEARER_RATIO,
-        )  # 1 / depth is linear; the most of it within a pixel, and its rounding
+        # 1 / depth is linear; the most of it within a pixel, and its rounding
+        x, y = q[0] * NEARER_RATIO, q[1] * NEARER_RATIO
         one = (e[0, 2] + e[1, 2] + e[2, 2]) * NEARER_RATIO + (x + y + abs(x) + abs(y)) / 2
         for row in range(max(first, bounds[f, 0]), min(last, bounds[f, 1])):
             left, right = row_span(a, b, c, row + 0.5, *columns)

@@ -348,11 +348,8 @@ def shade_rows(
             texture, behind = layers[layer].reshape(-1), background[layer]
             line[:] = 0
             for source in sources:
-                near, u, v = (
-                    inverse_depth[source, : pixels * samples],
-                    column_of[source, : pixels * samples],
-                    row_of[source, : pixels * samples],
-                )
+                drawn = slice(pixels * samples)
+                near, u, v = inverse_depth[source, drawn], column_of[source, drawn], row_of[source, drawn]
                 shade_line(near, u, v, samples, texture, width, height, bicubic, behind, room, line)
             if one < end:
                 edges[: LAYER_CHANNELS * (end - one)] = 0

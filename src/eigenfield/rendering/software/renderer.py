@@ -16,21 +16,10 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.checks import check_filter, check_textures
-from eigenfield.rendering.exposure import camera_colour, undo_colour
 from eigenfield.rendering.novel import novel_camera
-from eigenfield.rendering.picture import Picture
+from eigenfield.rendering.picture import Picture, camera_colour, undo_colour
+from eigenfield.rendering.software import drawing
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
-from eigenfield.rendering.software.drawing import (
-    Framebuffer,
-    Sampling,
-    Surface,
-    choose_sampling,
-    grid_side,
-    make_surface,
-    median_footprint,
-    rasterise_surface,
-    shade,
-)
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
@@ -48,7 +37,7 @@ class Buffers:
         layers: Of `empty_layers`.
     """
 
-    frame: Framebuffer
+    frame: drawing.Framebuffer
     sums: list[NDArray[np.float32]]
     layers: NDArray[np.float32]
 
@@ -67,8 +56,8 @@ class Renderer:
             scene: The scene.
         """
         self.channels = scene.appearance.channels
-        self._surface = make_surface(scene.proxy.mesh, *scene.appearance.atlas)
-        self._detail = median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
+        self._surface = drawing.make_surface(scene.proxy.mesh, *scene.appearance.atlas)
+        self._detail = drawing.median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
         self._composite = make_composite(scene, self._surface.used)
         self._spare: deque[Buffers] = deque(maxlen=RENDER_SPARE_BUFFERS)
 
@@ -141,7 +130,7 @@ class Renderer:
         Args:
             camera: The camera.
         """
-        return grid_side(self._surface, camera, self._detail)
+        return drawing.grid_side(self._surface, camera, self._detail)
 
     def texture(self, weights: ViewWeights, textures: int | None = None) -> NDArray[np.float32]:
         """(H, W, C): equation 8 for the tiles that the mesh uses; zero elsewhere.
@@ -167,19 +156,19 @@ class Renderer:
         check_filter(filter)
         check_textures(textures)
         behind = background_of(background, self.channels)
-        sampling = choose_sampling(self._surface, camera, samples, self._detail)
+        sampling = drawing.choose_sampling(self._surface, camera, samples, self._detail)
         height, width = camera.height, camera.width
         buffers = self._take(height, width, sampling)
         frame = buffers.frame
-        rasterise_surface(self._surface, camera, sampling, frame)
+        drawing.rasterise_surface(self._surface, camera, sampling, frame)
         compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
         image = np.empty((height, width, self.channels), dtype)
         coverage = np.empty((height, width), np.float32)
-        shade(self._surface, frame, buffers.layers, filter, behind, image, coverage)
+        drawing.shade(self._surface, frame, buffers.layers, filter, behind, image, coverage)
         self._spare.append(buffers)
         return image, coverage
 
-    def _take(self, height: int, width: int, sampling: Sampling) -> Buffers:
+    def _take(self, height: int, width: int, sampling: drawing.Sampling) -> Buffers:
         """Buffers for a picture of that size: spare ones, or new ones."""
         for _ in range(len(self._spare)):
             try:
@@ -188,8 +177,8 @@ class Renderer:
                 break
             if spare.frame.fits(height, width, sampling):
                 return spare
-        layers = empty_layers(*self._surface.size, self.channels)
-        return Buffers(Framebuffer(self._surface, height, width, sampling), make_buffers(self._composite), layers)
+        frame = drawing.Framebuffer(self._surface, height, width, sampling)
+        return Buffers(frame, make_buffers(self._composite), empty_layers(*self._surface.size, self.channels))
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:
@@ -238,15 +227,15 @@ def draw_texture(
     """
     check_filter(filter)
     height, width, channels = texture.shape
-    surface: Surface = make_surface(mesh, height, width)
-    sampling = choose_sampling(surface, camera, samples, detail)
-    frame = Framebuffer(surface, camera.height, camera.width, sampling)
-    rasterise_surface(surface, camera, sampling, frame)
+    surface = drawing.make_surface(mesh, height, width)
+    sampling = drawing.choose_sampling(surface, camera, samples, detail)
+    frame = drawing.Framebuffer(surface, camera.height, camera.width, sampling)
+    drawing.rasterise_surface(surface, camera, sampling, frame)
     image = np.empty((camera.height, camera.width, channels), np.float32)
     coverage = np.empty((camera.height, camera.width), np.float32)
     layers = empty_layers(height, width, channels)
     fill_layers(texture, layers)
-    shade(surface, frame, layers, filter, background_of(background, channels), image, coverage)
+    drawing.shade(surface, frame, layers, filter, background_of(background, channels), image, coverage)
     return Picture(image, coverage)
 
 

@@ -42,12 +42,8 @@ def make_taps(fine: int, coarse: int) -> Taps:
     at = np.clip(base[:, None] + np.arange(-1, 3), 0, coarse - 1).astype(np.int32)
     starts = np.arange(0, fine, TILE_TEXELS)
     ends = np.minimum(starts + TILE_TEXELS, fine) - 1
-    return Taps(
-        at,
-        weight.astype(np.float32),
-        at[starts, 0].astype(np.int64) // TILE_TEXELS,
-        at[ends, 3] // np.int64(TILE_TEXELS),
-    )
+    first, last = at[starts, 0].astype(np.int64) // TILE_TEXELS, at[ends, 3].astype(np.int64) // TILE_TEXELS
+    return Taps(at, weight.astype(np.float32), first, last)
 
 
 def catmull_rom(f: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -55,39 +55,23 @@ def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray
         used: (tile rows, tile columns) the tiles of the grid that are laid out.
         channels: C.
     """
-    size, corner = (bases[0].size, bases[0].corner) if bases else (mean_size(mean), (0, 0))
-    places = np.flatnonzero(used)
+    places, none = np.flatnonzero(used), np.zeros((0, channels))
     textures = [texture for basis in bases for texture in basis.textures]
     kinds = {texture.dtype for texture in textures} | {np.dtype(np.uint8)}
     shape = (len(places), channels, -(-len(textures) // 4), TILE_AREA // CODE_LANES, 4, CODE_LANES)
     codes = np.zeros(shape, np.result_type(*kinds) if all(kind.kind == "u" for kind in kinds) else np.float32)
 
     def place(j: int) -> None:
-        cut = cut_tiles(_in_grid(textures[j], size, corner), channels)[places]
+        cut = cut_tiles(_in_grid(textures[j], bases[0].size, bases[0].corner), channels)[places]
         codes[:, :, j // 4, :, j % 4, :] = cut.reshape(len(places), channels, TILE_AREA // CODE_LANES, CODE_LANES)
 
     parallel_map(place, range(len(textures)))
-    none = np.zeros((0, channels))
-    start = (
-        np.zeros((len(places), channels, TILE_AREA), np.float32) if mean is None else cut_tiles(mean, channels)[places]
-    )
-    return Tiled(
-        np.ascontiguousarray(start, dtype=np.float32),
-        codes,
-        np.concatenate([none, *(basis.scale.astype(np.float64) for basis in bases)]),
-        np.concatenate([none, *(basis.zero.astype(np.float64) for basis in bases)]),
-        places,
-    )
-
-
-def mean_size(mean: NDArray[np.float32] | None) -> tuple[int, int]:
-    """(rows, columns) of a mean.
-
-    Args:
-        mean: (H, W, C).
-    """
-    assert mean is not None, "neither a mean nor components"
-    return int(mean.shape[0]), int(mean.shape[1])
+    start = np.zeros((len(places), channels, TILE_AREA), np.float32)
+    if mean is not None:
+        start[:] = cut_tiles(mean, channels)[places]
+    scale = np.concatenate([none, *(basis.scale.astype(np.float64) for basis in bases)])
+    zero = np.concatenate([none, *(basis.zero.astype(np.float64) for basis in bases)])
+    return Tiled(start, codes, scale, zero, places)
 
 
 def tile_shape(size: tuple[int, int]) -> tuple[int, int]:
@@ -118,7 +102,7 @@ def cut_tiles(texture: NDArray[Any], channels: int) -> NDArray[Any]:
     """
     height, width, _ = texture.shape
     padded = np.pad(texture, ((0, -height % TILE_TEXELS), (0, -width % TILE_TEXELS), (0, 0)), mode="edge")
-    rows, columns = -(-height // TILE_TEXELS), -(-width // TILE_TEXELS)
+    rows, columns = tile_shape((height, width))
     tiled = padded.reshape(rows, TILE_TEXELS, columns, TILE_TEXELS, channels).transpose(0, 2, 4, 1, 3)
     return tiled.reshape(rows * columns, channels, TILE_AREA)
 
@@ -131,8 +115,8 @@ def empty_layers(height: int, width: int, channels: int) -> NDArray[np.float32]:
         width: Of the atlas, in texels.
         channels: Of the texture.
     """
-    tiles = -(-height // TILE_TEXELS) * -(-width // TILE_TEXELS)
-    return np.zeros((-(-channels // LAYER_CHANNELS), tiles, TILE_AREA, 4), np.float32)
+    rows, columns = tile_shape((height, width))
+    return np.zeros((-(-channels // LAYER_CHANNELS), rows * columns, TILE_AREA, 4), np.float32)
 
 
 def fill_layers(texture: NDArray[np.float32], layers: NDArray[np.float32]) -> None:
@@ -157,7 +141,7 @@ def read_layers(layers: NDArray[np.float32], height: int, width: int, channels: 
         width: W.
         channels: C.
     """
-    rows, columns = -(-height // TILE_TEXELS), -(-width // TILE_TEXELS)
+    rows, columns = tile_shape((height, width))
     tiled = layers[..., :LAYER_CHANNELS].reshape(len(layers), rows, columns, TILE_TEXELS, TILE_TEXELS, LAYER_CHANNELS)
     whole = tiled.transpose(1, 3, 2, 4, 0, 5).reshape(rows * TILE_TEXELS, columns * TILE_TEXELS, -1)
     return np.ascontiguousarray(whole[:height, :width, :channels])

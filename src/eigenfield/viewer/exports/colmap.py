@@ -18,7 +18,7 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.core.progress import Progress, track
 from eigenfield.core.scene import Scene
-from eigenfield.encoding.residual import captured_pixels, with_differences
+from eigenfield.encoding.residual.views import captured_pixels, with_differences
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_colour, camera_weights, viewpoint
 from eigenfield.rendering.render_jobs import png, refuse_attributes
