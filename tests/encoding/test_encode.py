@@ -18,7 +18,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.encoding.projected.atlas import make_atlas
-from eigenfield.encoding.projected.eigen import eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.eigen import eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.mean import filled_map, mean_map
 from eigenfield.encoding.projected.project import texture_map, texture_maps
 from eigenfield.encoding.projected.spread import make_spreader
@@ -134,7 +134,7 @@ def test_other_attributes_than_colour(folder, capture, tmp_path, channels):
     pictures = [np.concatenate([pixels, 2 * pixels - 5], axis=2)[..., :channels].copy() for pixels in photographs]
     with texture_maps(atlas, cameras, InMemory(pictures), channels) as maps:
         mean = mean_map(maps)
-        weights = weights_of(spectrum(gram_matrix(maps, mean)), 8)
+        weights = weights_of(eigenvectors(gram_matrix(maps, mean)), 8)
         textures = eigen_textures(maps, mean, weights)
         spread = make_spreader(atlas, mean.seen)
         expected = np.stack([filled_map(maps.values[c], maps.seen[c], mean.values) for c in range(9)])[:, mean.seen]

@@ -12,7 +12,7 @@ from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.solve import fit_textures, fit_weights, measure_scales, residual
 from eigenfield.encoding.projected.atlas import make_atlas
-from eigenfield.encoding.projected.eigen import eigen_textures, gram_matrix, spectrum, weights_of
+from eigenfield.encoding.projected.eigen import eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.mean import mean_map
 from eigenfield.encoding.projected.project import texture_map, texture_maps
 from eigenfield.gltf import validate
@@ -37,7 +37,7 @@ def projected(observations):
     """Texture maps, their mean, two eigen textures and their weights."""
     with texture_maps(make_atlas(MESH, SIDE, SIDE), CAMERAS, observations) as maps:
         mean = mean_map(maps)
-        weights = weights_of(spectrum(gram_matrix(maps, mean)), 2)
+        weights = weights_of(eigenvectors(gram_matrix(maps, mean)), 2)
         return np.array(maps.values), mean, eigen_textures(maps, mean, weights), weights
 
 
