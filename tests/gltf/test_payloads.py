@@ -88,7 +88,7 @@ def keys(scene):
         "mesh": mesh_key(scene.proxy.mesh),
         "cameras": cameras_key(scene.rig.cameras),
         "planes[0].mean": mean_key(plane.mean),
-        "planes[0].bases[0].textures": textures_key(basis.textures, basis.scale, basis.zero),
+        "planes[0].bases[0].textures": textures_key(basis),
         "planes[0].bases[0].weights": weights_key(basis.weights),
     }
 

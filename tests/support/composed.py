@@ -169,7 +169,7 @@ def kept_as_png(made: Scene) -> EncodedScene:
         payloads |= {mean_key(plane.mean): [PicturePayload("png", encode(codes, "png", 0), 1, affine)]}
         for basis in plane.bases:
             pictures = [png_picture(basis, part) for part in (slice(0, 1), slice(1, None))]
-            payloads |= {textures_key(basis.textures, basis.scale, basis.zero): pictures}
+            payloads |= {textures_key(basis): pictures}
     return encoded(made, payloads)
 
 

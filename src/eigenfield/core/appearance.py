@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -96,6 +97,13 @@ class Appearance:
     def channels(self) -> int:
         """Channels of a drawn picture."""
         return 3 if self.to_rgb is not None else sum(int(plane.mean.shape[2]) for plane in self.planes)
+
+    @property
+    def channel_slices(self) -> list[slice]:
+        """Where each plane's channels lie among those of all planes."""
+        return [
+            slice(*ends) for ends in pairwise(accumulate((plane.mean.shape[2] for plane in self.planes), initial=0))
+        ]
 
     @property
     def textures(self) -> int:

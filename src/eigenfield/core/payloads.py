@@ -15,6 +15,7 @@ from typing import Any, Generic, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.core.appearance import Basis
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 
@@ -129,9 +130,9 @@ def mean_key(mean: NDArray[np.float32]) -> Key:
     return _key("mean", mean)
 
 
-def textures_key(textures: NDArray[Any], scale: NDArray[np.float32], zero: NDArray[np.float32]) -> Key:
-    """The key of a basis's eigen textures (N, H, W, C), and scale and zero (N, C) of their codes."""
-    return _key("textures", textures, scale, zero)
+def textures_key(basis: Basis) -> Key:
+    """The key of a basis's eigen textures, and of scale and zero of their codes."""
+    return _key("textures", basis.textures, basis.scale, basis.zero)
 
 
 def weights_key(weights: NDArray[np.float32]) -> Key:
@@ -149,6 +150,18 @@ def preview_key(means: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmon
     """
     digests = np.frombuffer(b"".join(digest for _, digest in means), np.uint8)
     return _key("preview", digests, np.array([harmonised]), *(() if to_rgb is None else (to_rgb,)))
+
+
+def payloads_of(basis: Basis, pictures: Sequence[PicturePayload], weights: Payload | None) -> Payloads:
+    """The payloads of a basis.
+
+    Args:
+        basis: As it is decoded.
+        pictures: Of its textures, by rank; none where it has no textures.
+        weights: Its coded weights; None where they are not coded.
+    """
+    found = Payloads({textures_key(basis): pictures} if pictures else {})
+    return found if weights is None else found | {weights_key(basis.weights): [weights]}
 
 
 def _key(kind: str, *arrays: NDArray[Any]) -> Key:

@@ -76,6 +76,6 @@ def _parts(scene: Scene) -> dict[str, Callable[[], Key]]:
     for p, plane in enumerate(scene.appearance.planes):
         found[f"planes[{p}].mean"] = partial(mean_key, plane.mean)
         for b, basis in enumerate(plane.bases):
-            found[f"planes[{p}].bases[{b}].textures"] = partial(textures_key, basis.textures, basis.scale, basis.zero)
+            found[f"planes[{p}].bases[{b}].textures"] = partial(textures_key, basis)
             found[f"planes[{p}].bases[{b}].weights"] = partial(weights_key, basis.weights)
     return found

@@ -15,17 +15,7 @@ from eigenfield.coding import limits
 from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import (
-    Coded,
-    Payload,
-    Payloads,
-    cameras_key,
-    mean_key,
-    mesh_key,
-    preview_key,
-    textures_key,
-    weights_key,
-)
+from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mean_key, mesh_key, payloads_of, preview_key
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene, Scene
@@ -51,9 +41,8 @@ def name_file_in_errors(path: str | os.PathLike[str]) -> Iterator[None]:
         error.path = os.fspath(path)
         raise
     except MemoryError as error:
-        raise FormatError(
-            "memory", "does not fit into memory", where="byte 0", path=path, remedy="open it on a larger machine"
-        ) from error
+        message, remedy = "does not fit into memory", "open it on a larger machine"
+        raise FormatError("memory", message, where="byte 0", path=path, remedy=remedy) from error
 
 
 def layout_of(data: bytes) -> tuple[Document, FileLayout]:
@@ -175,12 +164,8 @@ def _decode_basis(basis: BasisLayout, channels: int) -> Coded[Basis]:
             zero[part] = picture.affine.zero.reshape(-1, channels)
 
     parallel_map(decode, range(len(basis.textures)))
-    payloads = Payloads()
-    if basis.textures:
-        payloads |= {textures_key(textures, scale, zero): [picture.payload for picture in basis.textures]}
-    if basis.payload is not None:
-        payloads |= {weights_key(basis.weights): [basis.payload]}
-    return Coded(Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner), payloads)
+    made = Basis(textures, scale, zero, basis.weights, basis.grid, basis.corner)
+    return Coded(made, payloads_of(made, [picture.payload for picture in basis.textures], basis.payload))
 
 
 def validate(path: str | os.PathLike[str]) -> list[Finding]:

@@ -32,10 +32,8 @@ def check_writable(scene: Scene, path: Path | None) -> None:
             if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
                 refuse(f"a picture of {w}x{h}")
     bases = [basis for plane in scene.appearance.planes for basis in plane.bases]
-    decoded = sum(
-        4 * plane.mean.size + sum(math.prod(basis.textures.shape) for basis in plane.bases)
-        for plane in scene.appearance.planes
-    )
+    means = 4 * sum(plane.mean.size for plane in scene.appearance.planes)
+    decoded = means + sum(math.prod(basis.textures.shape) for basis in bases)
     counts: Iterable[tuple[int, int, str]] = [
         (len(scene.rig.cameras), limits.MAX_CAMERAS, "cameras"),
         (sum(basis.count for basis in bases), limits.MAX_COMPONENTS, "eigen textures"),
@@ -51,6 +49,5 @@ def check_writable(scene: Scene, path: Path | None) -> None:
             refuse(f"{count} {name}")
     for name in scene.rig.names:
         if len(name) > limits.MAX_NAME or not is_printable(name):
-            raise OutputError(
-                "camera-name", f"the name {name!r} cannot be kept", path=path, remedy="rename the photograph"
-            )
+            message = f"the name {name!r} cannot be kept"
+            raise OutputError("camera-name", message, path=path, remedy="rename the photograph")

@@ -209,12 +209,10 @@ def _by_gain_per_byte(
 ) -> list[tuple[dict[str, Any], PicturePayload]]:
     """The entries of all pictures of eigen textures and their files, sorted by the squared error of R, G and B that
     they take off for a byte; those of one basis in their order."""
-    queues = []
-    first = 0
-    for plane, made, shown in zip(scene.appearance.planes, coded.planes, planes, strict=True):
-        depth = plane.mean.shape[2]
-        matrix = np.eye(depth) if scene.appearance.to_rgb is None else scene.appearance.to_rgb[:, first : first + depth]
-        first += depth
+    queues, to_rgb = [], scene.appearance.to_rgb
+    slices = scene.appearance.channel_slices
+    for plane, own, made, shown in zip(scene.appearance.planes, slices, coded.planes, planes, strict=True):
+        matrix = np.eye(plane.mean.shape[2]) if to_rgb is None else to_rgb[:, own]
         share = np.square(matrix, dtype=np.float64).sum(axis=0)
         for basis, files, entry in zip(plane.bases, made.bases, shown["bases"], strict=True):
             energy = np.square(basis.weights, dtype=np.float64).mean(axis=0) / float(np.prod(basis.size))

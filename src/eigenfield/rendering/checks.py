@@ -17,9 +17,8 @@ def check_filter(filter: str) -> None:
         OptionError: `filter`: it is none of `TEXTURE_FILTERS`.
     """
     if filter not in TEXTURE_FILTERS:
-        raise OptionError(
-            "filter", f"no filter is called {filter!r}", remedy=f"use one of {', '.join(TEXTURE_FILTERS)}"
-        )
+        remedy = f"use one of {', '.join(TEXTURE_FILTERS)}"
+        raise OptionError("filter", f"no filter is called {filter!r}", remedy=remedy)
 
 
 def check_textures(textures: int | None) -> None:

@@ -62,9 +62,8 @@ class RenderJob:
 
     def __post_init__(self) -> None:
         if self.renderer not in RENDERERS:
-            raise OptionError(
-                "renderer", f"no renderer is called {self.renderer!r}", remedy=f"use one of {', '.join(RENDERERS)}"
-            )
+            remedy = f"use one of {', '.join(RENDERERS)}"
+            raise OptionError("renderer", f"no renderer is called {self.renderer!r}", remedy=remedy)
         if self.renderer == "opengl" and self.samples is not None:
             raise OptionError("samples", "OpenGL chooses its samples itself", remedy="leave them out")
 

@@ -6,13 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.scene import Scene
-from eigenfield.rendering.weights import (
-    WEIGHTS_INSIDE_SLACK,
-    encoded_coordinates,
-    hull,
-    nearest_on_segments,
-    view_weights,
-)
+from eigenfield.rendering.weights import WEIGHTS_INSIDE_SLACK, encoded_places, hull, nearest_on_segments, view_weights
 
 WEIGHT_MAP_NODES = 129  # along an axis: 2^n + 1 puts the cameras of a 17 x 17, 9 x 9 or 5 x 5 grid on nodes
 
@@ -57,7 +51,7 @@ def _fill_triangles(
 ) -> None:
     """Fill `found` (nodes, nodes, N) with the weights of every node: within a Delaunay triangle its corners', outside
     the hull those of the nearest point on it. steps: (nodes,) their coordinates along an axis. rows: (Ne, N)."""
-    places = encoded_coordinates(scene)
+    places = encoded_places(scene)
     for triangle in scene.rig.triangles:
         a, b, c = places[triangle]
         low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)

@@ -118,7 +118,7 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse
     if not (np.isfinite(x) and np.isfinite(y)):
         raise OptionError("viewpoint", f"the viewpoint {x:g},{y:g} is not finite", remedy="give two from -1 to 1")
     point = np.clip([x, y], -1.0, 1.0)
-    places = encoded_coordinates(scene)
+    places = encoded_places(scene)
     if scene.rig.view_plane.is_line:
         point[1] = 0.0
     if mode == "delaunay":
@@ -127,9 +127,8 @@ def _sparse_weights(scene: Scene, at: tuple[float, float], mode: str) -> _Sparse
         return _nearest3(point, places)
     if mode == "bilinear":
         return _bilinear(point, places)
-    raise OptionError(
-        "weights-mode", f"no view weights are called {mode!r}", remedy=f"use one of {', '.join(WEIGHT_MODES)}"
-    )
+    remedy = f"use one of {', '.join(WEIGHT_MODES)}"
+    raise OptionError("weights-mode", f"no view weights are called {mode!r}", remedy=remedy)
 
 
 def camera_weights(scene: Scene, index: int, mode: str = "delaunay", time: int = 0) -> ViewWeights:
@@ -176,7 +175,7 @@ def delaunay_triangles(coordinates: ArrayLike) -> NDArray[np.int32]:
     return np.ascontiguousarray(triangles[_area(points[triangles]) > WEIGHTS_FLAT_RATIO])
 
 
-def encoded_coordinates(scene: Scene) -> NDArray[np.float64]:
+def encoded_places(scene: Scene) -> NDArray[np.float64]:
     """(Ne, 2) view-plane coordinates of the encoded cameras, computed once for a scene.
 
     Args:
@@ -276,9 +275,8 @@ def _bilinear(point: NDArray[np.float64], places: NDArray[np.float64]) -> _Spars
     """Between the four cameras of the grid cell; on a jittering grid the cell's quadrilateral is inverted exactly."""
     grid = find_grid(places)
     if grid is None:
-        raise OptionError(
-            "no-grid", "bilinear view weights need cameras on a regular grid", remedy="use --weights delaunay"
-        )
+        message = "bilinear view weights need cameras on a regular grid"
+        raise OptionError("no-grid", message, remedy="use --weights delaunay")
     if min(grid.index.shape) == 1:
         return _along_line(point, places)
     index = grid.index.astype(np.int32)

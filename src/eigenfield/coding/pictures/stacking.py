@@ -30,9 +30,8 @@ def check_codec(codec: str, quality: int | None) -> None:
     if codec not in SAVE_CODECS:
         raise OptionError("codec", f"there is no codec {codec!r}", remedy=f"use {', '.join(SAVE_CODECS)}")
     if codec in ("avif", "webp") and not features.check(codec):
-        raise OptionError(
-            "codec-missing", f"this Pillow has no {codec}", remedy="install a wheel of pillow 11.3 or later"
-        )
+        remedy = "install a wheel of pillow 11.3 or later"
+        raise OptionError("codec-missing", f"this Pillow has no {codec}", remedy=remedy)
     if quality is not None and PICTURES[codec].lossless:
         raise OptionError("quality", f"{codec} is lossless and takes no quality", remedy="leave it out or use avif")
     if quality is not None and not 0 <= quality <= 100:

@@ -19,16 +19,7 @@ from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, Coder, crf_of, d
 from eigenfield.coding.pictures.quantise import precision_codes, spread_precision
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.appearance import Basis, Plane
-from eigenfield.core.payloads import (
-    Affine,
-    Coded,
-    Payload,
-    Payloads,
-    PicturePayload,
-    mean_key,
-    textures_key,
-    weights_key,
-)
+from eigenfield.core.payloads import Affine, Coded, Payload, Payloads, PicturePayload, mean_key, payloads_of
 from eigenfield.runtime.parallel import parallel_map
 
 CODE_MIN_UNIT = 1e-4  # what a code stands for, in the photographs' range
@@ -62,9 +53,7 @@ class CodedBasis:
     @property
     def payloads(self) -> Payloads:
         """By the keys of a scene."""
-        basis = self.basis
-        found = Payloads({textures_key(basis.textures, basis.scale, basis.zero): self.pictures})
-        return found if self.weights is None else found | {weights_key(basis.weights): [self.weights]}
+        return payloads_of(self.basis, self.pictures, self.weights)
 
 
 def code_mean(

@@ -202,10 +202,10 @@ class Composer:
         """The grid of the whole atlas, which takes the others, and those that are coarser, with all parts."""
         whole = self._grid(*self._scene.appearance.atlas, mips=True)
         grids = {self._scene.appearance.atlas: whole}
-        column = group = channel = 0
-        for plane in self._scene.appearance.planes:
-            own = self._colours[channel : channel + plane.mean.shape[2]]
-            channel += plane.mean.shape[2]
+        column = group = 0
+        appearance = self._scene.appearance
+        for plane, channels in zip(appearance.planes, appearance.channel_slices, strict=True):
+            own = self._colours[channels]
             for size in plane.sizes:
                 if size not in grids:
                     grids[size] = self._grid(*size)

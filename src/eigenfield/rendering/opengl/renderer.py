@@ -221,9 +221,8 @@ def make_context() -> Any:
     try:
         import moderngl
     except ImportError as error:
-        raise OptionError(
-            "opengl-missing", "the OpenGL renderer needs moderngl", remedy="pip install 'eigenfield[gpu]'"
-        ) from error
+        message, remedy = "the OpenGL renderer needs moderngl", "pip install 'eigenfield[gpu]'"
+        raise OptionError("opengl-missing", message, remedy=remedy) from error
     problems = []
     options: tuple[dict[str, Any], ...] = ({"backend": "egl"}, {})  # without a display, else what the system has
     for option in options:

@@ -23,7 +23,6 @@ from eigenfield.rendering.software.tiles import (
     TILES_PER_TASK,
     Tiled,
     compose,
-    cut_tiles,
     empty_layers,
     fill_layers,
     tile,
@@ -38,8 +37,7 @@ class Part:
     """Bases of one plane with one grid and corner.
 
     Attributes:
-        first: First of its channels among the K of all planes.
-        channels: Number of its channels.
+        channels: Its own among the K of all planes.
         size: (rows, columns) of the grid.
         tiled: The textures.
         weights: (No, n) float64 for each basis.
@@ -48,8 +46,7 @@ class Part:
         rectangle: [top, bottom) x [left, right) outside of which it is zero; None: it is whole.
     """
 
-    first: int
-    channels: int
+    channels: slice
     size: tuple[int, int]
     tiled: Tiled
     weights: tuple[NDArray[np.float64], ...]
@@ -101,20 +98,16 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
     matrix = np.eye(total, dtype=np.float32) if to_rgb is None else to_rgb.astype(np.float32)
     groups, places = _groups(scene), np.flatnonzero(used)
     plain = to_rgb is None and len(planes) == 1 and planes[0].mean.shape[:2] == size
-    if plain and len(groups) <= 1 and all(_whole(bases, size) for _, _, bases in groups):
+    if plain and len(groups) <= 1 and all(_whole(bases, size) for _, bases in groups):
         plane = planes[0]
         tiled = tile(plane.mean, plane.bases, used, total)
         weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
-        part = Part(0, total, size, tiled, weights, _numbers(used), None, None)
+        part = Part(slice(total), size, tiled, weights, _numbers(used), None, None)
         return Composite(size, part.number, tiled.mean, matrix, (part,), True)
     base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
-    first = 0
-    for plane in planes:
-        depth = int(plane.mean.shape[2])
-        share = np.ascontiguousarray(matrix[:, first : first + depth])
-        _add_mean(plane.mean, size, places, share, base)
-        first += depth
-    parts = tuple(_part(first, depth, bases, size, used) for first, depth, bases in groups)
+    for plane, own in zip(planes, scene.appearance.channel_slices, strict=True):
+        _add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
+    parts = tuple(_part(own, bases, size, used) for own, bases in groups)
     return Composite(size, _numbers(used), base, matrix, parts, False)
 
 
@@ -154,7 +147,7 @@ def compose_scene(
         some = tiles[piece[0] : piece[1]]
         total = np.zeros((len(some), composite.matrix.shape[1], TILE_AREA), np.float32)
         for part, buffer in zip(composite.parts, buffers, strict=True):
-            _add(part.taps, some, composite.size, part.size, buffer, total[:, part.first : part.first + part.channels])
+            _add(part.taps, some, composite.size, part.size, buffer, total[:, part.channels])
         join_tiles(some, total, composite.matrix, composite.base, numbers[piece[0] : piece[1]], layers)
 
     parallel_map(join, pieces(len(tiles), TILES_PER_TASK))
@@ -166,21 +159,20 @@ def make_buffers(composite: Composite) -> list[NDArray[np.float32]]:
     Args:
         composite: The scene's textures.
     """
-    return [] if composite.plain else [empty_layers(*part.size, part.channels) for part in composite.parts]
+    if composite.plain:
+        return []
+    return [empty_layers(*part.size, part.channels.stop - part.channels.start) for part in composite.parts]
 
 
-def _groups(scene: Scene) -> list[tuple[int, int, list[Basis]]]:
-    """First channel, channels and bases of what can be summed together: one plane, one grid, one corner."""
-    found: list[tuple[int, int, list[Basis]]] = []
-    first = 0
-    for plane in scene.appearance.planes:
-        depth = int(plane.mean.shape[2])
+def _groups(scene: Scene) -> list[tuple[slice, list[Basis]]]:
+    """Channels and bases of what can be summed together: one plane, one grid, one corner."""
+    found: list[tuple[slice, list[Basis]]] = []
+    for plane, own in zip(scene.appearance.planes, scene.appearance.channel_slices, strict=True):
         kinds: dict[tuple[tuple[int, int], tuple[int, int], tuple[int, ...]], list[Basis]] = {}
         for basis in plane.bases:
             if basis.count:
                 kinds.setdefault((basis.size, basis.corner, basis.textures.shape[1:3]), []).append(basis)
-        found.extend((first, depth, bases) for bases in kinds.values())
-        first += depth
+        found.extend((own, bases) for bases in kinds.values())
     return found
 
 
@@ -188,7 +180,7 @@ def _whole(bases: Sequence[Basis], size: tuple[int, int]) -> bool:
     return all(basis.textures.shape[1:3] == size for basis in bases)
 
 
-def _part(first: int, depth: int, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
+def _part(own: slice, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
     size, (row, column) = bases[0].size, bases[0].corner
     taps = None if size == atlas else (make_taps(atlas[0], size[0]), make_taps(atlas[1], size[1]))
     kept = used if taps is None else tiles_read(used, *taps, tile_shape(size))
@@ -202,7 +194,8 @@ def _part(first: int, depth: int, bases: list[Basis], atlas: tuple[int, int], us
         inside[top - 1 : bottom, left - 1 : right] = True
         kept = kept & inside
     weights = tuple(basis.weights.astype(np.float64) for basis in bases)
-    return Part(first, depth, size, tile(None, bases, kept, depth), weights, _numbers(kept), taps, rectangle)
+    tiled = tile(None, bases, kept, own.stop - own.start)
+    return Part(own, size, tiled, weights, _numbers(kept), taps, rectangle)
 
 
 def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -221,9 +214,6 @@ def _add_mean(
     """base (tiles, D, TILE_AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
     height, width, depth = mean.shape
     taps = None if (height, width) == atlas else (make_taps(atlas[0], height), make_taps(atlas[1], width))
-    if taps is None:
-        base += np.einsum("dc,tca->tda", share, cut_tiles(mean, depth)[places])
-        return
     layers = empty_layers(height, width, depth)
     fill_layers(mean, layers)
 

@@ -195,9 +195,8 @@ def background_of(background: Sequence[float] | float, channels: int) -> NDArray
     if values.shape == (3,) and channels != 3 and not values.any():
         values = values[:1]  # the default, for attributes that are no colours
     if values.shape not in ((1,), (channels,)) or not np.isfinite(values).all():
-        raise OptionError(
-            "background", f"the background has {values.size} values", remedy=f"give 1 or {channels} finite ones"
-        )
+        remedy = f"give 1 or {channels} finite ones"
+        raise OptionError("background", f"the background has {values.size} values", remedy=remedy)
     return np.ascontiguousarray(np.broadcast_to(values, (channels,)))
 
 
