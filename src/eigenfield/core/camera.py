@@ -78,9 +78,14 @@ class Camera:
         """(3, 4) K [R | t]: world to homogeneous pixels, whose third entry is the depth along z."""
         return self.K @ np.hstack([self.R, self.t[:, None]])
 
+    def homogeneous(self, points: ArrayLike) -> NDArray[np.float64]:
+        """(n, 3) world points as homogeneous pixels, whose third entry is the depth along z."""
+        matrix = self.matrix
+        return np.asarray(points, dtype=np.float64) @ matrix[:, :3].T + matrix[:, 3]
+
     def project(self, points: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """(n, 3) world points to (n, 2) pixels and (n,) depths; pixels are meaningless where depth is not positive."""
-        homogeneous = np.asarray(points, dtype=np.float64) @ self.matrix[:, :3].T + self.matrix[:, 3]
+        homogeneous = self.homogeneous(points)
         depth = homogeneous[:, 2]
         with np.errstate(divide="ignore", invalid="ignore"):
             return homogeneous[:, :2] / depth[:, None], depth

@@ -95,10 +95,8 @@ def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
     bases = [basis for plane in layout.planes or () for basis in plane.bases]
     if layout.lost:
         found = sum(basis.count for basis in bases)
-        log.warning(
-            "the file ends within its eigen textures: views are drawn of %d of %d (copy or download it again)",
-            found, found + layout.lost,
-        )  # fmt: skip
+        words = "the file ends within its eigen textures: views are drawn of %d of %d (copy or download it again)"
+        log.warning(words, found, found + layout.lost)
     elif document.glb.missing:
         log.warning("the file ends within its residual: captured views go without (copy or download it again)")
     planes = [_decode_plane(plane) for plane in layout.planes or ()] if pictures else []

@@ -241,12 +241,6 @@ def draw_band(edges, bounds, listing, first, last, slack, face, inverse_depth):
                     face[row, column] = f
 
 
-def homogeneous_corners(camera: Camera, vertices: NDArray[np.float32]) -> NDArray[np.float64]:
-    """(n, 3) float64: vertices as homogeneous pixels of a camera, the third entry the depth along z."""
-    matrix = camera.matrix
-    return np.ascontiguousarray(vertices.astype(np.float64) @ matrix[:, :3].T + matrix[:, 3])
-
-
 def rasterise(corners: NDArray[np.float64], faces: NDArray[np.int32], width: int, height: int) -> Raster:
     """Draw triangles.
 
@@ -308,7 +302,7 @@ def set_up_bands(
 
 def rasterise_view(mesh: Mesh, camera: Camera) -> Raster:
     """The mesh as a camera sees it, at the camera's own size."""
-    return rasterise(homogeneous_corners(camera, mesh.vertices), mesh.faces, camera.width, camera.height)
+    return rasterise(camera.homogeneous(mesh.vertices), mesh.faces, camera.width, camera.height)
 
 
 def rasterise_atlas(mesh: Mesh, width: int, height: int) -> Raster:

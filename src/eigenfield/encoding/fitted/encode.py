@@ -136,12 +136,8 @@ def _mean_measure(target: Target, scene: EncodedScene, data: FitData) -> float:
 def _warn_of_miss(target: Target, nearest: Attempt[EncodedScene]) -> None:
     """Say that no file reaches the target, and why."""
     if target.size is not None:
-        log.warning(
-            "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density",
-            target.size, nearest.size,
-        )  # fmt: skip
+        words = "%d bytes cannot be reached: the coarsest file has %d; take fewer textures, or a lower density"
+        log.warning(words, target.size, nearest.size)
     else:
-        log.warning(
-            "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density", target.goal,
-            nearest.measured,
-        )  # fmt: skip
+        words = "%g cannot be reached: the finest file has %.4g; take more textures, or a higher density"
+        log.warning(words, target.goal, nearest.measured)

@@ -97,10 +97,8 @@ FEW_OBSERVATIONS_ROUNDS = 4  # or the preset's, if more: few observations conver
 
 def fitted_textures(observations: int) -> int:
     """Luma's number of eigen textures unless it is asked for; of these `code_block_rd` codes as many as pay."""
-    return min(
-        max(round(TEXTURES_PER_OBSERVATION * observations), min(TEXTURES_MIN_COUNT, observations - 1)),
-        TEXTURES_MAX_COUNT,
-    )
+    fewest = min(TEXTURES_MIN_COUNT, observations - 1)
+    return min(max(round(TEXTURES_PER_OBSERVATION * observations), fewest), TEXTURES_MAX_COUNT)
 
 
 @dataclass(frozen=True, eq=False)

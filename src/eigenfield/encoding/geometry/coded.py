@@ -59,9 +59,8 @@ def _code_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> tuple
         shifts = np.array([(camera.K @ camera.R @ (camera.centre - other.centre))[:2] for other in cameras])
         inverse = 2 * DEPTH_ERROR_PX / max(float(np.linalg.norm(shifts, axis=1).max()), 1e-9)
         inverse = max(inverse, float(1 / depth.min() / 2**19))
-        matrix = camera.K @ np.hstack([camera.R, camera.t[:, None]])
         with contextlib.suppress(ValueError):  # as above
-            return encode(mesh, camera_lattice(matrix, MESH_STEP_PX, inverse), uv_bits=UV_BITS)
+            return encode(mesh, camera_lattice(camera.matrix, MESH_STEP_PX, inverse), uv_bits=UV_BITS)
     low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else float(np.linalg.norm(high - low))
     step = max(WORLD_STEP_PX * near / float(camera.K[0, 0]), float((high - low).max()) / 2**19)
@@ -77,9 +76,8 @@ def coded_cameras(cameras: Sequence[Camera], mesh: Mesh, grid: NDArray[np.int64]
         grid: (rows, columns) of indices of cameras that stand on a regular array; None where they do not.
     """
     focal = float(np.median([camera.K[0, 0] for camera in cameras]))
-    depth = np.concatenate(
-        [camera.project(mesh.vertices[:: max(1, len(mesh.vertices) // 200)])[1] for camera in cameras]
-    )
+    points = mesh.vertices[:: max(1, len(mesh.vertices) // 200)]
+    depth = np.concatenate([camera.project(points)[1] for camera in cameras])
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else 1.0
     stream, intrinsics, poses = encoder(CAMERAS_CODEC)(
         cameras, intrinsic_step=CAMERA_STEP_PX, rotation_step=CAMERA_STEP_PX / focal,

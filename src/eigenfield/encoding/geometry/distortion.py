@@ -93,19 +93,18 @@ def depth_distortion(
     def of_observation(index: int) -> NDArray[np.float64]:
         return _camera_distortion(mesh, cameras[chosen[some.camera_of(index)]], luma_of(some, index), world, deeper)
 
-    seen, first, second, most, black, pixels = np.zeros((6, len(points)))
-    # in order: the same numbers at any number of threads
-    for found in parallel_stream(of_observation, range(len(some))):
-        for total, one in zip((seen, first, second, most, black, pixels), found, strict=True):
-            total += one
+    sums = np.zeros((6, len(points)))
+    for found in parallel_stream(of_observation, range(len(some))):  # in order: the same at any number of threads
+        sums += found
+    seen, first, second, most, black, pixels = sums
     if not seen.any():
-        return DistortionMap(_cost_map(depth, given, *np.zeros((3, len(points)))), (side, start), 0.0)
+        return DistortionMap(_cost_map(depth, given, np.zeros((3, len(points)))), (side, start), 0.0)
     of_texel = len(observations) / len(some) * float(pixels[0] / seen.sum())
     curve = second - np.square(first) / np.maximum(seen, 1)
     for values in (curve, most):  # what nobody here sees another camera may: as the usual, by one of them
         values[seen == 0] = np.median(values[seen > 0] / seen[seen > 0])
     bare = np.where(_has_surface_behind(points / [pixel, pixel, 1]), most, np.maximum(black, most))
-    cost_map = _cost_map(depth, given, curve * of_texel, most * of_texel, bare * of_texel)
+    cost_map = _cost_map(depth, given, np.stack([curve, most, bare]) * of_texel)
     return DistortionMap(cost_map, (side, start), float(np.median(seen[seen > 0])) * of_texel)
 
 
@@ -202,16 +201,11 @@ def hole_error(
     return error * len(observations) / len(some), vertices.astype(np.int64)
 
 
-def _cost_map(
-    depth: NDArray[np.float32],
-    given: NDArray[np.bool_],
-    curve: NDArray[np.float64],
-    most: NDArray[np.float64],
-    bare: NDArray[np.float64],
-) -> CostMap:
-    """The curve smoothed; beside the surface a texel costs what the nearest on it does."""
+def _cost_map(depth: NDArray[np.float32], given: NDArray[np.bool_], costs: NDArray[np.float64]) -> CostMap:
+    """The curve smoothed; beside the surface a texel costs what the nearest on it does. costs: (3, t) the curve, most
+    and bare of covered texels."""
     full = np.zeros((3, *given.shape), np.float32)
-    full[:, given] = curve, most, bare
+    full[:, given] = costs
     share = np.maximum(uniform_filter(given.astype(np.float32), DISTORTION_WINDOW_TEXELS), 1e-6)
     smooth = np.where(given, uniform_filter(full[0], DISTORTION_WINDOW_TEXELS) / share, 0).astype(np.float32)
     row, column = distance_transform_edt(~given, return_distances=False, return_indices=True)

@@ -120,10 +120,8 @@ def simplify_relief_rd(
         if best is not None:
             holes, seen = hole_error(mesh, best.mesh, cameras, observations)
             found.append((best.cost(lambda_) + HOLE_ERROR_FACTOR * holes, best))
-            log.info(
-                "relief: %d of %d triangles in %d bytes, %d vertices collapsed, squared error of holes %.4g",
-                len(best.mesh.faces), len(mesh.faces), len(best.stream), len(collapses), holes,
-            )  # fmt: skip
+            words = "relief: %d of %d triangles in %d bytes, %d vertices collapsed, squared error of holes %.4g"
+            log.info(words, len(best.mesh.faces), len(mesh.faces), len(best.stream), len(collapses), holes)
             last |= HOLE_ERROR_FACTOR * holes < HOLE_MAX_COST_RATIO * lambda_ * len(best.stream)
             more = np.union1d(kept, seen)
         if last:

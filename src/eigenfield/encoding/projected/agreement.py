@@ -94,10 +94,8 @@ def warn_of_disagreement(
     shared = 1 - float(squares.sum()) / total if total > 0 else 1.0
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
     if shared < AGREEMENT_MIN_CONTRAST_RATIO and not outliers:  # which spoil the mean for all
-        log.warning(
-            "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at cameras "
-            "and mesh (eigenfield inspect --overlay)", 100 * shared,
-        )  # fmt: skip
+        words = "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at "
+        log.warning(words + "cameras and mesh (eigenfield inspect --overlay)", 100 * shared)
     return error
 
 

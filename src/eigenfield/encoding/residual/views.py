@@ -104,16 +104,9 @@ def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32])
     Raises:
         OptionError: `residual`, the job does not draw as the residual needs it.
     """
-    scene = job.scene
-    changed = {
-        "resolution": job.resolution is not None,
-        "filter": job.filter != "bicubic",
-        "textures": job.textures is not None,
-        "samples": job.samples is not None,
-        "renderer": job.renderer != "software",
-    }
-    for name, given in changed.items():
-        if given:
+    scene, usual = job.scene, RenderJob(job.scene)
+    for name in ("resolution", "filter", "textures", "samples", "renderer"):
+        if getattr(job, name) != getattr(usual, name):
             message = f"--{name} draws other pictures than the residual belongs to"
             raise OptionError("residual", message, remedy="leave one of them out")
     job = replace(job, samples=captured_samples(scene, index))

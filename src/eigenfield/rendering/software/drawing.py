@@ -207,10 +207,8 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
         frame: Of the camera's size and this sampling, written.
     """
     k, offsets = sampling.side, sampling.offsets
-    matrix = (camera.resize(camera.width * k, camera.height * k) if k > 1 else camera).matrix
-    corners = surface.vertices @ matrix[:, :3].T
-    corners += matrix[:, 3]
     size, reach = (camera.width * k, camera.height * k), float(np.abs(offsets).max())
+    corners = (camera.resize(*size) if k > 1 else camera).homogeneous(surface.vertices)
     bands = set_up_bands(corners, surface.faces, *size, frame.edges, frame.pixels, frame.bounds, reach)
     frame.seen[:] = 0
     middles = frame.inverse_depth, frame.column_of, frame.row_of
@@ -248,9 +246,8 @@ def shade(
     layers: NDArray[np.float32],
     filter: str,
     background: NDArray[np.float32],
-    picture: NDArray[Any],
-    coverage: NDArray[np.float32],
-) -> None:
+    dtype: type[np.uint8] | type[np.float32] = np.float32,
+) -> tuple[NDArray[Any], NDArray[np.float32]]:
     """Filter the texture at each sample.
 
     Args:
@@ -259,10 +256,13 @@ def shade(
         layers: (L, tiles, TILE_AREA, 4) the texture.
         filter: `bilinear` or `bicubic`.
         background: (C,) colour of what is not covered.
-        picture: (H, W, C) uint8 or float32, written.
-        coverage: (H, W) the part of each pixel's samples that show the surface, written.
+        dtype: Of the picture's numbers; of uint8 they are times 255, rounded half to even and clipped.
+
+    Returns:
+        (H, W, C) the picture, and (H, W) the part of each pixel's samples that show the surface.
     """
     height, width = surface.size
+    picture, coverage = np.empty((*frame.size, len(background)), dtype), np.empty(frame.size, np.float32)
     behind = np.zeros((len(layers), LAYER_CHANNELS), np.float32)
     behind.reshape(-1)[: len(background)] = background
     parallel_map(
@@ -273,6 +273,7 @@ def shade(
         ),
         pieces(picture.shape[0], RASTER_BAND_ROWS),
     )  # fmt: skip
+    return picture, coverage
 
 
 def choose_sampling(surface: Surface, camera: Camera, asked: int | None = None, detail: float = 1.0) -> Sampling:

@@ -157,16 +157,13 @@ class Renderer:
         check_textures(textures)
         behind = background_of(background, self.channels)
         sampling = drawing.choose_sampling(self._surface, camera, samples, self._detail)
-        height, width = camera.height, camera.width
-        buffers = self._take(height, width, sampling)
+        buffers = self._take(camera.height, camera.width, sampling)
         frame = buffers.frame
         drawing.rasterise_surface(self._surface, camera, sampling, frame)
         compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
-        image = np.empty((height, width, self.channels), dtype)
-        coverage = np.empty((height, width), np.float32)
-        drawing.shade(self._surface, frame, buffers.layers, filter, behind, image, coverage)
+        drawn = drawing.shade(self._surface, frame, buffers.layers, filter, behind, dtype)
         self._spare.append(buffers)
-        return image, coverage
+        return drawn
 
     def _take(self, height: int, width: int, sampling: drawing.Sampling) -> Buffers:
         """Buffers for a picture of that size: spare ones, or new ones."""
@@ -230,12 +227,9 @@ def draw_texture(
     sampling = drawing.choose_sampling(surface, camera, samples, detail)
     frame = drawing.Framebuffer(surface, camera.height, camera.width, sampling)
     drawing.rasterise_surface(surface, camera, sampling, frame)
-    image = np.empty((camera.height, camera.width, channels), np.float32)
-    coverage = np.empty((camera.height, camera.width), np.float32)
     layers = empty_layers(height, width, channels)
     fill_layers(texture, layers)
-    drawing.shade(surface, frame, layers, filter, background_of(background, channels), image, coverage)
-    return Picture(image, coverage)
+    return Picture(*drawing.shade(surface, frame, layers, filter, background_of(background, channels)))
 
 
 def renderer_of(scene: Scene) -> Renderer:
