@@ -110,8 +110,7 @@ class Scene:
             with _lock:
                 if name not in self._derived:
                     self._derived[name] = make()
-        found: T = self._derived[name]
-        return found
+        return self._derived[name]
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_derived": {}}

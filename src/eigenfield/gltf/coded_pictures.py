@@ -15,11 +15,11 @@ from eigenfield.coding.pictures.pictures_8bit import encode_preview
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.cached import CachedPayloads
 from eigenfield.gltf.coarse import first_affordable
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels a side and quality, beside a fit's pictures
 MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
@@ -90,7 +90,7 @@ def code_pictures(
             [[partial(_same_picture, one) for one in some] or way() for some, way in zip(there, ways, strict=True)]
         )
     jobs = [job for plan in planned for some in plan for job in some]
-    done = iter(list(track(parallel_stream(lambda job: job(), jobs), "code textures", len(jobs), progress)))
+    done = iter(tracked_map(lambda job: job(), jobs, "code textures", progress))
     planes = []
     for plan in planned:
         files = [[next(done) for _ in some] for some in plan]

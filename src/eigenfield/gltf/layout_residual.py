@@ -63,5 +63,4 @@ def residual_frames(residual: Residual) -> Iterator[Planes]:
         FormatError: `residual-damaged`.
     """
     where = f"/extensions/{limits.EXTENSION}/residual"
-    frames: Iterator[Planes] = CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where)
-    return frames
+    return CODECS[residual.codec].decode(residual.video, residual.frame, len(residual.order), where)

@@ -105,8 +105,7 @@ class Value:
         return self.value
 
     def mapping(self) -> dict[str, Any]:
-        made: dict[str, Any] = self._expect(dict, "an object")
-        return made
+        return self._expect(dict, "an object")
 
     def has(self, key: str) -> bool:
         return key in self.mapping()
@@ -140,8 +139,7 @@ class Value:
         return found
 
     def boolean(self) -> bool:
-        found: bool = self._expect(bool, "true or false")
-        return found
+        return self._expect(bool, "true or false")
 
     def number(self, largest: float = 3.4e38) -> float:
         """A number of magnitude up to `largest`, by default float32's range."""

@@ -51,8 +51,7 @@ def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
     """
     u, _, vt = np.linalg.svd(matrix)
     turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
-    rotation: NDArray[np.float64] = (u * turn) @ vt
-    return rotation
+    return (u * turn) @ vt
 
 
 def path_points(name: str, frames: int) -> NDArray[np.float64]:

@@ -66,8 +66,7 @@ class ViewWeights:
         Args:
             matrix: (No, n) a row for each observation.
         """
-        total: NDArray[np.float64] = (self.values[:, None] * matrix[self.rows]).sum(axis=0)
-        return total
+        return (self.values[:, None] * matrix[self.rows]).sum(axis=0)
 
 
 def view_weights(scene: Scene, at: tuple[float, float], mode: str = "delaunay", time: int = 0) -> ViewWeights:

@@ -9,13 +9,14 @@ from __future__ import annotations
 import contextlib
 import os
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import Future
 from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, TypeVar
 
 from eigenfield.core.errors import OptionError
+from eigenfield.core.progress import Progress, track
 
 A = TypeVar("A")
 B = TypeVar("B")
@@ -131,6 +132,13 @@ def parallel_stream(function: Callable[[A], B], items: Iterable[A]) -> Iterator[
         for future in pending:  # whoever uses the same buffers next must not meet a straggler
             if not future.cancelled():
                 future.exception()
+
+
+def tracked_map(
+    function: Callable[[A], B], items: Sequence[A], stage: str, progress: Progress | None = None
+) -> list[B]:
+    """As `parallel_map`, reporting each item as a step of a stage."""
+    return list(track(parallel_stream(function, items), stage, len(items), progress))
 
 
 @contextlib.contextmanager

@@ -98,11 +98,9 @@ def texture_codes(basis: Basis, index: int, scale: NDArray[np.float32], zero: ND
     """(H, W, C) uint8 codes of texture `index` under scale and zero (N, C) from `basis_scale`."""
     texture = basis.textures[index]
     if texture.dtype == np.uint8:
-        same: NDArray[np.uint8] = texture
-        return same
+        return texture
     value = basis.values(index, index + 1)[0]
-    codes: NDArray[np.uint8] = np.rint(value / scale[index] + zero[index]).clip(0, 255).astype(np.uint8)
-    return codes
+    return np.rint(value / scale[index] + zero[index]).clip(0, 255).astype(np.uint8)
 
 
 def precision_codes(precision: NDArray[np.float32]) -> NDArray[np.uint8]:

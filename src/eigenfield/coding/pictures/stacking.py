@@ -64,8 +64,7 @@ def encode(codes: NDArray[np.uint8], codec: str, quality: int) -> bytes:
         codec: One of SAVE_CODECS.
         quality: 0..100, for lossy ones.
     """
-    data: bytes = encoder(codec)(stacked_picture(codes), quality)
-    return data
+    return encoder(codec)(stacked_picture(codes), quality)
 
 
 def dimensions(data: memoryview, codec: str, where: str) -> tuple[int, int]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, cameras_of
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.fitted.footprints import (
     Footprint,
     Footprints,
@@ -26,7 +26,7 @@ from eigenfield.encoding.fitted.footprints import (
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
 from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +153,7 @@ def _open_observations(
             masks[part] = 255 if mask is None else np.where(mask > 0.5, 255, 0).reshape(-1)
             return mask is not None
 
-        masked = list(track(parallel_stream(put, range(total)), "photographs", total, progress))
+        masked = tracked_map(put, range(total), "photographs", progress)
         yield DecodedObservations(by, shapes, codes, offsets, masks if any(masked) else None)
 
 

@@ -10,10 +10,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.encoding.projected.project import TextureMaps
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 
 def _flow(reference: NDArray[np.uint8], moving: NDArray[np.uint8]) -> NDArray[np.float32]:
@@ -82,8 +82,7 @@ def align_maps(maps: TextureMaps, reference: int, progress: Progress | None = No
                 maps.atlas, maps.values[index], maps.seen[index], fixed, fixed_seen
             )
 
-    for _ in track(parallel_stream(align, range(maps.count)), "alignment", maps.count, progress):
-        pass
+    tracked_map(align, range(maps.count), "alignment", progress)
 
 
 def _grey(atlas: Atlas, values: NDArray[np.float32], known: NDArray[np.uint8]) -> NDArray[np.uint8]:

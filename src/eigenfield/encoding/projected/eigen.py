@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 from eigenfield.core.progress import Progress, track
 from eigenfield.encoding.projected.mean import MAP_TILE_TEXELS, Mean
 from eigenfield.encoding.projected.project import TextureMaps
-from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.parallel import parallel_stream, pieces, tracked_map
 
 log = logging.getLogger("eigenfield.basis")
 
@@ -86,8 +86,6 @@ def eigen_textures(
         tile = projection @ _deviations(maps, mean, first, last)
         textures[:, first:last] = tile.reshape(count, last - first, maps.channels)
 
-    parts = pieces(maps.atlas.count, MAP_TILE_TEXELS)
     with threadpool_limits(1, "blas"):
-        for _ in track(parallel_stream(piece, parts), "eigen textures", len(parts), progress):
-            pass
+        tracked_map(piece, pieces(maps.atlas.count, MAP_TILE_TEXELS), "eigen textures", progress)
     return textures

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis, Plane
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.options import resolved_value
 from eigenfield.encoding.plan import EncodePlan
@@ -25,7 +25,7 @@ from eigenfield.encoding.projected.uv_measure import smallest_count
 from eigenfield.encoding.views import CaptureViews, nothing_seen_error
 from eigenfield.imaging.png import png_bytes
 from eigenfield.runtime.files import output_errors, write_bytes
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 
 def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progress | None = None) -> EncodedScene:
@@ -137,5 +137,4 @@ def write_maps(
         write_bytes(folder / f"{stem}.seen.png", png_bytes(visibility), overwrite=True)
 
     write_bytes(folder / "mean.png", png_bytes(spreader(mean)), overwrite=True)
-    for _ in track(parallel_stream(write, range(maps.count)), "maps as pictures", maps.count, progress):
-        pass
+    tracked_map(write, range(maps.count), "maps as pictures", progress)

@@ -25,9 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected.project import TextureMaps
-from eigenfield.runtime.parallel import parallel_map, parallel_stream
+from eigenfield.runtime.parallel import parallel_map, tracked_map
 
 log = logging.getLogger("eigenfield.texturing")
 
@@ -106,8 +106,7 @@ def harmonise_maps(maps: TextureMaps, model: str = "gain", progress: Progress | 
     def change(index: int) -> None:
         maps.values[index] = harmonised_map(maps.values[index], maps.seen[index], colours[index])
 
-    for _ in track(parallel_stream(change, range(maps.count)), "harmonise", maps.count, progress):
-        pass
+    tracked_map(change, range(maps.count), "harmonise", progress)
     return colours
 
 
@@ -115,8 +114,7 @@ def harmonised_map(
     values: NDArray[np.float32], seen: NDArray[np.uint8], colour: NDArray[np.float32]
 ) -> NDArray[np.float32]:
     """One camera's (n, C) map with its gain and offset, (2, C), applied where it sees; zero elsewhere."""
-    result: NDArray[np.float32] = np.where(seen[:, None] > 0, values * colour[0] + colour[1], np.float32(0))
-    return result
+    return np.where(seen[:, None] > 0, values * colour[0] + colour[1], np.float32(0))
 
 
 def fit_colours(values: Numbers, weights: Numbers, blocks: NDArray[np.int64], model: str = "gain") -> Numbers:
@@ -266,7 +264,6 @@ def _cells(maps: TextureMaps, progress: Progress | None) -> tuple[Numbers, Numbe
             values[index, :, channel] = np.bincount(part, shown, len(texels)) / np.maximum(number, 1)
             weights[index, :, channel] = np.where(usable, texels / side**2, 0)
 
-    for _ in track(parallel_stream(average, range(maps.count)), "colours", maps.count, progress):
-        pass
+    tracked_map(average, range(maps.count), "colours", progress)
     place = np.stack([np.bincount(cell, atlas.position[:, axis], len(texels)) for axis in range(3)], axis=1)
     return values, weights, _blocks(place / texels[:, None])

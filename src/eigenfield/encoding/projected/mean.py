@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected.project import TextureMaps
-from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.parallel import pieces, tracked_map
 
 MAP_TILE_TEXELS = 4096  # chart texels worked on at a time
 
@@ -47,9 +47,7 @@ def mean_map(maps: TextureMaps, progress: Progress | None = None) -> Mean:
         values[first:last] = total / np.maximum(number, 1)[:, None]
         count[first:last] = number
 
-    parts = pieces(maps.atlas.count, MAP_TILE_TEXELS)
-    for _ in track(parallel_stream(piece, parts), "mean", len(parts), progress):
-        pass
+    tracked_map(piece, pieces(maps.atlas.count, MAP_TILE_TEXELS), "mean", progress)
     return Mean(values, count)
 
 

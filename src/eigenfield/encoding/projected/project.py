@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Observations
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected import kernels
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 RESAMPLING_FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
 DEPTH_BIAS_RATIO = 2e-3  # of a view's range of inverse depths
@@ -116,6 +116,5 @@ def texture_maps(
             photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
             values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask, resampling)
 
-        for _ in track(parallel_stream(project, range(total)), "texture maps", total, progress):
-            pass
+        tracked_map(project, range(total), "texture maps", progress)
         yield TextureMaps(atlas, values, seen)

@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.encoding.projected.eigen import eigen_textures, weights_of
 from eigenfield.encoding.projected.mean import Mean
 from eigenfield.encoding.projected.project import TextureMaps
 from eigenfield.imaging.metrics import psnr, ssim, to_codes
 from eigenfield.runtime.files import scratch_array
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 log = logging.getLogger("eigenfield.basis")
 
@@ -141,6 +141,6 @@ def _curve(
         values, seen = np.array(maps.values[row]), np.array(maps.seen[row])
         return [pair[0] for pair in measure_map(pictures(row), average, maps.atlas, values, seen)[1]]
 
-    rows = list(track(parallel_stream(score, chosen), "UV measure", len(chosen), progress))
+    rows = tracked_map(score, chosen, "UV measure", progress)
     seen = np.array([row for row in rows if None not in row], float)
     return [0.0] * len(counts) if len(seen) == 0 else seen.mean(axis=0).tolist()

@@ -121,8 +121,7 @@ class Renderer:
         if colour is not None:
             options: dict[str, Any] = {"background": background, "textures": textures, "samples": samples}
             return self.draw(camera, weights, filter=filter, colour=colour, **options).to_uint8()
-        image: NDArray[np.uint8] = self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
-        return image
+        return self._draw(camera, weights, filter, background, textures, samples, np.uint8)[0]
 
     def grid_side(self, camera: Camera) -> int:
         """k of the k x k samples a pixel that are taken by default; 1: smooth edges.
