@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from eigenfield.cli.common import common_options, echo_json
+from eigenfield.cli.common import PATH, common_options, echo_json
 
 
 @click.command(
@@ -19,7 +19,7 @@ Examples:
   eigenfield validate scene.glb
   eigenfield validate --json scenes/*.glb"""
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path))
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="Findings as JSON, a list with one object a file.")
 @common_options
 @click.pass_context

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import capture_options, common_options, note
+from eigenfield.cli.common import PATH, capture_options, common_options, note
 from eigenfield.core.errors import FormatError, OptionError
 
 if TYPE_CHECKING:
@@ -25,8 +25,8 @@ Examples:
   eigenfield view scene.glb capture/
   eigenfield view scene.glb --no-browser --port 8000"""
 )
-@click.argument("scene", type=click.Path(path_type=Path))
-@click.argument("capture", type=click.Path(path_type=Path), required=False)
+@click.argument("scene", type=PATH)
+@click.argument("capture", type=PATH, required=False)
 @capture_options
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Port.  [default: one that is free]"
@@ -45,11 +45,7 @@ Examples:
 def command(
     scene: Path,
     capture: Path | None,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     port: int,
     host: str,
     no_browser: bool,
@@ -66,7 +62,6 @@ def command(
     from eigenfield.viewer import Server, make_manifest
 
     check_scale(metres_per_unit)
-    options = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     try:
         loaded, data = outline(scene)
     except FormatError as error:
@@ -76,7 +71,7 @@ def command(
         glb, photographs = scene.read_bytes(), None
     else:
         glb = without_residual(data)
-        photographs = _photographs(loaded, capture, options, quiet)
+        photographs = _photographs(loaded, capture, place, quiet)
     manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
     with Server(manifest, host, port) as server:
         try:
@@ -88,9 +83,9 @@ def command(
             note("stopped", quiet)
 
 
-def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any], quiet: bool) -> Photographs | None:
+def _photographs(scene: Scene, capture: Path | None, place: Mapping[str, Any], quiet: bool) -> Photographs | None:
     if capture is None:
-        given = [name for name, value in options.items() if value is not None]
+        given = [name for name, value in place.items() if value is not None]
         if given:
             raise OptionError(
                 "no-capture", f"--{given[0]} is for a capture, and none is named", remedy="name it behind the scene"
@@ -100,7 +95,7 @@ def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any],
     from eigenfield.evaluation import match_photographs, with_scene_cameras
     from eigenfield.viewer import Photographs
 
-    light_field = with_scene_cameras(scene, open_any(capture, **options))
+    light_field = with_scene_cameras(scene, open_any(capture, **place))
     photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
     missing = len(scene.rig.names) - len(photographs.names)
     if missing:
