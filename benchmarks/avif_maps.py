@@ -2,27 +2,18 @@
 
 from __future__ import annotations
 
-import io
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PIL import Image
 
 import eigenfield as ef
 from eigenfield.encoding.projected import make_atlas, texture_map
 from eigenfield.imaging.metrics import ssim, to_codes
+from evidence.stills import STILLS, decode, encode
 
 SAMPLE = 12  # maps, evenly spread; their bytes are scaled up
-
-
-def coded(picture: np.ndarray[Any, Any], quality: int) -> tuple[int, np.ndarray[Any, Any]]:
-    """Bytes of an (H, W, 3) uint8 picture as AVIF (4:4:4, tuned as our own), and what it decodes to."""
-    buffer = io.BytesIO()
-    Image.fromarray(picture).save(
-        buffer, "AVIF", quality=quality, subsampling="4:4:4", speed=6, advanced={"tune": "psnr", "deltaq-mode": "0"}
-    )
-    return buffer.tell(), np.asarray(Image.open(buffer).convert("RGB"))
+AVIF = STILLS[0]
 
 
 def maps_at_equal_ssim(scene_path: Path, capture: ef.LightField, target: float) -> dict[str, Any]:
@@ -42,9 +33,9 @@ def maps_at_equal_ssim(scene_path: Path, capture: ef.LightField, target: float) 
         maps.append((filled, visible))
 
     def at(quality: int) -> tuple[float, float]:
-        results = [(coded(filled, quality), filled, visible) for filled, visible in maps]
-        scores = [ssim(decoded, filled, visible) for (_, decoded), filled, visible in results]
-        return float(np.mean([score or 0.0 for score in scores])), float(np.mean([size for (size, _), _, _ in results]))
+        files = [encode(filled, AVIF, quality) for filled, _ in maps]
+        scores = [ssim(decode(data, AVIF), *one) or 0.0 for data, one in zip(files, maps, strict=True)]
+        return float(np.mean(scores)), float(np.mean([len(data) for data in files]))
 
     low, high = 0, 100
     while low < high:

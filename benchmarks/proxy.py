@@ -10,7 +10,6 @@ from __future__ import annotations
 import argparse
 import functools
 import json
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -22,8 +21,8 @@ import proxy_scenes
 
 CASES: dict[str, Callable[[Path], dict[str, Any]]] = {
     "hci-antinous": proxy_depth.hci_antinous,
-    "cameras-fountain": proxy_cameras.fountain,
-    "cameras-temple": proxy_cameras.temple,
+    "cameras-fountain": lambda data: proxy_cameras.against_truth(data / "fountain_P11_half"),
+    "cameras-temple": lambda data: proxy_cameras.against_truth(data / "temple_ring16"),
     "cameras-stereo-chart": proxy_cameras.stereo_chart,
     "cameras-caliscope": proxy_cameras.caliscope,
     **{f"scene-{name}": functools.partial(proxy_scenes.scene, case=case) for name, case in proxy_scenes.CASES.items()},
@@ -36,11 +35,9 @@ def main() -> None:
     cases = parser.parse_args().cases or list(CASES)
     if unknown := set(cases) - set(CASES):
         parser.error(f"no such case: {', '.join(sorted(unknown))}")
-    folder = os.environ.get("EIGENFIELD_DATA")
-    if not folder:
-        raise SystemExit("EIGENFIELD_DATA must name the folder of captures")
+    folder = measure.data()
     for name in cases:
-        figures = {"case": name, **CASES[name](Path(folder))}
+        figures = {"case": name, **CASES[name](folder)}
         print(json.dumps(figures, indent=1), flush=True)
         measure.store(f"proxy-{name}", figures)
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import measure
 from eigenfield.calibrate import align_similarity, calibration_error
@@ -22,13 +23,17 @@ def calibrate(arguments: list[str], output: Path) -> tuple[dict[str, Any], dict[
     return {key: made[key] for key in ("seconds", "peak_anonymous_mb")}, report
 
 
-def against_truth(photographs: Path, true_cameras: Path) -> dict[str, Any]:
-    """Structure from motion with the true intrinsics, after a similarity fit to the true centres."""
+def against_truth(folder: Path) -> dict[str, Any]:
+    """Structure from motion with the true intrinsics, after a similarity fit to the true centres.
+
+    folder: holds the true cameras, and the photographs in images/.
+    """
+    photographs = folder / "images"
     with tempfile.TemporaryDirectory() as place:
         output = Path(place) / "cameras"
-        made, report = calibrate([str(photographs), "--intrinsics", str(true_cameras)], output)
+        made, report = calibrate([str(photographs), "--intrinsics", str(folder)], output)
         field = open_capture(photographs, calibration=output / "transforms.json", strict=False)
-    error = calibration_error(field, open_capture(true_cameras))
+    error = calibration_error(field, open_capture(folder))
     return {
         "photographs": report["photographs"],
         "registered": report["registered"],
@@ -39,24 +44,19 @@ def against_truth(photographs: Path, true_cameras: Path) -> dict[str, Any]:
     }
 
 
-def fountain(data: Path) -> dict[str, Any]:
-    folder = data / "fountain_P11_half"
-    return against_truth(folder / "images", folder)
-
-
-def temple(data: Path) -> dict[str, Any]:
-    folder = data / "temple_ring16"
-    return against_truth(folder / "images", folder)
+def chart_rig(*arguments: str) -> tuple[dict[str, Any], dict[str, Any], NDArray[np.float64]]:
+    """What the calibration of a rig took, its report.json, and (n, 3) the centres of its cameras."""
+    with tempfile.TemporaryDirectory() as place:
+        output = Path(place) / "cameras"
+        made, report = calibrate(list(arguments), output)
+        frames = json.loads((output / "transforms.json").read_text(encoding="utf-8"))["frames"]
+    return made, report, np.array([np.array(frame["transform_matrix"])[:3, 3] for frame in frames])
 
 
 def stereo_chart(data: Path) -> dict[str, Any]:
     """OpenCV's 13 pairs of a checkerboard of 25 mm; the sample's own calibration has a baseline of 83.6 mm."""
-    with tempfile.TemporaryDirectory() as place:
-        output = Path(place) / "cameras"
-        board = ["--chart", "checkerboard", "--board", "9x6", "--square", "25mm"]
-        made, report = calibrate([str(data / "opencv_stereo_chart"), *board], output)
-        transforms = json.loads((output / "transforms.json").read_text(encoding="utf-8"))
-    centres = [np.array(frame["transform_matrix"])[:3, 3] for frame in transforms["frames"]]
+    board = ["--chart", "checkerboard", "--board", "9x6", "--square", "25mm"]
+    made, report, centres = chart_rig(str(data / "opencv_stereo_chart"), *board)
     return {
         "reprojection_rms": round(report["reprojection"]["rms"], 3),
         "baseline_mm": round(float(np.linalg.norm(centres[1] - centres[0])), 2),
@@ -67,11 +67,7 @@ def stereo_chart(data: Path) -> dict[str, Any]:
 def caliscope(data: Path) -> dict[str, Any]:
     """Four videos of an inverted ChArUco board, beside the cameras that caliscope found in them."""
     folder = data / "caliscope_charuco_rig4"
-    with tempfile.TemporaryDirectory() as place:
-        output = Path(place) / "cameras"
-        made, report = calibrate([str(folder), "--chart", "charuco"], output)
-        transforms = json.loads((output / "transforms.json").read_text(encoding="utf-8"))
-    ours = np.array([np.array(frame["transform_matrix"])[:3, 3] for frame in transforms["frames"]])
+    made, report, ours = chart_rig(str(folder), "--chart", "charuco")
     cameras = tomllib.loads((folder / "camera_array.toml").read_text(encoding="utf-8"))["cameras"]
     theirs = np.array([_centre(camera) for camera in cameras.values()])
     scale, R, t = align_similarity(ours, theirs)

@@ -50,8 +50,9 @@ def _read_pfm(path: Path) -> NDArray[np.float32]:
     return values[::-1].astype(np.float32)
 
 
-def _hci_views(folder: Path, side: int = 9) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
+def _hci_views(folder: Path) -> tuple[NDArray[np.uint8], NDArray[np.float64]]:
     """Photographs and matrices of an HCI array: a step to the right or down moves a point by -d pixels."""
+    side = 9
     paths = [next(folder.glob(f"input_Cam{index:03d}.*")) for index in range(side * side)]
     pictures = np.stack([np.rint(decode(path)[0] * 255).astype(np.uint8) for path in paths])
     rows, columns = np.divmod(np.arange(side * side), side)
