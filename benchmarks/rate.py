@@ -78,17 +78,14 @@ def main() -> None:
 
 def worth_keeping(figures: dict[str, Any]) -> Any:
     """What the tables show, small enough for a history: not which camera is worst, nor where pictures lie."""
+
+    def short(curve: dict[str, Any]) -> dict[str, Any]:
+        left_out = {"worst", "file", "shown"}
+        points = [{key: point[key] for key in point if key not in left_out} for point in curve["points"]]
+        return {**curve, "points": points}
+
     best = figures["best"]
-    curves = [_short_curve(one) for one in figures["curves"]]
-    return prepared.as_json({**figures, "curves": curves, "best": best and _short_curve(best)})
-
-
-def _short_curve(curve: dict[str, Any]) -> dict[str, Any]:
-    return {**curve, "points": [_short(point) for point in curve["points"]]}
-
-
-def _short(point: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in point.items() if key not in ("worst", "file", "shown")}
+    return prepared.as_json({**figures, "curves": list(map(short, figures["curves"])), "best": best and short(best)})
 
 
 def of_capture(
