@@ -32,10 +32,10 @@ def command(context: click.Context, files: tuple[Path, ...], as_json: bool, quie
         echo_json([{"file": str(file), "findings": [asdict(f) for f in findings]} for file, findings in found.items()])
     else:
         for file, findings in found.items():
-            shown = [finding for finding in findings if finding.severity == "error" or not quiet]
             if not findings and not quiet:
                 click.echo(f"{file}: no findings")
-            for finding in shown:
-                click.echo(f"{file}: {finding.severity} {finding.code} at {finding.where}: {finding.message}")
+            for finding in findings:
+                if finding.severity == "error" or not quiet:
+                    click.echo(f"{file}: {finding.severity} {finding.code} at {finding.where}: {finding.message}")
     if any(finding.severity == "error" for findings in found.values() for finding in findings):
         context.exit(2)

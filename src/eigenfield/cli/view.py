@@ -15,7 +15,7 @@ from eigenfield.core.errors import FormatError, OptionError
 
 if TYPE_CHECKING:
     from eigenfield.core.scene import Scene
-    from eigenfield.viewer import Photographs, Server
+    from eigenfield.viewer import Photographs
 
 
 @click.command(
@@ -75,7 +75,10 @@ def command(
     manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
     with Server(manifest, host, port) as server:
         try:
-            _announce(server, quiet)
+            click.echo(server.address)
+            if server.is_public:
+                note(f"listening on {server.host}: anyone on the network can see the scene", quiet)
+            note("Ctrl-C ends it", quiet)
             if not no_browser and not webbrowser.open(server.address):
                 note("no browser was found: open the address in one", quiet)
             _wait()
@@ -101,13 +104,6 @@ def _photographs(scene: Scene, capture: Path | None, place: Mapping[str, Any], q
     if missing:
         note(f"{missing} of {len(scene.rig.names)} cameras have no photograph in {capture}", quiet)
     return photographs
-
-
-def _announce(server: Server, quiet: bool) -> None:
-    click.echo(server.address)
-    if server.is_public:
-        note(f"listening on {server.host}: anyone on the network can see the scene", quiet)
-    note("Ctrl-C ends it", quiet)
 
 
 def _wait() -> None:

@@ -190,20 +190,14 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
     """
     figure = _figure(8.2, 3.6)
     axes = figure.add_subplot()
-    shown = [(label, sizes[key], colour) for key, label, colour in PLOT_PARTS]
-    total = max(sizes["total"], 1)
-    axes.barh([label for label, _, _ in shown], [size / 1e3 for _, size, _ in shown], color=[c for _, _, c in shown])
+    keys, labels, colours = zip(*PLOT_PARTS, strict=True)
+    kilobytes = np.array([sizes[key] for key in keys]) / 1e3
+    shares = kilobytes / max(sizes["total"], 1) * 1e5
+    bars = axes.barh(labels, kilobytes, color=colours)
     axes.invert_yaxis()
-    for at, (_, size, _) in enumerate(shown):
-        axes.annotate(
-            f"{size / 1e3:,.1f} kB, {100 * size / total:.1f} %",
-            (size / 1e3, at),
-            textcoords="offset points",
-            xytext=(5, 0),
-            va="center",
-            color=PLOT_GREY,
-        )
-    axes.set_xlim(0, 1.28 * max(size for _, size, _ in shown) / 1e3 or 1)
+    texts = [f"{size:,.1f} kB, {share:.1f} %" for size, share in zip(kilobytes, shares, strict=True)]
+    axes.bar_label(bars, texts, padding=5, color=PLOT_GREY)
+    axes.set_xlim(0, 1.28 * kilobytes.max() or 1)
     axes.set_xlabel("kB (1000 bytes)")
     known = {"photographs": "photographs", "texture_maps_png": "texture maps as PNG", "raw": "raw pixels"}
     times = [(ratio[key], label) for key, label in known.items()] if ratio else []

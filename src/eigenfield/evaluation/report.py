@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from collections.abc import Mapping
@@ -95,7 +96,8 @@ def evaluate(
             for point in [_uv(session, {index: results[index] for index in session.curved}, at)]
         ]
     scores["seconds"] = time.monotonic() - started
-    return _round_floats(scores)
+    rounded: dict[str, Any] = json.loads(json.dumps(scores), parse_float=lambda text: round(float(text), 6))
+    return rounded  # more decimals are noise
 
 
 def stored_scores(scores: Mapping[str, Any]) -> dict[str, Any]:
@@ -171,14 +173,3 @@ def _photograph_bytes(session: Session) -> int | None:
     recorded = session.scene.settings.get("photographs")
     size = recorded.get("bytes") if isinstance(recorded, Mapping) else None
     return size if isinstance(size, int) else None
-
-
-def _round_floats(value: Any) -> Any:
-    """Floats to six decimals, recursively: more is noise, and JSON would print it."""
-    if isinstance(value, float):
-        return round(value, 6)
-    if isinstance(value, Mapping):
-        return {key: _round_floats(entry) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [_round_floats(entry) for entry in value]
-    return value
