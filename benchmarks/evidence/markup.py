@@ -105,6 +105,12 @@ def percent(value: Any, digits: int = 1, *, sign: bool = False) -> Html:
     return number(value, digits, sign=sign, unit="\u202f%" if finite(value) is not None else "")
 
 
+def fraction(value: Any, digits: int = 1) -> Html:
+    """A part of 1, in percent."""
+    known = finite(value)
+    return percent(None if known is None else 100 * known, digits)
+
+
 def megabytes(value: Any) -> Html:
     """Bytes in units of 10^6; three decimals where two would leave one figure."""
     known = finite(value)
