@@ -31,15 +31,10 @@ if TYPE_CHECKING:
 def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
     if value is None:
         return None
-    try:
-        sides = [int(part) for part in value.lower().split("x")]
-    except ValueError:
-        sides = []
-    if len(sides) == 1:
-        return sides[0]
-    if len(sides) == 2:
-        return sides[0], sides[1]
-    raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
+    found = re.fullmatch(r"(-?\d+)(?:x(-?\d+))?", value.lower())
+    if found is None:
+        raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
+    return int(found[1]) if found[2] is None else (int(found[1]), int(found[2]))
 
 
 def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
