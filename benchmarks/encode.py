@@ -8,7 +8,6 @@ Each measurement is a process of its own; kernels are compiled before (the first
 from __future__ import annotations
 
 import json
-import os
 import sys
 import tempfile
 import time
@@ -21,10 +20,7 @@ TEXTURES, SIDE = 15, 1024
 
 
 def tarot() -> Path:
-    folder = os.environ.get("EIGENFIELD_DATA")
-    if not folder:
-        raise SystemExit("EIGENFIELD_DATA must name the folder that holds tarot_17x17_512")
-    return Path(folder) / "tarot_17x17_512"
+    return measure.data() / "tarot_17x17_512"
 
 
 def encode_arguments(output: Path, *more: str) -> list[str]:
@@ -32,7 +28,7 @@ def encode_arguments(output: Path, *more: str) -> list[str]:
     return [
         "-m", "eigenfield", "encode", str(capture), "--calibration", str(capture / "calibration" / "refined.json"),
         "--proxy", str(capture / "calibration" / "proxy.ply"), "--atlas", str(SIDE), "-n", str(TEXTURES),
-        "--fit", "none",        "-o", str(output), "--overwrite", "--quiet", *more,
+        "--fit", "none", "-o", str(output), "--overwrite", "--quiet", *more,
     ]  # fmt: skip
 
 

@@ -27,9 +27,9 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def decimals(value: Any, places: int = 2, sign: bool = False, unit: str = "") -> str:
+def decimals(value: Any, places: int = 2, unit: str = "") -> str:
     """A figure in words; a dash where there is none."""
-    return NONE if value is None else f"{value:{'+' if sign else ''}.{places}f}{unit}"
+    return NONE if value is None else f"{value:.{places}f}{unit}"
 
 
 def summary(captures: Captures) -> str:

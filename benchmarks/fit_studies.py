@@ -39,11 +39,9 @@ from eigenfield.encoding.fitted.encoder import FittedEncoder, open_encoder, open
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
 from eigenfield.encoding.plan import EncodePlan
 from eigenfield.gltf import save
-from eigenfield.imaging.metrics import to_codes
-from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.rendering.software import drawing
 from eigenfield.runtime.parallel import parallel_map
-from evidence import captures, ours, prepared, rates
+from evidence import captures, ours, prepared
 from evidence.prepared import Prepared
 from evidence.runner import kept
 
@@ -61,13 +59,11 @@ class Part:
     Attributes:
         words: What the fit is without it.
         change: Takes it away.
-        options: Likewise, by options of `encode`.
         few: Whether it is about captures of few cameras alone.
     """
 
     words: str
-    change: Change = nullcontext
-    options: Mapping[str, Any] | None = None
+    change: Change
     few: bool = False
 
 
@@ -87,11 +83,10 @@ def _all(*changes: Change) -> Iterator[None]:
         yield
 
 
-def _rounds(count: int) -> Change:
-    presets = {name: replace(one, rounds=count) for name, one in encode_options.PRESETS.items()}
-    return partial(
-        _all, lambda: patch.dict(encode_options.PRESETS, presets), _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", count)
-    )
+def _no_rounds() -> AbstractContextManager[Any]:
+    presets = {name: replace(one, rounds=0) for name, one in encode_options.PRESETS.items()}
+    few = _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", 0)
+    return _all(lambda: patch.dict(encode_options.PRESETS, presets), few)
 
 
 def _equal_steps(block: Any, scales: Any) -> NDArray[np.float32]:
@@ -117,7 +112,7 @@ CODING = {
     ),
 }
 FITTING = {
-    "rounds": Part("no fit in the pictures: the mean, then the decomposition of what it leaves", _rounds(0)),
+    "rounds": Part("no fit in the pictures: the mean, then the decomposition of what it leaves", _no_rounds),
     "few-rounds": Part(
         "as many rounds as with many cameras", _replaced(planes, "FEW_OBSERVATIONS_ROUNDS", 0), few=True
     ),
@@ -179,17 +174,10 @@ class Views:
     def point(self, scene: EncodedScene, path: Path) -> dict[str, Any]:
         """Bytes and textures of the scene's file, and the means of KEYS over its views."""
         save(scene, path, overwrite=True)
-        loaded = ef.load(path)
-        renderer = Renderer(loaded)
-
-        def pictures() -> Iterator[NDArray[np.uint8]]:
-            for index in range(len(self.photographs)):
-                picture = renderer.draw(loaded.rig.cameras[index], camera_weights(loaded, index), filter="bicubic")
-                yield to_codes(picture.image)
-
-        point = rates.point(pictures(), self.photographs, self.counted(path), self.field.names)
+        of_views = range(len(self.photographs)), self.photographs, self.counted(path), self.field.names
+        point = ours.figures(path, *of_views)
         figures = {key: point[key] for key in KEYS}
-        return {"bytes": path.stat().st_size, "textures": loaded.appearance.textures, **figures}
+        return {"bytes": path.stat().st_size, "textures": scene.appearance.textures, **figures}
 
     def counted(self, path: Path) -> list[NDArray[np.bool_]]:
         if not self.covered:
@@ -218,7 +206,7 @@ class Fit:
 
     @cached_property
     def whole(self) -> FittedEncoder:
-        return self._opened.enter_context(self._fitted(self.plan, self.data, {}))
+        return self._opened.enter_context(_fitted(self.plan, self.data, self.work))
 
     def without(self, name: str) -> EncodedScene:
         """The scene coded at the default's quality without a part."""
@@ -228,20 +216,20 @@ class Fit:
             with part.change():
                 return whole.encode(QUALITY)
         if name in FITTING:
-            fitted = self._fitted(self.plan, self.data, part.options or {})
+            fitted = _fitted(self.plan, self.data, self.work)
         else:
-            fitted = open_fitted(self.field, self.mesh, EncodeOptions(**(part.options or {})), self.work)
+            fitted = open_fitted(self.field, self.mesh, EncodeOptions(), self.work)
         with part.change(), fitted as made:
             return made.encode(QUALITY)
 
-    @contextlib.contextmanager
-    def _fitted(self, ready: EncodePlan, data: FitData, options: Mapping[str, Any]) -> Iterator[FittedEncoder]:
-        """A plan's fit with other options, on footprints that are there."""
-        ready = replace(ready, options=replace(ready.options, **options))
-        with ExitStack() as opened:
-            with patch.object(encoder, "open_fit_data", lambda *_: nullcontext(data)):
-                made = opened.enter_context(open_encoder(ready, self.work, warn=False))
-            yield made
+
+@contextlib.contextmanager
+def _fitted(ready: EncodePlan, data: FitData, work: Path) -> Iterator[FittedEncoder]:
+    """A plan's fit on footprints that are there."""
+    with ExitStack() as opened:
+        with patch.object(encoder, "open_fit_data", lambda *_: nullcontext(data)):
+            made = opened.enter_context(open_encoder(ready, work, warn=False))
+        yield made
 
 
 def of_parts(ready: Prepared, chosen: Sequence[str]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ results/NAME.json is {"runs": [...]}, the newest last, each with date, commit, m
 
 from __future__ import annotations
 
+import ast
 import json
 import os
 import platform
@@ -18,6 +19,19 @@ from typing import Any
 RESULTS = Path(__file__).parent / "results"
 KEPT = 50  # runs of a benchmark; older ones are in the repository's history
 ORIGIN = ("date", "commit", "machine", "command")  # what every run says beside its figures
+
+
+def data() -> Path:
+    """The folder of captures. SystemExit where EIGENFIELD_DATA names none."""
+    folder = os.environ.get("EIGENFIELD_DATA")
+    if not folder:
+        raise SystemExit("EIGENFIELD_DATA must name the folder of captures")
+    return Path(folder)
+
+
+def meaning(file: Path) -> bytes:
+    """The syntax tree of a Python file: figures are measured again when that changes, not when a comment does."""
+    return ast.dump(ast.parse(file.read_text(encoding="utf-8"))).encode()
 
 
 def run(arguments: list[str]) -> dict[str, Any]:

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -21,35 +21,24 @@ import numpy as np
 
 import eigenfield as ef
 import measure
-from avif_maps import maps_at_equal_ssim
-from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
+from eigenfield.encoding.projected.atlas import make_atlas
+from eigenfield.encoding.projected.project import texture_map
 from eigenfield.evaluation import read_circles
+from eigenfield.imaging.metrics import ssim, to_codes
+from evidence import captures, prepared
+from evidence.captures import Capture
+from evidence.stills import STILLS, decode, encode
+
+SAMPLE = 12  # texture maps that are coded as AVIF, evenly spread; their bytes are scaled up
+AVIF = STILLS[0]
 
 
-def data() -> Path:
-    folder = os.environ.get("EIGENFIELD_DATA")
-    if not folder:
-        raise SystemExit("EIGENFIELD_DATA must name the folder of captures")
-    return Path(folder)
-
-
-def capture_arguments(name: str, demo: Path) -> tuple[list[str], list[str], Path | None]:
-    """What `evaluate` needs, what `encode` needs more, and circles to leave out."""
-    if name == "tarot":
-        folder = data() / "tarot_17x17_512"
-        proxy = str(folder / "calibration" / "proxy.ply")
-        return [str(folder), "--calibration", str(folder / "calibration" / "refined.json")], [
-            "--proxy", proxy, "--atlas", "1024",
-        ], folder / "ball.json"  # fmt: skip
-    if name == "tarot-5x4":
-        folder = data() / "tarot_5x4_1024"
-        proxy = str(data() / "tarot_17x17_512" / "calibration" / "proxy.ply")
-        return [str(folder), "--calibration", str(folder / "calibration" / "refined.json")], ["--proxy", proxy], None
-    if name == "cube":
-        folder = data() / "cube_colmap_mesh"
-        return [str(folder)], ["--proxy", str(folder / "proxy.obj")], None
-    return [str(demo / "capture")], ["--proxy", str(demo / "capture" / "proxy.ply")], None
+def named(name: str, demo: Path) -> Capture:
+    if name != "demo":
+        return captures.named(name, demo)
+    folder = demo / "capture"
+    return replace(captures.demo(demo), folder=folder, proxy=folder / "proxy.ply")
 
 
 CASES: dict[str, Sequence[tuple[str, list[str]]]] = {
@@ -65,37 +54,69 @@ CASES: dict[str, Sequence[tuple[str, list[str]]]] = {
 
 
 def coded(name: str, demo: Path, options: list[str]) -> dict[str, Any]:
-    where, how, circles = capture_arguments(name, demo)
+    capture = named(name, demo)
+    where, atlas = prepared.words(capture), ["--atlas", "1024"] if name == "tarot" else []
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "scene.glb"
-        words = [*where, *how, "--fit", "none", "-o", str(output), "--overwrite", "--quiet", *options]
+        how = ["--proxy", str(capture.proxy), *atlas, "--fit", "none"]
+        words = [*where, *how, "-o", str(output), "--overwrite", "--quiet", *options]
         arguments = ["-m", "eigenfield", "encode", *words]
         encoded = measure.run(arguments)
-        exclude = [] if circles is None else ["--exclude-circles", str(circles)]
+        exclude = [] if capture.circles is None else ["--exclude-circles", str(capture.circles)]
         figures = json.loads(
             measure.run(["-m", "eigenfield", "evaluate", str(output), *where, "--json", "--quiet", *exclude])["output"]
         )
         if not options:
-            capture = open_capture(where)
-            figures["maps_as_avif"] = maps_at_equal_ssim(output, capture, figures["uv"]["ssim"])
+            figures["maps_as_avif"] = maps_at_equal_ssim(output, prepared.opened(where), figures["uv"]["ssim"])
     for key in ("cameras", "schema", "missing", "png_maps"):
         figures.pop(key, None)
     figures["encode"] = {key: encoded[key] for key in ("seconds", "peak_anonymous_mb")}
     return figures
 
 
-def open_capture(where: Sequence[str]) -> ef.LightField:
-    return ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
+def maps_at_equal_ssim(scene_path: Path, capture: ef.LightField, target: float) -> dict[str, Any]:
+    """The lowest AVIF quality at which the filled maps reach `target`, and all maps' bytes against the file's."""
+    scene = ef.load(scene_path)
+    mean = to_codes(scene.appearance.planes[0].mean)
+    atlas = make_atlas(scene.proxy.mesh, mean.shape[1], mean.shape[0])
+    names = [view.name for view in capture.views]
+    maps = []
+    for row in np.linspace(0, len(scene.rig.encoded) - 1, SAMPLE).round().astype(int):
+        index = scene.rig.encoded[row]
+        photograph = capture.photograph(names.index(scene.rig.names[index]))
+        values, seen = texture_map(atlas, scene.rig.cameras[index], photograph.pixels, photograph.mask)
+        filled, visible = mean.copy(), np.zeros(mean.shape[:2], bool)
+        filled.reshape(-1, 3)[atlas.texel[seen > 0]] = to_codes(values[seen > 0])
+        visible.reshape(-1)[atlas.texel[seen > 0]] = True
+        maps.append((filled, visible))
+
+    def at(quality: int) -> tuple[float, float]:
+        files = [encode(filled, AVIF, quality) for filled, _ in maps]
+        scores = [ssim(decode(data, AVIF), *one) or 0.0 for data, one in zip(files, maps, strict=True)]
+        return float(np.mean(scores)), float(np.mean([len(data) for data in files]))
+
+    low, high = 0, 100
+    while low < high:
+        middle = (low + high) // 2
+        if at(middle)[0] >= target:
+            high = middle
+        else:
+            low = middle + 1
+    reached, size = at(high)
+    total, own = size * len(scene.rig.encoded), scene_path.stat().st_size
+    return {
+        "quality": high, "ssim": round(reached, 4), "maps_bytes_estimated": round(total), "sample": SAMPLE,
+        "file_bytes": own, "saving": round(1 - own / total, 4),
+    }  # fmt: skip
 
 
-def uncoded(name: str, demo: Path, options: dict[str, Any]) -> dict[str, Any]:
-    where, how, circles = capture_arguments(name, demo)
-    capture = open_capture(where)
-    atlas = int(how[3]) if "--atlas" in how else None
-    scene = ef.encode(capture, how[1], **{"atlas": atlas, "fit": "none", **options})
-    figures = ef.evaluate(
-        scene, capture, png_maps="none", circles=None if circles is None else read_circles(circles, scene.rig.names)
-    )
+def uncoded(capture: Capture, **options: Any) -> dict[str, Any]:
+    """Of Tarot."""
+    assert capture.proxy is not None and capture.circles is not None
+    light_field = prepared.opened(prepared.words(capture))
+    scene = ef.encode(light_field, capture.proxy, atlas=1024, fit="none", **options)
+    circles = read_circles(capture.circles, scene.rig.names)
+    figures = ef.evaluate(scene, light_field, png_maps="none", circles=circles)
     return {"uv": figures["uv"], "image": figures["image"], "textures": figures["textures"]}
 
 
@@ -116,20 +137,17 @@ def measured(name: str, demo: Path) -> dict[str, Any]:
         draw_demo_capture(demo / "capture")
     cases = {label: coded(name, demo, options) for label, options in CASES[name]}
     if name == "tarot":
-        cases["all encoded"]["uncoded"] = uncoded(name, demo, {})
-        cases["odd held out"]["uncoded"] = uncoded(name, demo, {"hold_out": "odd"})
+        cases["all encoded"]["uncoded"] = uncoded(named(name, demo))
+        cases["odd held out"]["uncoded"] = uncoded(named(name, demo), hold_out="odd")
     if name == "demo":
         cases["all encoded"]["exact geometry, all textures of 25 views, density 2, uncoded"] = exact(demo)
     return {"capture": name, "cases": cases}
 
 
 def exact(demo: Path) -> dict[str, Any]:
-    """What resampling alone costs: every second row and column of the demo's capture, with all their textures."""
+    """What resampling alone costs: every fourth row and column of the demo's capture, with all their textures."""
     capture = ef.open_capture(demo / "capture")
-    cameras = [view.camera for view in capture.views]
-    grid = find_grid(fit_view_plane(cameras).coordinates([camera.centre for camera in cameras]))
-    assert grid is not None
-    some = capture.subset(np.sort(grid.index[::4, ::4].reshape(-1)).tolist())
+    some = prepared.every(capture, 4)
     scene = ef.encode(some, demo / "capture" / "proxy.ply", textures=len(some.views) - 1, density=2.0, fit="none")
     return ef.evaluate(scene, some, png_maps="none")["image"]
 

@@ -28,11 +28,11 @@ from numpy.typing import NDArray
 import eigenfield as ef
 import measure
 from eigenfield.encoding import EncodeOptions
-from eigenfield.evaluation.session import sample_evenly
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
-from evidence import captures, codecs, colour, ours, pictures, prepared, rates
+from evidence import captures, codecs, ours, pictures, prepared, rates
 from evidence.codecs import VideoCodec
+from evidence.peers import ceiling
 from evidence.prepared import Prepared
 from evidence.runner import kept
 
@@ -78,17 +78,14 @@ def main() -> None:
 
 def worth_keeping(figures: dict[str, Any]) -> Any:
     """What the tables show, small enough for a history: not which camera is worst, nor where pictures lie."""
+
+    def short(curve: dict[str, Any]) -> dict[str, Any]:
+        left_out = {"worst", "file", "shown"}
+        points = [{key: point[key] for key in point if key not in left_out} for point in curve["points"]]
+        return {**curve, "points": points}
+
     best = figures["best"]
-    curves = [_short_curve(one) for one in figures["curves"]]
-    return prepared.as_json({**figures, "curves": curves, "best": best and _short_curve(best)})
-
-
-def _short_curve(curve: dict[str, Any]) -> dict[str, Any]:
-    return {**curve, "points": [_short(point) for point in curve["points"]]}
-
-
-def _short(point: dict[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in point.items() if key not in ("worst", "file", "shown")}
+    return prepared.as_json({**figures, "curves": list(map(short, figures["curves"])), "best": best and short(best)})
 
 
 def of_capture(
@@ -106,13 +103,9 @@ def of_capture(
     others = [peer_curve(codec, ready, photographs, covered) for codec in chosen if codecs.missing(codec) is None]
     if others:
         contact_sheet(ready, mine["points"], others[0], photographs, covered)
-    some = sample_evenly(views, 16)
-    there_and_back = (colour.ceiling(photographs[i], "420") for i in some)
-    names = [ready.light_field.names[i] for i in some]
-    ceiling = rates.point(there_and_back, [photographs[i] for i in some], [covered[i] for i in some], names)
     return {
         "views": len(views),
-        "ceiling_420": {key: ceiling[key] for key in KEYS},
+        "ceiling_420": ceiling(photographs, ready.light_field.names, covered),
         "curves": [mine, *others],
         "best": patient,
         "bd": {one["name"]: {key: rates.bd_rate(one["points"], mine["points"], key) for key in KEYS} for one in others},

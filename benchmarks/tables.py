@@ -11,7 +11,6 @@ from typing import Any
 
 import evaluation_tables
 import rate_tables
-import single_tables
 from evaluation_tables import table
 from measure import latest, runs
 
@@ -227,6 +226,21 @@ def driver(name: str) -> str:
     return "SwiftShader" if "SwiftShader" in name else name
 
 
+def single() -> str:
+    """Tables of figures that were measured once, by hand: each run of single.json is one table."""
+    parts = [
+        "## Measured once\n\nThese figures were measured by hand and have no script that repeats them. Each table names"
+        " the commit that recorded it.\n"
+    ]
+    for run in runs("single"):
+        note = f"{run['note']}\n\n" if run["note"] else ""
+        parts.append(
+            f"### {run['title']}\n\n{note}{table(run['head'], run['rows'])}\n"
+            f"`{run['command']}`, recorded in commit {run['commit']}, {run['date'][:10]}.\n"
+        )
+    return "\n".join(parts) + "\n"
+
+
 def between_marks(text: str, made: str) -> str:
     """`text` with what is between the marks replaced."""
     start, stop = text.index(BEGIN), text.index(END)
@@ -244,7 +258,7 @@ def main() -> None:
         + "\n## Time\n\n"
         + encoding()
         + drawing()
-        + single_tables.section(),
+        + single(),
     }
     for path, figures in made.items():
         text = path.read_text(encoding="utf-8")

@@ -24,7 +24,7 @@ from eigenfield.gltf import parts
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import WEIGHT_MODES, Renderer, ViewWeights, camera_weights, view_weights
 from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
-from evidence.spread import spread_over_array
+from evidence.prepared import spread_over_array
 
 AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
 TITLES = {

@@ -101,9 +101,8 @@ def line_chart(
     levels: Sequence[Level] = (),
     notes: Sequence[str] = (),
     x_words: Words | None = None,
-    y_words: Words | None = None,
 ) -> Html:
-    """The chart as a <figure>. x_words, y_words: how a tick is written, as a decimal number if None."""
+    """The chart as a <figure>. x_words: how a tick of the x axis is written, as a decimal number if None."""
     drawn = [(s, _drawable(s, x_log, y_log), i if s.slot is None else s.slot) for i, s in enumerate(series)]
     drawn = [(s, points, slot) for s, points, slot in drawn if points]
     heading = element("figcaption", title) if title else ""
@@ -119,7 +118,7 @@ def line_chart(
     across, up = x_ticks(*x_range), y_ticks(*y_range)
     if all(x == int(x) for x in xs):  # a number of things has no halves
         across = [x for x in across if x == int(x)] or across
-    x_names, y_names = _names(across, x_words), _names(up, y_words)
+    x_names, y_names = _names(across, x_words), _names(up, None)
     left = 12 + LETTER * max(len(name) for name in y_names)
     x_axis = Axis(*x_range, left, WIDTH - RIGHT, x_log)
     y_axis = Axis(*y_range, HEIGHT - BOTTOM, TOP, y_log)
@@ -129,7 +128,7 @@ def line_chart(
     parts += [_level(level, x_axis, y_axis, lines) for level in levels]
     for at in sorted(range(len(drawn)), key=lambda i: drawn[i][2] == 0):  # ours on top
         (one, points, slot), places = drawn[at], lines[at]
-        said = [f"{one.label}: {_said(x, x_words)} | {_said(y, y_words)}" for x, y in points]
+        said = [f"{one.label}: {_said(x, x_words)} | {number_of_any_size(y)}" for x, y in points]
         parts.append(_line(places, said, slot, one.joined))
     labels = ", ".join(one.label for one, _, _ in drawn)
     words = f"{y_label} against {x_label}"

@@ -269,12 +269,6 @@ def _picture(frame: Any, size: tuple[int, int]) -> Picture:
     return to_rgb((y, u, v), *size)
 
 
-def key_frames(path: Path, codec: VideoCodec) -> int:
-    """How many packets of a film can be decoded without any other."""
-    with av.open(str(path), format=codec.container) as container:
-        return sum(packet.is_keyframe for packet in container.demux() if packet.size)
-
-
 def evict(path: Path) -> None:
     """Have the system forget a file's contents, so that the next read comes from the disk; nothing where it cannot."""
     if not hasattr(os, "posix_fadvise"):

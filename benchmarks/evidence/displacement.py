@@ -15,11 +15,9 @@ LIMIT = 2.0  # pixels that a displacement may have
 MEDIAN, SMOOTH = 5, 2.0  # side of the median window, σ of the Gaussian after it: what is one pixel's own is no shift
 
 
-def displacement(
-    drawn: NDArray[Any], photograph: NDArray[Any], covered: NDArray[np.bool_], limit: float = LIMIT
-) -> NDArray[np.float32]:
+def displacement(drawn: NDArray[Any], photograph: NDArray[Any], covered: NDArray[np.bool_]) -> NDArray[np.float32]:
     """(H, W, 2) float32, right and down: where in `drawn` each pixel of the photograph is found, in pixels, at most
-    `limit` long; 0 where not covered. Dense inverse search (Kroeger et al., ECCV 2016) on luma, a median, a Gaussian.
+    LIMIT long; 0 where not covered. Dense inverse search (Kroeger et al., ECCV 2016) on luma, a median, a Gaussian.
     """
     fixed = _luma(photograph)
     moving = np.where(covered, _luma(drawn), fixed)
@@ -33,7 +31,7 @@ def displacement(
     parts = [cv2.medianBlur(np.ascontiguousarray(flow[..., axis]), MEDIAN) for axis in range(2)]
     smooth = cv2.GaussianBlur(np.stack(parts, axis=-1), (0, 0), SMOOTH)
     length = np.linalg.norm(smooth, axis=2, keepdims=True)
-    limited = np.asarray(smooth, np.float32) * np.minimum(1, limit / np.maximum(length, 1e-9))
+    limited = np.asarray(smooth, np.float32) * np.minimum(1, LIMIT / np.maximum(length, 1e-9))
     return np.where(covered[..., None], limited, 0).astype(np.float32)
 
 

@@ -29,7 +29,7 @@ from eigenfield.rendering import camera_colour, draw_texture
 from eigenfield.rendering.picture import undo_colour
 from eigenfield.rendering.software.drawing import make_surface, median_footprint
 from evidence.displacement import LIMIT, displacement, moved_back
-from evidence.spread import spread_over_array
+from evidence.prepared import spread_over_array
 
 SAMPLE = 25  # cameras
 ROOM = 1.5e9  # bytes of textures as float32 up to which a loss is also switched off alone
@@ -84,23 +84,16 @@ class Views:
 
 
 def losses(
-    scene_file: Path,
-    light_field: LightField,
-    *,
-    cameras: Sequence[int] | None = None,
-    codec: str = "avif",
-    quality: int | None = None,
-    alone: bool = True,
+    scene_file: Path, light_field: LightField, *, quality: int | None = None, alone: bool = True
 ) -> dict[str, Any]:
     """The ladder of losses under "rows", each loss switched off alone under "alone", shifts under "displacement".
 
     scene_file: as it was saved; how it was encoded is read from it, and it is encoded again in memory, uncoded.
-    cameras: indices of encoded cameras, by default SAMPLE spread over the array. codec, quality: as the file
-    was saved with, for `alone`.
+    quality: of its AVIF pictures, for `alone`.
     """
     scene = ef.load(scene_file)
     capture = as_encoded(scene, light_field)
-    chosen = spread_over_array(scene, scene.rig.encoded.tolist(), SAMPLE) if cameras is None else list(cameras)
+    chosen = spread_over_array(scene, scene.rig.encoded.tolist(), SAMPLE)
     session = start_session(scene, capture)
     views, drawn = _from_file(session, chosen)
     uncoded = encode_again(scene, capture)
@@ -122,7 +115,7 @@ def losses(
         "words": f"{WORDS} {DISPLACED}{note}",
     }
     if alone:
-        result["alone"] = _alone(scene, capture, views, rungs, codec, quality)
+        result["alone"] = _alone(scene, capture, views, rungs, quality)
     return result
 
 
@@ -144,14 +137,7 @@ def ladder(rungs: Mapping[str, Mapping[str, float]]) -> list[dict[str, Any]]:
             }
         )
     left = rungs[keys[-1]]
-    rows.append(
-        {
-            "key": "left",
-            "title": "what stays",
-            **left,
-            "share": left["mse"] / total if total else 1.0,
-        }
-    )
+    rows.append({"key": "left", "title": "what stays", **left, "share": left["mse"] / total if total else 1.0})
     return rows
 
 
@@ -229,7 +215,7 @@ def denser(session: Session) -> Session:
     factor = min(2.0, ATLAS_SIDE_CAP_TEXELS / max(session.atlas.width, session.atlas.height))
     width, height = round(session.atlas.width * factor), round(session.atlas.height * factor)
     finer = replace(session, reference=None, atlas=make_atlas(session.scene.proxy.mesh, width, height))
-    if session.align is None:
+    if session.reference is None:
         return finer
     reference = finer.scene.rig.reference
     return replace(finer, reference=finer.texture(reference, finer.photograph(reference)))
@@ -255,9 +241,7 @@ def shifts(views: Views, drawn: Pictures) -> dict[str, float]:
     before, after = views.measure(drawn), views.measure(moved)
     every = np.concatenate(lengths)
     return {
-        **after,
-        "gain": after["psnr_of_mse"] - before["psnr_of_mse"],
-        "share": 1 - after["mse"] / before["mse"] if before["mse"] else 0.0,
+        **_gained(before, after),
         "median_px": float(np.median(every)),
         "p95_px": float(np.percentile(every, 95)),
     }
@@ -275,15 +259,15 @@ def _from_file(session: Session, chosen: Sequence[int]) -> tuple[Views, Pictures
     photographs, covered, drawn = {}, {}, {}
     for index in chosen:
         photograph = session.photograph(index)
-        image, surface = session.draw(index)
-        counted = covered_pixels(surface, photograph.mask)
-        photographs[index], covered[index] = to_codes(photograph.pixels), counted
-        drawn[index] = to_codes(image)
+        picture = session.picture(index)
+        photographs[index] = to_codes(photograph.pixels)
+        covered[index] = covered_pixels(picture.covered, photograph.mask)
+        drawn[index] = to_codes(picture.image)
     return Views(photographs, covered), drawn
 
 
 def _draw(session: Session, chosen: Sequence[int]) -> Pictures:
-    return {index: to_codes(session.draw(index)[0]) for index in chosen}
+    return {index: to_codes(session.picture(index).image) for index in chosen}
 
 
 def _side(scene: Scene) -> int:
@@ -291,12 +275,7 @@ def _side(scene: Scene) -> int:
 
 
 def _alone(
-    scene: Scene,
-    capture: LightField,
-    views: Views,
-    rungs: Mapping[str, Mapping[str, float]],
-    codec: str,
-    quality: int | None,
+    scene: Scene, capture: LightField, views: Views, rungs: Mapping[str, Mapping[str, float]], quality: int | None
 ) -> list[dict[str, Any]]:
     """Each loss switched off from the whole pipeline, all others on."""
     height, width, channels = scene.appearance.planes[0].mean.shape
@@ -320,7 +299,7 @@ def _alone(
             continue
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / "scene.glb"
-            save(encode_again(scene, capture, **options), path, codec=codec, quality=quality)  # type: ignore[arg-type]
+            save(encode_again(scene, capture, **options), path, codec="avif", quality=quality)  # type: ignore[arg-type]
             figures = views.measure(_draw(start_session(ef.load(path), capture), list(views.photographs)))
             rows.append({**row, **_gained(rungs["file"], figures), "bytes": path.stat().st_size})
     return rows

@@ -93,7 +93,7 @@ def make_lumigraph(
 
 
 def draw_lumigraph(
-    lumigraph: Lumigraph, camera: Camera, blended: int = BLENDED
+    lumigraph: Lumigraph, camera: Camera
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_], NDArray[np.bool_]]:
     """The view of `camera`: (H, W, 3) float32, 0..1, black off the proxy; (H, W) where the proxy puts surface; (H, W)
     where none of the photographs sees that surface: there the picture is filled smoothly from round about."""
@@ -104,7 +104,7 @@ def draw_lumigraph(
     parallel_map(
         lambda rows: blend_views(
             *rows, rays, camera.centre, depth, lumigraph.matrices, lumigraph.centres, lumigraph.sizes, lumigraph.starts,
-            lumigraph.codes, lumigraph.depths, lumigraph.biases, blended, FEATHER, image, found,
+            lumigraph.codes, lumigraph.depths, lumigraph.biases, BLENDED, FEATHER, image, found,
         ),
         pieces(camera.height, ROWS),
     )  # fmt: skip

@@ -77,11 +77,6 @@ def finite(value: Any) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def least(*values: Any) -> float | None:
-    """The smallest of those that are numbers."""
-    return min((v for v in map(finite, values) if v is not None), default=None)
-
-
 def change(new: Any, old: Any) -> float | None:
     """new / old - 1 in percent."""
     a, b = finite(new), finite(old)
@@ -110,12 +105,18 @@ def percent(value: Any, digits: int = 1, *, sign: bool = False) -> Html:
     return number(value, digits, sign=sign, unit="\u202f%" if finite(value) is not None else "")
 
 
-def megabytes(value: Any, digits: int = 2) -> Html:
+def fraction(value: Any, digits: int = 1) -> Html:
+    """A part of 1, in percent."""
+    known = finite(value)
+    return percent(None if known is None else 100 * known, digits)
+
+
+def megabytes(value: Any) -> Html:
     """Bytes in units of 10^6; three decimals where two would leave one figure."""
     known = finite(value)
     if known is None:
         return escape(value)
-    return number(known / 1e6, digits if known >= 1e5 or known == 0 else digits + 1)
+    return number(known / 1e6, 2 if known >= 1e5 or known == 0 else 3)
 
 
 def data_size(value: Any) -> Html:

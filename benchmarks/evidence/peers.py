@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import eigenfield as ef
+import measure
 from eigenfield.capture import LightField
 from eigenfield.evaluation.session import sample_evenly
 from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
 from evidence import codecs, colour, ours, pictures, rates, stills
-from evidence.code import meaning
 from evidence.codecs import VideoCodec
 from evidence.prepared import Prepared, as_json, codes, drawn, every, grid_of
 from evidence.stills import StillCodec
@@ -71,7 +71,7 @@ def peers(prepared: Prepared, folder: Path) -> dict[str, Any]:
         "views": len(order),
         "of": len(prepared.light_field),
         "coverage": float(np.mean([one.mean() for one in views.covered])),
-        "ceiling": _ceiling(views.photographs, views.names, views.covered),
+        "ceiling": ceiling(views.photographs, views.names, views.covered),
         "curves": [mine, *others],
         "bd": {
             curve["name"]: {key: rates.bd_rate(curve["points"], mine["points"], key) for key in KEYS}
@@ -87,7 +87,7 @@ def _key(views: Views, quick: bool) -> str:
     """What a peer's curve depends on: photographs, covered pixels and the code that measures it, not our own."""
     digest = hashlib.sha256(str(quick).encode())
     for name in CODE:
-        digest.update(meaning(Path(__file__).with_name(name)))
+        digest.update(measure.meaning(Path(__file__).with_name(name)))
     for photograph, covered in zip(views.photographs, views.covered, strict=True):
         digest.update(photograph.tobytes() + np.packbits(covered).tobytes())
     return digest.hexdigest()[:16]
@@ -138,7 +138,7 @@ def _part(prepared: Prepared) -> LightField:
     return every(light_field, 2)
 
 
-def _ceiling(
+def ceiling(
     photographs: Sequence[NDArray[np.uint8]], names: Sequence[str], covered: Sequence[NDArray[np.bool_]]
 ) -> dict[str, Any]:
     """What the way to 10 bit 4:2:0 and back leaves without any codec, from up to 16 views."""

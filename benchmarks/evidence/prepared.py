@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -57,25 +58,25 @@ def estimate(capture: Capture, work: Path) -> dict[str, Any]:
         draw_demo_capture(capture.folder)
     figures: dict[str, Any] = {"reconstructed": capture.proxy is None}
     if capture.proxy is not None:
-        cameras = _opened(_named(capture)).cameras
+        cameras = opened(words(capture)).cameras
         write_mesh(prepare_proxy(capture.proxy, cameras), work / "proxy.glb", overwrite=True)
     else:
-        words = ["proxy", *_named(capture), "-o", str(work / "proxy.glb"), "--work", str(work / "stages")]
-        made = measure.run(["-m", "eigenfield", *words, "--overwrite", "--quiet"])
+        command = ["proxy", *words(capture), "-o", str(work / "proxy.glb"), "--work", str(work / "stages")]
+        made = measure.run(["-m", "eigenfield", *command, "--overwrite", "--quiet"])
         figures |= {
             "seconds": made["seconds"], "peak_mb": made["peak_anonymous_mb"],
-            "command": f"eigenfield {' '.join(words)}",
+            "command": f"eigenfield {' '.join(command)}",
         }  # fmt: skip
     return figures
 
 
 def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
     """What `estimate` left, opened."""
-    where = _named(capture)
+    where = words(capture)
     cameras = work / "proxy.cameras" / "transforms.json"
     if capture.calibration is None and cameras.exists():
         where = [str(capture.folder), "--calibration", str(cameras)]
-    light_field = _opened(where)
+    light_field = opened(where)
     rule = capture.hold_out
     if rule is None:
         grid = grid_of(light_field)
@@ -83,12 +84,14 @@ def prepare(capture: Capture, work: Path, quick: bool = False) -> Prepared:
     return Prepared(capture, work, tuple(where), light_field, work / "proxy.glb", rule, quick)
 
 
-def _named(capture: Capture) -> list[str]:
+def words(capture: Capture) -> list[str]:
+    """Words of `encode` and `evaluate` that name the photographs, and the calibration that comes with them."""
     calibration = [] if capture.calibration is None else ["--calibration", str(capture.calibration)]
     return [str(capture.folder), *calibration]
 
 
-def _opened(where: list[str]) -> LightField:
+def opened(where: Sequence[str]) -> LightField:
+    """The capture that `words` names."""
     return ef.open_capture(where[0], calibration=where[2] if len(where) > 1 else None)
 
 
@@ -104,6 +107,26 @@ def every(light_field: LightField, step: int) -> LightField:
     if grid is None:
         raise ValueError("the cameras are on no grid")
     return light_field.subset(sorted(grid.index[::step, ::step].reshape(-1).tolist()))
+
+
+def spread_over_array(scene: Scene, indices: Sequence[int], count: int) -> list[int]:
+    """`count` of the cameras `indices`, in rising order: those nearest the middles of as many even cells of the view
+    plane, each taken once; all of them where there are no more."""
+    if len(indices) <= count:
+        return sorted(int(index) for index in indices)
+    places = scene.rig.view_plane.coordinates(np.array([scene.rig.cameras[index].centre for index in indices]))
+    rows = 1 if scene.rig.view_plane.is_line else max(1, round(math.sqrt(count)))
+    shares = np.diff(np.rint(np.linspace(0, count, rows + 1)).astype(int))  # nodes in each row of cells
+    free = np.ones(len(indices), bool)
+    chosen = []
+    for row, share in enumerate(shares):
+        for column in range(share):
+            node = ((2 * column + 1) / share - 1, (2 * row + 1) / rows - 1)
+            away = np.where(free, ((places - node) ** 2).sum(axis=1), np.inf)
+            nearest = int(np.argmin(away))
+            free[nearest] = False
+            chosen.append(int(indices[nearest]))
+    return sorted(chosen)
 
 
 def codes(light_field: LightField, index: int) -> NDArray[np.uint8]:

@@ -18,7 +18,6 @@ from typing import Any
 import measure
 from eigenfield.core.errors import EigenfieldError
 from evidence.captures import Capture
-from evidence.code import meaning
 from evidence.prepared import as_json, estimate, prepare
 from evidence.steps import STEPS, wanted
 
@@ -32,7 +31,6 @@ class Run:
     out: Path
     quick: bool = False
     keep: bool = False
-    command: str = ""
 
 
 def evaluate_capture(capture: Capture, run: Run, say: Callable[[str], None]) -> dict[str, Any]:
@@ -85,9 +83,7 @@ def _step(
     }  # fmt: skip
     try:
         record["figures"] = as_json(work())
-    except EigenfieldError as error:
-        record["error"] = str(error)
-    except SystemExit as error:  # a child process failed; it has said why on stderr
+    except (EigenfieldError, SystemExit) as error:  # the latter: a child process failed, and has said why on stderr
         record["error"] = str(error)
     except Exception as error:  # one capture's bug must not cost the figures of all others; it is shown and told
         traceback.print_exc()
@@ -116,7 +112,7 @@ def read_record(path: Path) -> dict[str, Any] | None:
 def kept(place: Path, program: Path, make: Callable[[], dict[str, Any]], more: str = "") -> dict[str, Any]:
     """What `make` left at `place`, if the code, `program`'s too, and `more` were the same; else what it makes now, left
     there."""
-    code = f"{fingerprint()} {hashlib.sha256(meaning(program)).hexdigest()} {more}"
+    code = f"{fingerprint()} {hashlib.sha256(measure.meaning(program)).hexdigest()} {more}"
     record = read_record(place)
     if record is None or record["code"] != code:
         record = {"code": code, "figures": as_json(make())}
@@ -139,5 +135,5 @@ def fingerprint() -> str:
     shown_only = {"charts.py", "markup.py", "runner.py", "captures.py"}
     digest = hashlib.sha256(sys.version.encode())
     for file in sorted(one for place in places for one in place if one.name not in shown_only):
-        digest.update(str(file.relative_to(BENCHMARKS.parent)).encode() + meaning(file))
+        digest.update(str(file.relative_to(BENCHMARKS.parent)).encode() + measure.meaning(file))
     return digest.hexdigest()[:16]

@@ -18,8 +18,7 @@ from eigenfield.imaging.metrics import psnr, ssim
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.parallel import parallel_map
 from evidence.between import weights_study
-from evidence.prepared import Prepared, codes, grid_of
-from evidence.spread import spread_over_array
+from evidence.prepared import Prepared, codes, grid_of, spread_over_array
 
 DENSITIES = (0.5, 0.75, 1.0, 1.5, 2.0, 3.0)
 QUALITIES = (25, 40, 55, 70, 85)

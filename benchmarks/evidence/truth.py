@@ -15,10 +15,10 @@ from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
 from eigenfield.imaging.metrics import to_codes
 from evidence.losses import Pictures, Views, shifts
-from evidence.prepared import every
-from evidence.spread import spread_over_array
+from evidence.prepared import every, spread_over_array
 
 SAMPLE = 16  # cameras of each kind
+TEXTURES, DENSITY = 15, 1.0
 WORDS = (
     "The demo's capture, drawn from exact geometry: encoded with its true cameras and proxy, and with cameras and "
     "proxy estimated from the bare photographs; float textures, no coding; pixels that both cover. cost: what "
@@ -28,26 +28,24 @@ WORDS = (
 )
 
 
-def true_geometry(
-    folder: Path, *, textures: int = 15, density: float = 1.0, step: int = 2, work: Path | None = None
-) -> dict[str, Any]:
+def true_geometry(folder: Path, work: Path) -> dict[str, Any]:
     """Figures under "encoded" and "held_out" (odd rows and columns), each with "true" and "estimated" geometry.
 
-    folder: as `draw_demo_capture` writes it: images, transforms.json and proxy.ply. step: take every step-th row and
-    column. work: a folder that keeps the stages of the reconstruction.
+    Every second row and column counts. folder: as `draw_demo_capture` writes it: images, transforms.json and proxy.ply.
+    work: a folder that keeps the stages of the reconstruction.
     """
-    exact = every(ef.open_capture(folder), step)
+    exact = every(ef.open_capture(folder), 2)
     bare = ef.open_photographs(folder)
     bare = bare.subset([bare.names.index(name) for name in exact.names])
     made = ef.reconstruct(bare, work=work)
-    options: dict[str, Any] = {"textures": textures, "density": density, "hold_out": "odd", "fit": "none"}
+    options: dict[str, Any] = {"textures": TEXTURES, "density": DENSITY, "hold_out": "odd", "fit": "none"}
     scenes = {
         "true": (ef.encode(exact, folder / "proxy.ply", **options), exact),
         "estimated": (ef.encode(made.light_field, made.mesh, **options), made.light_field),
     }
     first = scenes["true"][0]
     parts = {"encoded": first.rig.encoded.tolist(), "held_out": np.flatnonzero(first.rig.held_out).tolist()}
-    result: dict[str, Any] = {"views": len(exact), "textures": textures, "density": density, "words": WORDS}
+    result: dict[str, Any] = {"views": len(exact), "textures": TEXTURES, "density": DENSITY, "words": WORDS}
     for part, indices in parts.items():
         result[part] = compare(scenes, [first.rig.names[i] for i in spread_over_array(first, indices, SAMPLE)])
     return result
@@ -62,9 +60,9 @@ def compare(scenes: Mapping[str, tuple[Scene, LightField]], names: Sequence[str]
         session = start_session(scene, capture)
         drawn[kind] = {}
         for place, name in enumerate(names):
-            image, surface = session.draw(scene.rig.names.index(name))
-            drawn[kind][place] = to_codes(image)
-            covered[place] = surface & covered.get(place, surface)
+            picture = session.picture(scene.rig.names.index(name))
+            drawn[kind][place] = to_codes(picture.image)
+            covered[place] = picture.covered & covered.get(place, picture.covered)
             photographs[place] = _photograph(session, name)
     views = Views(photographs, covered)
     result: dict[str, Any] = {"cameras": len(names)}

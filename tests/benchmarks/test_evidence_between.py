@@ -13,7 +13,7 @@ from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.raster import rasterise_view
 from evidence.between import between, start, ways_of, weights_study
 from evidence.lumigraph import draw_lumigraph, make_lumigraph
-from evidence.spread import spread_over_array
+from evidence.prepared import spread_over_array
 from support import captures
 from support.captures import shaded_texture, write_capture
 from support.scenes import row_grid, tiny_scene

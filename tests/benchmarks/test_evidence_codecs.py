@@ -5,6 +5,7 @@ from __future__ import annotations
 import dataclasses
 from itertools import pairwise
 
+import av
 import numpy as np
 import pytest
 
@@ -51,7 +52,8 @@ def test_each_frame_is_the_picture_of_its_place(codec, tmp_path):
     sizes = [picture.shape[:2] for picture in pictures]
     path = tmp_path / "film"
     assert codecs.encode(pictures, codec, 20, path) > 0
-    assert codecs.key_frames(path, codec) == 1
+    with av.open(str(path), format=codec.container) as container:
+        assert sum(packet.is_keyframe for packet in container.demux() if packet.size) == 1
     decoded = list(codecs.decode(path, codec, sizes))
     assert [picture.shape for picture in decoded] == [picture.shape for picture in pictures]
     common = [picture[: HEIGHT - 2, : WIDTH - 1].astype(float) for picture in pictures]

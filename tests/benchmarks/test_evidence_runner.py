@@ -13,9 +13,9 @@ import pytest
 import report
 from eigenfield.core.errors import CaptureError
 from evidence import captures, runner
-from evidence.code import meaning
 from evidence.runner import Run, fingerprint
 from evidence.steps import wanted
+from measure import meaning
 from support.captures import write_capture
 
 ROOT = Path(__file__).parents[2]

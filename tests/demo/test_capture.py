@@ -12,9 +12,10 @@ import pytest
 from eigenfield.capture import open_capture
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.viewplane import find_grid, fit_view_plane
-from eigenfield.demo import demo_scene_geometry, draw_demo_capture
+from eigenfield.demo import draw_demo_capture
 from eigenfield.demo.cameras import DEMO_HALF_ARRAY_UNITS, array_camera, array_cameras
 from eigenfield.demo.capture import draw_view
+from eigenfield.demo.geometry import build_geometry
 from eigenfield.demo.light import environment_map, radiance
 from eigenfield.demo.surface import bake_surface
 from eigenfield.imaging.raster import rasterise_view
@@ -48,14 +49,14 @@ def test_the_folder_is_complete_and_progress_ends(capture):
 
 
 def test_the_mesh_that_is_written_is_the_one_that_was_drawn(capture):
-    mesh, read = demo_scene_geometry(), read_mesh(capture[0] / "proxy.ply")
+    mesh, read = build_geometry().mesh, read_mesh(capture[0] / "proxy.ply")
     np.testing.assert_array_equal(read.vertices, mesh.vertices)
     np.testing.assert_array_equal(read.faces, mesh.faces)
     np.testing.assert_array_equal(read.uv, mesh.uv)
 
 
 def test_the_mesh_has_an_atlas_of_its_own():
-    mesh = demo_scene_geometry()
+    mesh = build_geometry().mesh
     assert atlas_fault(mesh) is None
     statistics = atlas_statistics(mesh)
     assert 20_000 < len(mesh.faces) < 30_000
@@ -64,7 +65,7 @@ def test_the_mesh_has_an_atlas_of_its_own():
 
 
 def test_charts_are_evenly_dense_in_the_middle_camera():
-    mesh, camera = demo_scene_geometry(), array_camera(0.0, 0.0, 512)
+    mesh, camera = build_geometry().mesh, array_camera(0.0, 0.0, 512)
     seen = np.unique(rasterise_view(mesh, camera).face)
     pixels = camera.project(mesh.vertices)[0][mesh.faces[seen]]
     texels = mesh.uv[mesh.faces[seen]].astype(np.float64) * 800
@@ -82,7 +83,7 @@ def test_charts_are_evenly_dense_in_the_middle_camera():
 
 
 def test_every_pixel_of_every_view_is_covered():
-    mesh = demo_scene_geometry()
+    mesh = build_geometry().mesh
     for camera in array_cameras(3, 3, 128):
         assert (rasterise_view(mesh, camera).face >= 0).all()
     for x in (-1.1, 1.1):
@@ -111,7 +112,7 @@ def test_cameras_are_an_uneven_grid_in_a_plane_with_the_parallax_of_a_gantry():
     assert np.abs(offsets @ np.cross(plane.right, plane.up)).max() < 1e-9
     steps = np.diff(plane.coordinates([camera.centre for camera in cameras[:17]])[:, 0])
     assert 0.02 < steps.std() / steps.mean() < 0.25
-    mesh = demo_scene_geometry()
+    mesh = build_geometry().mesh
     left, right = (array_camera(x * DEMO_HALF_ARRAY_UNITS, 0.0, 512).project(mesh.vertices)[0][:, 0] for x in (-1, 1))
     shift = (right - left)[np.unique(mesh.faces[rasterise_view(mesh, array_camera(0.0, 0.0, 512)).face])]
     assert 25 < shift.max() < 70 and 25 < -shift.min() < 70
@@ -136,7 +137,7 @@ def look():
 
 def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
     """A surface that glows with its own world position, without reflections, is seen where it projects to."""
-    mesh, camera = demo_scene_geometry(), array_camera(0.2, -0.3, 96)
+    mesh, camera = build_geometry().mesh, array_camera(0.2, -0.3, 96)
     from eigenfield.encoding.projected.atlas import make_atlas
 
     atlas = make_atlas(mesh, 512, 512)
@@ -155,7 +156,7 @@ def test_a_view_is_the_surface_where_the_mesh_says_it_is(look):
 
 def test_highlights_move_with_the_camera_and_paint_does_not(look):
     """The same points of the jar, seen from both ends of the array: reflections change what paint alone would not."""
-    mesh = demo_scene_geometry()
+    mesh = build_geometry().mesh
     dull = look[0].copy()
     dull[..., 6] = 0
     x, y, z = mesh.vertices.T
@@ -185,7 +186,7 @@ def test_highlights_are_about_ten_degrees_wide():
 
 
 def test_no_pixel_is_blank_and_fine_detail_is_there(look):
-    picture = draw_view(demo_scene_geometry(), array_camera(0.0, 0.0, 128), *look).astype(np.float32)
+    picture = draw_view(build_geometry().mesh, array_camera(0.0, 0.0, 128), *look).astype(np.float32)
     assert picture.mean() > 60 and 100 * (picture > 250).mean() < 3
     assert np.abs(np.diff(picture, axis=1)).mean() > 8
 
@@ -220,7 +221,7 @@ def test_an_interrupted_drawing_leaves_nothing(tmp_path):
 
 def test_transforms_are_nerfstudio_json(capture):
     tree = json.loads((capture[0] / "transforms.json").read_text())
-    assert (tree["w"], tree["h"]) == (SIZE, SIZE)
+    assert {(frame["w"], frame["h"]) for frame in tree["frames"]} == {(SIZE, SIZE)}
     pose = np.array(tree["frames"][0]["transform_matrix"])
     np.testing.assert_allclose(pose[:3, :3] @ pose[:3, :3].T, np.eye(3), atol=1e-12)
     assert np.linalg.det(pose[:3, :3]) > 0

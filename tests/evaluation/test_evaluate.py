@@ -16,9 +16,11 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, OptionError, OutputError
 from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.project import texture_map
-from eigenfield.evaluation import PSNR_MAX_DECIBELS, ExcludedCircle, evaluate, flip, reconstruct_maps, stored_scores
+from eigenfield.evaluation import ExcludedCircle, evaluate, reconstruct_maps, stored_scores
 from eigenfield.evaluation.uv import measure_map
 from eigenfield.gltf import load, save
+from eigenfield.imaging.flip import flip
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.parallel import set_threads
 from support.redrawn import HELD, drawn, lighter, write_capture

@@ -10,8 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.metrics import peak_signal_noise_ratio, structural_similarity
 
-from eigenfield.evaluation import PSNR_MAX_DECIBELS, psnr, psnr_luma, ssim
-from eigenfield.imaging.metrics import to_codes
+from eigenfield.imaging.metrics import PSNR_MAX_DECIBELS, psnr, psnr_luma, ssim, to_codes
 
 FLAT = 2e-5  # what float32 leaves of the variances of flat, bright pictures, as SSIM
 

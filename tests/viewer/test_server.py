@@ -17,7 +17,7 @@ from PIL import Image
 from eigenfield.capture import open_capture
 from eigenfield.gltf import outline
 from eigenfield.viewer import Content, Server, request, server
-from eigenfield.viewer.ranges import RangeError, wanted_range
+from eigenfield.viewer.request import RefusedError, wanted_range
 from support.http_client import Client, until
 
 ALWAYS = {
@@ -141,7 +141,7 @@ def test_ranges_outside(client, scene):
 
 @given(st.text(alphabet="0123456789-,= bytes", max_size=20) | st.text(), st.integers(0, 50))
 def test_a_range_is_within_the_content_whatever_is_asked(text, size):
-    with contextlib.suppress(RangeError):
+    with contextlib.suppress(RefusedError):
         found = wanted_range({"range": text}, size, '"tag"')
         assert found is None or 0 <= found[0] < found[1] <= size
 

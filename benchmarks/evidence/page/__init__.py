@@ -20,20 +20,17 @@ from evidence.page.source import Source, failure, moment
 from evidence.page.summary import summary
 
 LARGE = 12e6  # bytes: a page of more is told of
-SECTIONS: tuple[tuple[str, str, str | None, Callable[[Source], Html]], ...] = (  # key, title, step, what draws it
-    ("summary", "Summary", None, summary),
-    ("paper", "The paper's figures and table", "paper", paper),
-    ("image", "Image space: what the paper's measure hides", "scene", image_space),
-    ("losses", "Where the decibels go", "losses", losses),
-    ("peers", "Peers: the same photographs in other codecs", "rates", peers),
-    ("between", "Between the cameras", "between", between_cameras),
-    ("studies", "Parameter studies", "studies", studies),
-    ("reading", "How to read this report", None, reading),
+SECTIONS: tuple[tuple[str, str, str, str | None, Callable[[Source], Html]], ...] = (
+    # key, title, in the navigation, step, what draws it
+    ("summary", "Summary", "Summary", None, summary),
+    ("paper", "The paper's figures and table", "The paper", "paper", paper),
+    ("image", "Image space: what the paper's measure hides", "Image space", "scene", image_space),
+    ("losses", "Where the decibels go", "Losses", "losses", losses),
+    ("peers", "Peers: the same photographs in other codecs", "Peers", "rates", peers),
+    ("between", "Between the cameras", "Between cameras", "between", between_cameras),
+    ("studies", "Parameter studies", "Studies", "studies", studies),
+    ("reading", "How to read this report", "How to read it", None, reading),
 )
-SHORT = {
-    "summary": "Summary", "paper": "The paper", "image": "Image space", "losses": "Losses", "peers": "Peers",
-    "between": "Between cameras", "studies": "Studies", "reading": "How to read it",
-}  # fmt: skip
 # Chromium prints closed <details> by the style sheet; others need them opened.
 SCRIPT = "addEventListener('beforeprint',()=>document.querySelectorAll('details').forEach(d=>{d.open=true}))"
 
@@ -59,7 +56,7 @@ def draw(source: Source) -> str:
     title = "eigenfield: the evidence" + (" (quick run)" if quick else "")
     sections = [
         element("section", element("h2", f"{number_of}. {words}"), _drawn(section, source), id=key)
-        for number_of, (key, words, _, section) in enumerate(SECTIONS, 1)
+        for number_of, (key, words, _, _, section) in enumerate(SECTIONS, 1)
     ]
     style = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
     head = (
@@ -111,35 +108,27 @@ def _header(source: Source, title: str, quick: bool) -> Html:
 
 
 def _navigation() -> Html:
-    links = [element("li", link(key, SHORT[key])) for key, *_ in SECTIONS]
+    links = [element("li", link(key, short)) for key, _, short, *_ in SECTIONS]
     return element("nav", element("ul", *links), class_="top", aria_label="sections")
 
 
 def _index(source: Source) -> Html:
     """Captures against sections, each cell a link to its part."""
-    shown = [(key, step) for key, _, step, _ in SECTIONS if step is not None]
+    shown = [(key, short, step) for key, _, short, step, _ in SECTIONS if step is not None]
     rows = []
     for name in source.captures:
         cells = []
-        for key, step in shown:
+        for key, _, step in shown:
             failed, there = source.problem(name, step) is not None, source.figures(name, step) is not None
             target = key if failed and key == "image" else anchor(key, name)
             cells.append(link(target, "error" if failed else "see") if failed or there else None)
         rows.append([name, *cells])
     if not rows:
         return Html("")
-    columns = ["capture", *(SHORT[key] for key, _ in shown)]
+    columns = ["capture", *(short for _, short, _ in shown)]
     return details("Contents by capture", table(columns, rows))
 
 
 def _footer() -> Html:
-    return element(
-        "footer",
-        paragraph(
-            "Written by ",
-            element("code", "benchmarks/report.py"),
-            "; figures are in ",
-            element("code", "results.json"),
-            ".",
-        ),
-    )
+    program, file = element("code", "benchmarks/report.py"), element("code", "results.json")
+    return element("footer", paragraph("Written by ", program, "; figures are in ", file, "."))

@@ -12,6 +12,7 @@ from evidence.markup import (
     dig,
     element,
     finite,
+    fraction,
     join,
     listing,
     megabytes,
@@ -53,13 +54,14 @@ def _overview(source: Source) -> Html:
         curve = listing(figures, "curve")
         reached = {way: _reached(curve, way) for way in WAYS}
         cheapest = min((r for r in reached.values() if r), key=lambda r: r["textures"], default=None)
-        rate = _rate_at(figures, dig(said, "fps_textures"))
+        most = dig(said, "fps_textures")
+        rate = next((one for one in listing(figures, "fps") if one.get("textures") == most), None)
         cells: list[Any] = [
             capture_link(source, "paper", "paper", name),
             number(capture.get("views"), 0),
             *(_textures(reached[way], curve, way) for way in WAYS),
             megabytes(dig(cheapest, "bytes")),
-            percent(as_percent(dig(cheapest, "saving"))),
+            fraction(dig(cheapest, "saving")),
             number(dig(rate, "bilinear"), 0),
             number(dig(rate, "bicubic"), 0),
         ]
@@ -91,18 +93,6 @@ def _textures(reached: Tree | None, curve: list[Tree], way: str) -> Html | None:
     return None if most is None else join(["> ", number(most, 0)])
 
 
-def as_percent(saving: Any) -> float | None:
-    """A saving is kept as a share of 1."""
-    known = finite(saving)
-    return None if known is None else 100 * known
-
-
-def _rate_at(figures: Tree, count: Any) -> Tree | None:
-    rates = listing(figures, "fps")
-    exact = [r for r in rates if r.get("textures") == count]
-    return exact[0] if exact else None
-
-
 def _capture(source: Source, name: str, figures: Tree) -> Html:
     said = dig(source.results, "paper")
     curve = listing(figures, "curve")
@@ -132,7 +122,7 @@ def _points(curve: list[Tree]) -> Html:
         cells: list[Any] = [number(point.get("textures"), 0)]
         for way in WAYS:
             ssim, psnr, size, saving = (dig(point, way, key) for key in keys)
-            cells += [number(ssim, 4), number(psnr, 2), megabytes(size), percent(as_percent(saving))]
+            cells += [number(ssim, 4), number(psnr, 2), megabytes(size), fraction(saving)]
         rows.append(cells)
     columns = ["textures", *(2 * ["SSIM", "PSNR dB", "MB", "saving"])]
     return table(columns, rows, groups=[("", 1), *((words, 4) for words in WAYS.values())])
@@ -209,9 +199,9 @@ def _table_1(figures: Tree, said: Any) -> Html:
                 number(row.get("uv_ssim"), 4),
                 megabytes(row.get("bytes")),
                 percent(row.get("percent_of_maps")),
-                percent(as_percent(row.get("saving"))),
+                fraction(row.get("saving")),
                 megabytes(row.get("file_bytes")),
-                percent(as_percent(row.get("file_saving"))),
+                fraction(row.get("file_saving")),
             ]
         )
     if said:

@@ -14,6 +14,7 @@ from evidence.markup import (
     duration,
     element,
     finite,
+    fraction,
     items,
     join,
     listing,
@@ -21,7 +22,6 @@ from evidence.markup import (
     megabytes,
     number,
     paragraph,
-    percent,
     table,
 )
 from evidence.page.source import (
@@ -190,15 +190,15 @@ def _curves_table(figures: Tree, curves: Sequence[Tree], rates: dict[str, Tree])
 
 def _extent(figures: Tree) -> Html:
     """Which views were coded, in which order, and over which pixels they are measured."""
-    views, total, coverage = figures.get("views"), figures.get("of"), finite(figures.get("coverage"))
+    views, total, coverage = figures.get("views"), figures.get("of"), figures.get("coverage")
     parts = []
     if views is not None:
         of_all = f" of {total} (every second row and column)" if total not in (None, views) else ""
         parts.append(f"{views} views{of_all}")
     if figures.get("order"):
         parts.append(f"video in {figures['order']} order")
-    if coverage is not None:
-        parts.append(join(["measured over covered pixels, ", percent(100 * coverage), " of the frame"]))
+    if finite(coverage) is not None:
+        parts.append(join(["measured over covered pixels, ", fraction(coverage), " of the frame"]))
     return join([join(parts, ", "), ". "]) if parts else Html("")
 
 
@@ -287,19 +287,16 @@ def _methods(source: Source, name: str, figures: Tree) -> Html:
     for key, _, _, sense in BETWEEN:
         known = [sense * v for m in methods if (v := finite(m.get(key))) is not None]
         best[key] = sense * max(known) if known else None
-    rows = []
-    for method in methods:
-        seconds, size = method.get("seconds"), method.get("bytes")
-        rows.append(
-            [
-                element("strong", label_of(method)) if is_ours(method) else label_of(method),
-                *(_marked(method.get(key), digits, best[key]) for key, _, digits, _ in BETWEEN),
-                worst(method, "psnr", 2),
-                duration(seconds),
-                data_size(size) if size is not None else None,
-            ]
-        )  # fmt: skip
-    columns = ["", *(title for _, title, _, _ in BETWEEN), "worst PSNR dB", "a picture", "bytes"]
+    rows = [
+        [
+            element("strong", label_of(method)) if is_ours(method) else label_of(method),
+            *(_marked(method.get(key), digits, best[key]) for key, _, digits, _ in BETWEEN),
+            worst(method, "psnr", 2),
+            duration(method.get("seconds")),
+        ]
+        for method in methods
+    ]
+    columns = ["", *(title for _, title, _, _ in BETWEEN), "worst PSNR dB", "a picture"]
     cameras, rule = figures.get("cameras"), figures.get("rule")
     said = [f"{cameras} held-out views" if cameras is not None else "", str(rule) if rule else ""]
     caption = ", ".join(word for word in said if word) or "Held-out views"

@@ -11,12 +11,12 @@ from evidence.markup import (
     dig,
     element,
     finite,
+    fraction,
     join,
     listing,
     megabytes,
     number,
     paragraph,
-    percent,
     table,
 )
 from evidence.page.source import GEOMETRY, Source, Tree, by_capture, capture_link, failure, origin, worst
@@ -94,10 +94,7 @@ def _bytes_of(scene: Tree, path: tuple[str, ...]) -> Any:
 
 
 def _figures(image: Tree) -> list[Html]:
-    coverage = finite(image.get("coverage"))
-    return [number(image.get(key), digits) for key, _, digits in FIGURES] + [
-        percent(None if coverage is None else 100 * coverage)
-    ]
+    return [*(number(image.get(key), digits) for key, _, digits in FIGURES), fraction(image.get("coverage"))]
 
 
 def _foot(source: Source, name: str, scene: Tree) -> Html:
@@ -158,20 +155,19 @@ def _ladders(source: Source) -> Html:
 def _loss(row: Tree | None, largest: bool) -> Html | None:
     if row is None:
         return None
-    share = finite(row.get("share"))
     left = row.get("key") == "left"
     decibels = number(
         row.get("psnr_of_mse", row.get("psnr")) if left else row.get("gain"), 2, sign=not left, unit=" dB"
     )
-    words = element("span", percent(None if share is None else 100 * share, 0), class_="best in" if largest else "sub")
+    words = element("span", fraction(row.get("share"), 0), class_="best in" if largest else "sub")
     return join([decibels, " ", words]) if row.get("gain") is not None or left else words
 
 
 def _moved(found: Tree | None) -> Html | None:
     if found is None:
         return None
-    share = finite(found.get("share"))
-    words = element("span", percent(100 * share, 0), class_="sub") if share is not None else ""
+    share = found.get("share")
+    words = element("span", fraction(share, 0), class_="sub") if finite(share) is not None else ""
     return join([number(found.get("gain"), 2, sign=True, unit=" dB"), " ", words])
 
 
@@ -197,7 +193,7 @@ def _ladder(rows: list[Tree], caption: str) -> Html:
             if share is not None
             else ""
         )
-        said = join([bar, percent(100 * share)]) if share is not None else row.get("left_out")
+        said = join([bar, fraction(share)]) if share is not None else row.get("left_out")
         lines.append(
             [
                 row.get("title") or row.get("key"),
@@ -215,30 +211,22 @@ def _ladder(rows: list[Tree], caption: str) -> Html:
 def _shift_table(found: Tree | None) -> Html:
     if found is None:
         return Html("")
-    rows = []
-    for label, one in (("drawn before quantisation", found), ("control: each camera's own map", found.get("control"))):
-        if isinstance(one, dict):
-            share = finite(one.get("share"))
-            rows.append(
-                [
-                    label,
-                    number(one.get("psnr_before")),
-                    number(one.get("psnr_after", one.get("psnr"))),
-                    number(one.get("gain"), 2, sign=True),
-                    percent(None if share is None else 100 * share),
-                    number(one.get("median_px", one.get("median_pixels"))),
-                    number(one.get("p95_px")),
-                ]
-            )
-    columns = [
-        "pictures",
-        "PSNR before, dB",
-        "PSNR moved, dB",
-        "gain dB",
-        "share of the error",
-        "median shift, px",
-        "95 % of shifts below, px",
+    rows = [
+        [
+            label,
+            number(one.get("psnr")),
+            number(one.get("gain"), 2, sign=True),
+            fraction(one.get("share")),
+            number(one.get("median_px")),
+            number(one.get("p95_px")),
+        ]
+        for label, one in (
+            ("drawn before quantisation", found),
+            ("control: each camera's own map", found.get("control")),
+        )
+        if isinstance(one, dict)
     ]
+    columns = ["pictures", "PSNR moved, dB", "gain dB", "share of the error", "median shift, px", "95 % below, px"]
     return table(columns, rows, caption="Geometry: moved towards the photographs by optical flow")
 
 

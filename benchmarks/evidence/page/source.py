@@ -88,23 +88,16 @@ def by_capture(source: Source, section: str, step: str, draw: Draw) -> Html:
             without.append(name)
             continue
         heading = element("h3", source.title(name), id=anchor(section, name))
-        body = (
-            failure(f"This step ended with an error: {problem}")
-            if figures is None
-            else guarded(draw, source, name, figures)
-        )
+        body = failure(f"This step ended with an error: {problem}")
+        if figures is not None:
+            try:
+                body = join([draw(source, name, figures)])
+            except Exception as error:  # one odd figure must not cost the page of a run of hours
+                body = failure(f"These figures could not be shown ({type(error).__name__}: {error})")
         parts.append(element("article", heading, body, origin(source, name, step)))
     if without:
         parts.append(paragraph(f"Not measured in this run: {', '.join(without)}.", kind="missing"))
     return join(parts)
-
-
-def guarded(draw: Draw, source: Source, name: str, figures: Tree) -> Html:
-    """The part, or a box with the error: one odd figure must not cost the page of a run of hours."""
-    try:
-        return join([draw(source, name, figures)])
-    except Exception as error:
-        return failure(f"These figures could not be shown ({type(error).__name__}: {error})")
 
 
 def failure(words: str) -> Html:

@@ -13,6 +13,7 @@ from evidence.markup import (
     duration,
     element,
     finite,
+    fraction,
     join,
     megabytes,
     number,
@@ -57,7 +58,7 @@ def _headline(source: Source) -> Html:
                 number(dig(encoded, "ssim"), 3),
                 number(dig(encoded, "flip"), 3),
                 number(dig(held_out(scene), "psnr")),
-                percent(_share(dig(encoded, "coverage"))),
+                fraction(dig(encoded, "coverage")),
                 shaded(headline_rate(source, name, "psnr")),
                 shaded(headline_rate(source, name, "psnr_luma")),
             ]
@@ -92,11 +93,6 @@ def _against(capture: Tree, scene: Tree | None, sizes: Any) -> list[Html]:
 def between_pixels(size: Any) -> Html:
     """[512, 512] as 512 × 512."""
     return join((number(v, 0) for v in size), " × ") if isinstance(size, list | tuple) and size else number(size, 0)
-
-
-def _share(value: Any) -> float | None:
-    known = finite(value)
-    return None if known is None else 100 * known
 
 
 def _files(source: Source) -> Html:

@@ -5,14 +5,23 @@ from __future__ import annotations
 import json
 import time
 from pathlib import Path
+from typing import Any
 
 import click
 
-from eigenfield.cli.calibrate_chart import ChartOptions, calibrate_from_charts, chart_options
-from eigenfield.cli.common import common_options, echo_json, note, parse_grid, progress_bars
+from eigenfield.cli.calibrate_chart import REPORT_FILE, ChartOptions, calibrate_from_charts, chart_options
+from eigenfield.cli.common import (
+    PATH,
+    common_options,
+    echo_json,
+    grid_options,
+    masks_option,
+    note,
+    note_all,
+    progress_bars,
+)
 from eigenfield.core.errors import OptionError
 
-REPORT_FILE = "report.json"
 CALIBRATION_SUFFIX = "-calibration"
 MATCHING_WAYS = ("auto", "exhaustive", "similar", "grid", "positions")
 
@@ -26,17 +35,17 @@ Examples:
   eigenfield calibrate charts/ --chart checkerboard --board 9x6 --square 25mm
   eigenfield inspect photos/ --calibration photos-calibration/transforms.json"""
 )
-@click.argument("folder", type=click.Path(path_type=Path))
+@click.argument("folder", type=PATH)
 @click.option(
     "--output",
     "-o",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Folder for transforms.json, sparse/0 and report.json.  [default: FOLDER-calibration]",
 )
 @click.option(
     "--intrinsics",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="PATH",
     help="Known lenses, which are kept as they are: any calibration, an OpenCV file, or K's nine numbers.",
 )
@@ -54,23 +63,15 @@ Examples:
 )
 @click.option("--seed", type=click.IntRange(0, 2**31 - 1), default=0, show_default=True, help="Of all random choices.")
 @click.option(
-    "--work",
-    type=click.Path(path_type=Path),
-    metavar="DIR",
-    help="Keep features and matches here, so that the next run goes on from them.",
+    "--work", type=PATH, metavar="DIR", help="Keep features and matches here, so that the next run goes on from them."
 )
-@click.option(
-    "--masks", type=click.Path(path_type=Path), metavar="FOLDER", help="Masks named as the photographs; white counts."
-)
+@masks_option
 @click.option("--format", metavar="NAME", help="What the names of the photographs mean, as `encode` takes it.")
-@click.option(
-    "--grid", metavar="RxC", callback=parse_grid, help="Numbered photographs are R rows of C columns, row by row."
-)
-@click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s).")
+@grid_options
 @chart_options
 @click.option("--overwrite", is_flag=True, help="Replace an earlier calibration in DIR; other files there stay.")
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
-@common_options  # fmt: skip
+@common_options
 def command(
     folder: Path,
     output: Path | None,
@@ -79,14 +80,11 @@ def command(
     camera_per_photo: bool,
     seed: int,
     work: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
     chart: ChartOptions | None,
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    **names: Any,
 ) -> None:
     """Find the cameras of the photographs in FOLDER, and write them for eigenfield and other tools.
 
@@ -98,14 +96,7 @@ def command(
     place = _default_output(folder) if output is None else output
     refuse_folder(place, overwrite)
     if chart is not None:
-        given: dict[str, object] = {
-            "intrinsics": intrinsics,
-            "masks": masks,
-            "work": work,
-            "grid": grid,
-            "frame": frame,
-            "format": format,
-        }
+        given = {"intrinsics": intrinsics, "work": work, **names}
         given |= {"camera-per-photo": camera_per_photo or None, "json": as_json or None}
         for name, value in given.items():
             if value is not None:
@@ -119,15 +110,12 @@ def command(
     from eigenfield.capture import open_photographs
     from eigenfield.capture.writers.save import save_calibration
 
-    photos = open_photographs(
-        folder, masks=masks, strict=False, format=format, grid=grid, frame=frame, work=work
-    )  # fmt: skip
+    photos = open_photographs(folder, strict=False, work=work, **names)
     if photos.format == "video" and work is None:
         raise OptionError(
             "video-work", "the frames of videos must stay for the calibration to name them", remedy="add --work DIR"
         )
-    for problem in photos.problems:
-        note(problem, quiet)
+    note_all(photos.problems, quiet)
     known = None if intrinsics is None else read_known_lenses(intrinsics, photos)
     with progress_bars(quiet) as progress:
         motion = structure_from_motion(

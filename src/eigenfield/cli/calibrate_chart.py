@@ -6,20 +6,19 @@ import functools
 import json
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import note, progress_bars
+from eigenfield.cli.common import note_all, progress_bars, together
 from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
     from eigenfield.calibrate.charts.board import Board
     from eigenfield.calibrate.charts.calibrate import CameraReport, ChartCalibration
 
-F = TypeVar("F", bound=Callable[..., Any])
 BOARD_FILE = "charuco.toml"
 REPORT_FILE = "report.json"
 
@@ -47,48 +46,35 @@ class ChartOptions:
     legacy: bool | None
 
 
-def chart_options(function: F) -> F:
+_options = together(
+    click.option("--chart", type=click.Choice(["checkerboard", "charuco"]),
+                 help="FOLDER holds pictures or videos of a board of this kind, by camera."),
+    click.option("--board", metavar="CxR", help="Inner corners of a checkerboard (9x6), squares of a ChArUco board "
+                 "(4x5), columns first; or a charuco.toml.  [default: the charuco.toml in FOLDER or above it]"),
+    click.option("--square", metavar="LENGTH", help="Side of a square: 25mm, or a number in any unit."),
+    click.option("--marker", metavar="LENGTH", help="Side of a ChArUco board's marker."),
+    click.option("--dictionary", metavar="NAME", help="Of a ChArUco board's markers.  [default: DICT_4X4_1000]"),
+    click.option("--inverted/--not-inverted", default=None,
+                 help="The board is printed white on black.  [default: try both]"),
+    click.option("--legacy/--not-legacy", default=None,
+                 help="ChArUco as OpenCV drew it before 4.6.  [default: try both]"),
+)  # fmt: skip
+
+
+def chart_options(function: Callable[..., Any]) -> Any:
     """Add --chart and the options of the board; the verb gets them as one `chart: ChartOptions | None`."""
-    options = [
-        click.option("--chart", type=click.Choice(["checkerboard", "charuco"]),
-                     help="FOLDER holds pictures or videos of a board of this kind, by camera."),
-        click.option("--board", metavar="CxR", help="Inner corners of a checkerboard (9x6), squares of a ChArUco board "
-                     "(4x5), columns first; or a charuco.toml.  [default: the charuco.toml in FOLDER or above it]"),
-        click.option("--square", metavar="LENGTH", help="Side of a square: 25mm, or a number in any unit."),
-        click.option("--marker", metavar="LENGTH", help="Side of a ChArUco board's marker."),
-        click.option("--dictionary", metavar="NAME", help="Of a ChArUco board's markers.  [default: DICT_4X4_1000]"),
-        click.option("--inverted/--not-inverted", default=None,
-                     help="The board is printed white on black.  [default: try both]"),
-        click.option("--legacy/--not-legacy", default=None,
-                     help="ChArUco as OpenCV drew it before 4.6.  [default: try both]"),
-    ]  # fmt: skip
 
     @functools.wraps(function)
-    def collect(
-        *args: Any,
-        chart: str | None,
-        board: str | None,
-        square: str | None,
-        marker: str | None,
-        dictionary: str | None,
-        inverted: bool | None,
-        legacy: bool | None,
-        **kwargs: Any,
-    ) -> Any:
-        described = {"board": board, "square": square, "marker": marker, "dictionary": dictionary}
-        described |= {"inverted": inverted, "legacy": legacy}  # type: ignore[dict-item]
-        lone = next((name for name, value in described.items() if value is not None), None)
-        if chart is None and lone is not None:
+    def collect(**given: Any) -> Any:
+        chart = ChartOptions(**{field.name: given.pop(field.name) for field in fields(ChartOptions)})
+        first = next((name for name, value in vars(chart).items() if value is not None), None)
+        if first not in (None, "chart"):
             raise OptionError(
-                "chart", f"--{lone} describes a chart", remedy="say --chart checkerboard or --chart charuco too"
+                "chart", f"--{first} describes a chart", remedy="say --chart checkerboard or --chart charuco too"
             )
-        chosen = None if chart is None else ChartOptions(chart, **described)  # type: ignore[arg-type]
-        return function(*args, chart=chosen, **kwargs)
+        return function(chart=None if first is None else chart, **given)
 
-    decorated: Any = collect
-    for option in reversed(options):
-        decorated = option(decorated)
-    return decorated
+    return _options(collect)
 
 
 def board_of(options: ChartOptions, folder: Path) -> Board:
@@ -102,8 +88,6 @@ def board_of(options: ChartOptions, folder: Path) -> Board:
         OptionError: `chart`, and as `checkerboard`, `charuco`, `parse_size`, `parse_length` do.
         CaptureError: `board-file`.
     """
-    from dataclasses import replace
-
     from eigenfield.calibrate.charts.board import (
         BOARD_DEFAULT_DICTIONARY,
         charuco,
@@ -164,13 +148,10 @@ def calibrate_from_charts(folder: Path, output: Path, options: ChartOptions, *, 
     board = board_of(options, folder)
     with progress_bars(quiet) as progress:
         result = calibrate_charts(folder, board, progress=progress)
-    for problem in result.problems:
-        note(problem, quiet)
+    note_all(result.problems, quiet)
     report = json.dumps(result.describe(), indent=1, allow_nan=False) + "\n"
     save_calibration(result.light_field(output), output, overwrite=overwrite, more={REPORT_FILE: report.encode()})
-    for line in table(result):
-        click.echo(line)
-    click.echo(f"{output}: {summary(result)}, {time.monotonic() - started:.0f} s")
+    click.echo("\n".join([*table(result), f"{output}: {summary(result)}, {time.monotonic() - started:.0f} s"]))
 
 
 def table(result: ChartCalibration) -> list[str]:

@@ -3,85 +3,55 @@
 from __future__ import annotations
 
 import contextlib
+import functools
 import json
 import logging
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
 
+if TYPE_CHECKING:
+    from eigenfield.capture import Capture
+    from eigenfield.reconstruction import Reconstruction
+
 F = TypeVar("F", bound=Callable[..., Any])
+Decorator = Callable[[Any], Any]
+PATH = click.Path(path_type=Path)
 
 
-def common_options(function: F) -> F:
-    """Add --threads, --quiet, --verbose and --traceback; they take effect before the verb runs and are not passed on,
-    except `quiet`, which the verb gives to `progress_bars`."""
-    options = [
-        click.option("--threads", type=int, metavar="N", expose_value=False, callback=_set_threads, is_eager=True,
-                     help="Threads to use.  [default: all processors]"),
-        click.option("--quiet", "-q", is_flag=True, help="No progress bars, no notes; errors only."),
-        click.option("--verbose", "-v", is_flag=True, expose_value=False, callback=_set_verbose, is_eager=True,
-                     help="Say more about what is done."),
-        click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,
-                     help="Show where an error came from."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
+def together(*options: Decorator) -> Decorator:
+    """One decorator that adds several options, in this order."""
+
+    def add(function: F) -> F:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return add
 
 
-def capture_options(function: F) -> F:
-    """Add --calibration, --masks, --format, --grid and --frame, which `open_capture` and `open_any` take."""
-    options = [
-        click.option("--calibration", type=click.Path(path_type=Path), metavar="PATH",
-                     help="A calibration (transforms.json, COLMAP model, ...) apart from the photographs."),
-        click.option("--masks", type=click.Path(path_type=Path), metavar="FOLDER",
-                     help="Masks named as the photographs; white counts."),
-        click.option("--format", metavar="NAME",
-                     help="What the capture is, where it may be read in several ways: "
-                          "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
-                          "positions, hci, stanford, grid, numbered, video or folder."),
-        click.option("--grid", metavar="RxC", callback=parse_grid,
-                     help="Numbered photographs are R rows of C columns, row by row."),
-        click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
+def pair_of_numbers(words: str) -> Callable[..., tuple[int, int] | None]:
+    """A click callback: AxB as a pair; BadParameter says `words` where it is none."""
+
+    def parse(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
+        if value is None:
+            return None
+        match = re.fullmatch(r"(\d{1,6})[xX×](\d{1,6})", value)
+        if match is None:
+            raise click.BadParameter(words)
+        return int(match[1]), int(match[2])
+
+    return parse
 
 
-def reconstruction_options(function: F) -> F:
-    """Add the options of `reconstruct`."""
-    options = [
-        click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
-                     help="relief: two layers seen from the array's centre; poisson: a surface from all sides."),
-        click.option("--refine/--no-refine", default=None,
-                     help="Correct an array's cameras together with its depth.  "
-                     "[default: where none are given, or 25 or more]"),
-        click.option("--fill-background/--no-fill-background", "background", default=None,
-                     help="Close the view behind what was reconstructed.  [default: unless there are masks]"),
-        click.option("--primitive", "primitives", multiple=True, metavar="SHAPE",
-                     help="Put a shape in by hand: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
-        click.option("--fit-sphere", "fit_spheres", multiple=True, metavar="VIEW:X,Y,W,H",
-                     help="Fit a sphere to the outline in a region of a photograph, and put it in."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
-
-
-def parse_grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
-    """A click callback: ROWSxCOLUMNS as a pair.
-
-    Raises:
-        OptionError: `grid-unknown`.
-    """
+def _parse_grid(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
     if value is None:
         return None
     match = re.fullmatch(r"([1-9][0-9]{0,5})[xX×]([1-9][0-9]{0,5})", value)
@@ -103,9 +73,61 @@ def _set_verbose(context: click.Context, parameter: click.Parameter, value: bool
 
 
 def _set_traceback(context: click.Context, parameter: click.Parameter, value: bool) -> None:
-    if value:
-        context.meta["traceback"] = True
-        context.find_root().meta["traceback"] = True
+    context.meta["traceback"] = value  # of all contexts of this run
+
+
+# They take effect before the verb runs and are not passed on, except `quiet`, which the verb gives to `progress_bars`.
+common_options = together(
+    click.option("--threads", type=int, metavar="N", expose_value=False, callback=_set_threads, is_eager=True,
+                 help="Threads to use.  [default: all processors]"),
+    click.option("--quiet", "-q", is_flag=True, help="No progress bars, no notes; errors only."),
+    click.option("--verbose", "-v", is_flag=True, expose_value=False, callback=_set_verbose, is_eager=True,
+                 help="Say more about what is done."),
+    click.option("--traceback", is_flag=True, expose_value=False, callback=_set_traceback, is_eager=True,
+                 help="Show where an error came from."),
+)  # fmt: skip
+masks_option = click.option("--masks", type=PATH, metavar="FOLDER",
+                            help="Masks named as the photographs; white counts.")  # fmt: skip
+grid_options = together(
+    click.option("--grid", metavar="RxC", callback=_parse_grid,
+                 help="Numbered photographs are R rows of C columns, row by row."),
+    click.option("--frame", metavar="T", help="Frame of each video: an index from 0, or seconds (2.5s)."),
+)  # fmt: skip
+_place_options = together(
+    click.option("--calibration", type=PATH, metavar="PATH",
+                 help="A calibration (transforms.json, COLMAP model, ...) apart from the photographs."),
+    masks_option,
+    click.option("--format", metavar="NAME",
+                 help="What the capture is, where it may be read in several ways: "
+                      "transforms, colmap, llff, middlebury, strecha, bundler, metashape, opencv, projections, "
+                      "positions, hci, stanford, grid, numbered, video or folder."),
+    grid_options,
+)  # fmt: skip
+reconstruction_options = together(  # the arguments of `reconstruct`
+    click.option("--surface", type=click.Choice(["auto", "relief", "poisson"]), default="auto", show_default=True,
+                 help="relief: two layers seen from the array's centre; poisson: a surface from all sides."),
+    click.option("--refine/--no-refine", default=None,
+                 help="Correct an array's cameras together with its depth.  "
+                 "[default: where none are given, or 25 or more]"),
+    click.option("--fill-background/--no-fill-background", "background", default=None,
+                 help="Close the view behind what was reconstructed.  [default: unless there are masks]"),
+    click.option("--primitive", "primitives", multiple=True, metavar="SHAPE",
+                 help="Put a shape in by hand: sphere:CX,CY,CZ,R or plane:PX,PY,PZ,NX,NY,NZ,EXTENT."),
+    click.option("--fit-sphere", "fit_spheres", multiple=True, metavar="VIEW:X,Y,W,H",
+                 help="Fit a sphere to the outline in a region of a photograph, and put it in."),
+)  # fmt: skip
+
+
+def capture_options(function: Callable[..., Any]) -> Any:
+    """Add --calibration, --masks, --format, --grid and --frame; the verb gets them as one `place`, the keyword
+    arguments of `open_capture` and `open_any`."""
+
+    @functools.wraps(function)
+    def collect(**given: Any) -> Any:
+        names = ("calibration", "masks", "format", "grid", "frame")
+        return function(place={name: given.pop(name) for name in names}, **given)
+
+    return _place_options(collect)
 
 
 @contextlib.contextmanager
@@ -144,28 +166,40 @@ def note_all(messages: Iterable[str], quiet: bool) -> None:
         note(message, quiet)
 
 
-def timings(seconds: Mapping[str, float]) -> list[str]:
-    """The seconds of each stage, as lines."""
-    return [f"  {stage:8} {f'{took:6.1f} s' if took else 'taken up'}" for stage, took in seconds.items()]
+def first_names(names: list[str], most: int) -> str:
+    """The first few of many names, with commas between, and how many more there are."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(names[:most]) + more
 
 
-def refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
-    """Refuse options that only matter where the proxy is made.
+def reconstruct_capture(
+    capture: Path, place: dict[str, Any], work: Path, progress: Progress | None, quiet: bool,
+    check: Callable[[Capture], None] | None = None, **settings: Any,
+) -> Reconstruction:  # fmt: skip
+    """Cameras and proxy of a capture, estimated where they are not given, with notes on what was found.
 
     Args:
-        settings: The options of `reconstruct`.
-        blind: Whether --blind was given.
-
-    Raises:
-        OptionError: `proxy-given`.
+        capture: The folder.
+        place: Of `capture_options`.
+        work: Folder that keeps finished stages.
+        progress: Reports each stage.
+        quiet: Whether nothing is noted.
+        check: Refuses the capture, if need be, before the work.
+        settings: Of `reconstruct`.
     """
-    asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
-    if asked:
-        raise OptionError(
-            "proxy-given",
-            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
-            remedy="leave out one of the two",
-        )
+    from eigenfield.capture import open_any
+    from eigenfield.reconstruction import reconstruct
+
+    opened = open_any(capture, work=work / "frames", **place)
+    note_all(opened.problems, quiet)
+    if check is not None:
+        check(opened)
+    made = reconstruct(opened, work=work, progress=progress, **settings)
+    note_all(made.light_field.problems[len(opened.problems) :], quiet)
+    for stage, took in made.seconds.items():
+        note(f"  {stage:8} {f'{took:6.1f} s' if took else 'taken up'}", quiet)
+    note_all(made.report.lines(made.light_field.names), quiet)
+    return made
 
 
 def echo_json(value: Any) -> None:

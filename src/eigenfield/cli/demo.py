@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import json
 import time
+from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import common_options, note, progress_bars
-from eigenfield.core.progress import Progress
+from eigenfield.cli.common import PATH, common_options, note, progress_bars
 
 if TYPE_CHECKING:
-    from eigenfield.capture import LightField
     from eigenfield.core.scene import Scene
 
 DEMO_HOLD_OUT = "every:10"  # enough to say how good the views between the cameras are
@@ -28,7 +28,7 @@ Examples:
 @click.option(
     "--output",
     "-o",
-    type=click.Path(path_type=Path),
+    type=PATH,
     default=Path("demo"),
     show_default=True,
     metavar="DIR",
@@ -43,8 +43,12 @@ def command(output: Path, quiet: bool) -> None:
     """  # fmt: skip
     from eigenfield.capture import open_capture
     from eigenfield.encoding import encode
-    from eigenfield.gltf import save
-    from eigenfield.runtime.files import output_errors
+    from eigenfield.evaluation import evaluate, stored_scores
+    from eigenfield.evaluation.plots import write_plots
+    from eigenfield.gltf import load, save, store_scores
+    from eigenfield.rendering import RenderJob, path_points
+    from eigenfield.rendering.render_jobs import write_flight
+    from eigenfield.runtime.files import output_errors, write_bytes
 
     started = time.monotonic()
     with output_errors(output):
@@ -60,41 +64,16 @@ def command(output: Path, quiet: bool) -> None:
         note(f"encoding them into {path}", quiet)
         scene = encode(capture, folder / "proxy.ply", hold_out=DEMO_HOLD_OUT, work=output, progress=progress)
         save(scene, path, overwrite=True, progress=progress)
-        _write_flight(path, output, progress, quiet)
-        figures = _measure(path, capture, output, progress, quiet)
+        scene = load(path)
+        note(f"flying through it in {output / 'flight.mp4'}", quiet)
+        points = path_points("circle", DEMO_FRAMES)
+        write_flight(RenderJob(scene), points, output / "flight.mp4", Fraction(30), overwrite=True, progress=progress)
+        note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
+        figures = evaluate(scene, capture, path=path, progress=progress)
+        write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
+        write_plots(figures, scene, capture, output / "plots", overwrite=True)
+        store_scores(path, stored_scores(figures))
     click.echo(_summary(path, scene, figures, time.monotonic() - started))
-
-
-def _write_flight(path: Path, output: Path, progress: Progress | None, quiet: bool) -> None:
-    from fractions import Fraction
-
-    from eigenfield.core.progress import track
-    from eigenfield.gltf import load
-    from eigenfield.rendering import path_points, render, write_video
-    from eigenfield.runtime.parallel import parallel_stream
-
-    note(f"flying through it in {output / 'flight.mp4'}", quiet)
-    scene = load(path)
-    pictures = parallel_stream(lambda at: render(scene, at=tuple(at)).to_uint8(), path_points("circle", DEMO_FRAMES))
-    frames = track(pictures, "fly-through", DEMO_FRAMES, progress)
-    write_video(output / "flight.mp4", frames, Fraction(30), overwrite=True)
-
-
-def _measure(path: Path, capture: LightField, output: Path, progress: Progress | None, quiet: bool) -> dict[str, Any]:
-    import json
-
-    from eigenfield.evaluation import evaluate, stored_scores
-    from eigenfield.evaluation.plots import write_plots
-    from eigenfield.gltf import load, store_scores
-    from eigenfield.runtime.files import write_bytes
-
-    note(f"measuring it: {output / 'evaluation.json'}, {output / 'plots'}", quiet)
-    scene = load(path)
-    figures = evaluate(scene, capture, path=path, progress=progress)
-    write_bytes(output / "evaluation.json", json.dumps(figures, indent=1).encode(), overwrite=True)
-    write_plots(figures, scene, capture, output / "plots", overwrite=True)
-    store_scores(path, stored_scores(figures))
-    return figures
 
 
 def _summary(path: Path, scene: Scene, figures: dict[str, Any], seconds: float) -> str:

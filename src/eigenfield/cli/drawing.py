@@ -3,68 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
 from fractions import Fraction
-from typing import Any, TypeVar
 
 import click
 
-F = TypeVar("F", bound=Callable[..., Any])
+from eigenfield.cli.common import pair_of_numbers, together
 
 DEFAULT_FRAMES, DEFAULT_FPS = 120, "30"
-
-
-def picture_options(function: F) -> F:
-    """Add --resolution, --background, --weights, --filter, --textures, --renderer: those of `RenderJob`."""
-    options = [
-        click.option("--resolution", callback=_parse_size, metavar="WxH",
-                     help="Size in pixels.  [default: the camera's]"),
-        click.option("--background", callback=_parse_colour, default="#000000", show_default=True, metavar="COLOUR",
-                     help="'#rrggbb', or transparent, where the proxy does not reach."),
-        click.option("--weights", default="delaunay", show_default=True, metavar="delaunay|nearest3|bilinear",
-                     help="How cameras near the viewpoint are mixed."),
-        click.option("--filter", default="bicubic", show_default=True, metavar="bicubic|bilinear",
-                     help="Texel filter."),
-        click.option("--textures", "-n", type=int, metavar="N", help="Eigen textures to sum.  [default: all]"),
-        click.option("--samples", type=int, metavar="K",
-                     help="K x K samples a pixel.  [default: four at edges, more in small pictures]"),
-        click.option("--renderer", default="software", show_default=True, metavar="software|opengl",
-                     help="opengl: on the GPU, without a window; needs `pip install 'eigenfield[gpu]'`."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
-
-
-def flight_options(function: F) -> F:
-    """Add --path, --frames and --fps."""
-    options = [
-        click.option("--path", "path", metavar="circle|spiral|grid", help="A fly-through."),
-        click.option("--frames", type=int, metavar="N", help=f"Pictures of a path.  [default: {DEFAULT_FRAMES}]"),
-        click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
-                     help="Pictures a second."),
-    ]  # fmt: skip
-    for option in reversed(options):
-        function = option(function)
-    return function
-
-
-def residual_option(function: F) -> F:
-    """Add --residual."""
-    option = click.option("--residual", is_flag=True,
-                          help="Put the file's residual on captured views: nearer to the photographs, up to nearly "
-                          "lossless.")  # fmt: skip
-    return option(function)
-
-
-def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
-    if value is None:
-        return None
-    try:
-        width, height = (int(part) for part in value.lower().split("x"))
-    except ValueError:
-        raise click.BadParameter("WIDTHxHEIGHT in pixels: 1024x768") from None
-    return width, height
 
 
 def _parse_colour(context: click.Context, parameter: click.Parameter, value: str) -> tuple[float, ...] | None:
@@ -84,3 +29,30 @@ def _parse_rate(context: click.Context, parameter: click.Parameter, value: str) 
     if not 0 < rate <= 1000:
         raise click.BadParameter("more than 0 and at most 1000 pictures a second")
     return rate
+
+
+picture_options = together(  # the fields of `RenderJob`
+    click.option("--resolution", callback=pair_of_numbers("WIDTHxHEIGHT in pixels: 1024x768"), metavar="WxH",
+                 help="Size in pixels.  [default: the camera's]"),
+    click.option("--background", callback=_parse_colour, default="#000000", show_default=True, metavar="COLOUR",
+                 help="'#rrggbb', or transparent, where the proxy does not reach."),
+    click.option("--weights", default="delaunay", show_default=True, metavar="delaunay|nearest3|bilinear",
+                 help="How cameras near the viewpoint are mixed."),
+    click.option("--filter", default="bicubic", show_default=True, metavar="bicubic|bilinear", help="Texel filter."),
+    click.option("--textures", "-n", type=int, metavar="N", help="Eigen textures to sum.  [default: all]"),
+    click.option("--samples", type=int, metavar="K",
+                 help="K x K samples a pixel.  [default: four at edges, more in small pictures]"),
+    click.option("--renderer", default="software", show_default=True, metavar="software|opengl",
+                 help="opengl: on the GPU, without a window; needs `pip install 'eigenfield[gpu]'`."),
+)  # fmt: skip
+flight_options = together(
+    click.option("--path", metavar="circle|spiral|grid", help="A fly-through."),
+    click.option("--frames", type=int, metavar="N", help=f"Pictures of a path.  [default: {DEFAULT_FRAMES}]"),
+    click.option("--fps", callback=_parse_rate, default=DEFAULT_FPS, show_default=True, metavar="F",
+                 help="Pictures a second."),
+)  # fmt: skip
+residual_option = click.option(
+    "--residual",
+    is_flag=True,
+    help="Put the file's residual on captured views: nearer to the photographs, up to nearly lossless.",
+)

@@ -5,19 +5,20 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Mapping
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from eigenfield.cli.common import (
+    PATH,
     capture_options,
     common_options,
     note_all,
     progress_bars,
+    reconstruct_capture,
     reconstruction_options,
-    refuse_unused,
-    timings,
 )
 from eigenfield.cli.field_options import field_options, from_fields
 from eigenfield.core.errors import OptionError
@@ -25,22 +26,15 @@ from eigenfield.encoding import EncodeOptions
 
 if TYPE_CHECKING:
     from eigenfield.capture import LightField
-    from eigenfield.core.progress import Progress
-    from eigenfield.reconstruction import Reconstruction
 
 
 def _parse_atlas(context: click.Context, parameter: click.Parameter, value: str | None) -> int | tuple[int, int] | None:
     if value is None:
         return None
-    try:
-        sides = [int(part) for part in value.lower().split("x")]
-    except ValueError:
-        sides = []
-    if len(sides) == 1:
-        return sides[0]
-    if len(sides) == 2:
-        return sides[0], sides[1]
-    raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
+    found = re.fullmatch(r"(-?\d+)(?:x(-?\d+))?", value.lower())
+    if found is None:
+        raise click.BadParameter("a side (1024) or WIDTHxHEIGHT (2048x1024)")
+    return int(found[1]) if found[2] is None else (int(found[1]), int(found[2]))
 
 
 def _parse_size(context: click.Context, parameter: click.Parameter, value: str | None) -> int | None:
@@ -65,22 +59,20 @@ Examples:
   eigenfield encode photos/ --proxy mesh.glb --target-size 300kB -o small.glb
   eigenfield encode photos/ --proxy mesh.glb --residual 70 -o archive.glb"""
 )
-@click.argument("capture", type=click.Path(path_type=Path))
+@click.argument("capture", type=PATH)
 @click.option(
     "--proxy",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="MESH",
     help="Triangle mesh in the cameras' world: .ply, .obj, .glb, .gltf, .stl or .off.  "
     "[default: made from the photographs]",
 )
-@click.option(
-    "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb to write."
-)
+@click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb to write.")
 @capture_options
 @field_options(EncodeOptions, atlas=_parse_atlas, target_size=_parse_size)
 @click.option(
     "--work",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Folder that keeps finished stages of the reconstruction; the same command goes on from there. "
     "[default: OUTPUT with the ending .work; with --proxy its folder, for scratch files]",
@@ -97,11 +89,7 @@ def command(
     capture: Path,
     proxy: Path | None,
     output: Path,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     work: Path | None,
     overwrite: bool,
     quiet: bool,
@@ -114,7 +102,9 @@ def command(
     calibration (eigenfield inspect CAPTURE says what is found in it).
     """  # fmt: skip
     from eigenfield.encoding import encode
+    from eigenfield.encoding.views import check_selection
     from eigenfield.gltf import parts, save
+    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
     from eigenfield.runtime.files import refuse_existing
 
     started = time.monotonic()
@@ -122,16 +112,18 @@ def command(
     options = from_fields(EncodeOptions, settings)
     if blind and options.hold_out is None:
         raise OptionError("blind", "--blind is about held-out photographs", remedy="say which with --hold-out")
-    place = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     with progress_bars(quiet) as progress:
         if proxy is not None:
-            refuse_unused(settings, blind)
+            _refuse_unused(settings, blind)
             scratch = output.absolute().parent if work is None else work
             light_field = _open_capture(capture, place, scratch, quiet)
             scene = encode(light_field, proxy, options, work=scratch, progress=progress)
         else:
             scratch = output.with_suffix(".work") if work is None else work
-            made = _reconstruct(capture, place, options, settings, blind, scratch, progress, quiet)
+            settings["triangles"] = PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles
+            settings["blind"] = options.hold_out if blind else None
+            check = partial(check_selection, options=options)
+            made = reconstruct_capture(capture, place, scratch, progress, quiet, check, **settings)
             scene = encode(made.light_field, made.mesh, options, triangles=None, work=scratch, progress=progress)
         save(scene, output, **options.for_save, overwrite=overwrite, progress=progress)
     sizes = parts(output)
@@ -144,6 +136,17 @@ def command(
     )
 
 
+def _refuse_unused(settings: Mapping[str, Any], blind: bool) -> None:
+    """Refuse the options of `reconstruct`, and --blind, where the proxy is given."""
+    asked = [name for name, value in settings.items() if value not in (None, "auto", ())] + ["blind"] * blind
+    if asked:
+        raise OptionError(
+            "proxy-given",
+            f"--{asked[0].replace('_', '-').removesuffix('s')} is for making a proxy, but --proxy gives one",
+            remedy="leave out one of the two",
+        )
+
+
 def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet: bool) -> LightField:
     """A calibrated capture, and a folder for scratch files."""
     from eigenfield.capture import open_capture
@@ -154,35 +157,3 @@ def _open_capture(capture: Path, place: Mapping[str, Any], scratch: Path, quiet:
         scratch.mkdir(parents=True, exist_ok=True)
     note_all(light_field.problems, quiet)
     return light_field
-
-
-def _reconstruct(
-    capture: Path,
-    place: Mapping[str, Any],
-    options: EncodeOptions,
-    settings: Mapping[str, Any],
-    blind: bool,
-    scratch: Path,
-    progress: Progress | None,
-    quiet: bool,
-) -> Reconstruction:
-    """Cameras and proxy, estimated where they are not given. settings: the options of `reconstruct`."""
-    from eigenfield.capture import open_any
-    from eigenfield.encoding.views import check_selection
-    from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES
-    from eigenfield.reconstruction import reconstruct
-
-    opened = open_any(capture, work=scratch / "frames", **place)
-    note_all(opened.problems, quiet)
-    check_selection(opened, options)
-    made = reconstruct(
-        opened,
-        triangles=PROXY_DEFAULT_TRIANGLES if options.triangles is None else options.triangles,
-        work=scratch,
-        blind=options.hold_out if blind else None,
-        progress=progress,
-        **settings,
-    )
-    note_all(made.light_field.problems[len(opened.problems) :], quiet)
-    note_all([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
-    return made

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import PATH, capture_options, common_options, echo_json, first_names, note, progress_bars
 
 Column = tuple[str, str, str]  # key, heading, format
 
@@ -32,8 +32,8 @@ Examples:
   eigenfield evaluate scene.glb capture/ --flip --json > figures.json
   eigenfield evaluate scene.glb capture/ --store --exclude-circles ball.json"""
 )
-@click.argument("scene", type=click.Path(path_type=Path))
-@click.argument("capture", type=click.Path(path_type=Path))
+@click.argument("scene", type=PATH)
+@click.argument("capture", type=PATH)
 @capture_options
 @click.option("--json", "as_json", is_flag=True, help="The figures as JSON on standard output, every camera's too.")
 @click.option(
@@ -47,7 +47,7 @@ Examples:
 )
 @click.option(
     "--plots",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Write plots and a contact sheet as PNG into DIR, which is made if need be.",
 )
@@ -55,13 +55,12 @@ Examples:
 @click.option("--store", is_flag=True, help="Write the figures into the scene file (eigenfield info shows them).")
 @click.option(
     "--exclude-circles",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help='Also measure outside the circles of a JSON file {"circles": {photograph: {"cx", "cy", "r"}}}, in pixels.',
 )
 @click.option(
     "--filter",
-    "drawing_filter",
     type=click.Choice(["bicubic", "bilinear"]),
     default="bicubic",
     show_default=True,
@@ -87,23 +86,14 @@ Examples:
 def command(
     scene: Path,
     capture: Path,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     as_json: bool,
-    curve: str,
     plots: Path | None,
     overwrite: bool,
     store: bool,
     exclude_circles: Path | None,
-    drawing_filter: str,
-    weights: str,
-    textures: int | None,
-    png_maps: str,
-    flip: bool,
     quiet: bool,
+    **settings: Any,
 ) -> None:
     """Measure the file SCENE against the photographs of CAPTURE, matched by name.
 
@@ -122,14 +112,10 @@ def command(
     loaded = load(scene)
     if store:
         refuse_existing(scene, overwrite=True)  # fails now, not after the work, where the folder cannot be written to
-    opened = open_any(capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame)
-    light_field = with_scene_cameras(loaded, opened)
+    light_field = with_scene_cameras(loaded, open_any(capture, **place))
     circles = None if exclude_circles is None else read_circles(exclude_circles, loaded.rig.names)
     with progress_bars(quiet) as progress:
-        figures = evaluate(
-            loaded, light_field, path=scene, curve=curve, textures=textures, filter=drawing_filter, weights=weights,
-            circles=circles, png_maps=png_maps, flip=flip, progress=progress,
-        )  # fmt: skip
+        figures = evaluate(loaded, light_field, path=scene, circles=circles, progress=progress, **settings)
     if plots is not None:
         from eigenfield.evaluation.plots import write_plots
 
@@ -168,8 +154,8 @@ def table(name: str, figures: Mapping[str, Any], fitted: bool = False) -> list[s
         lines += _table_rows(f"{label} ({part['cameras']})", part, columns)
         if "outside" in part:
             lines += _table_rows("  outside circles", part["outside"], columns)
-    if figures["missing"]:
-        lines += ["", f"{len(figures['missing'])} cameras have no photograph here: {_first_names(figures['missing'])}"]
+    if missing := figures["missing"]:
+        lines += ["", f"{len(missing)} cameras have no photograph here: {first_names(missing, 5)}"]
     lines += _size_lines(figures)
     if figures.get("curve"):
         lines += ["", f"{'eigen textures':>14}{'UV SSIM':>11}{'UV PSNR':>11}"]
@@ -210,8 +196,3 @@ def _size_lines(figures: Mapping[str, Any]) -> list[str]:
         "raw": "their raw pixels",
     }
     return lines + [f"{ratio[key]:10.1f} times smaller than {label}" for key, label in known.items() if ratio.get(key)]
-
-
-def _first_names(names: list[str], most: int = 5) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more

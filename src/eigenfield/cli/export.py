@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 from click.core import ParameterSource
 
-from eigenfield.cli.common import common_options, note, progress_bars
+from eigenfield.cli.common import PATH, common_options, note, pair_of_numbers, progress_bars
 from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
 from eigenfield.core.errors import OptionError
 
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from eigenfield.core.progress import Progress
-    from eigenfield.core.scene import Scene
     from eigenfield.rendering import RenderJob
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
@@ -37,15 +36,6 @@ QUILT_NAME = re.compile(r"_qs\d+x\d+a[\d.]+$")
 DEFAULT_PATH = "circle"  # where none is asked for
 
 
-def _parse_views(context: click.Context, parameter: click.Parameter, value: str | None) -> tuple[int, int] | None:
-    if value is None:
-        return None
-    match = re.fullmatch(r"(\d{1,4})[xX×](\d{1,4})", value)
-    if match is None:
-        raise click.BadParameter("COLUMNSxROWS: 8x6")
-    return int(match[1]), int(match[2])
-
-
 @click.command(
     epilog="""\b
 Examples:
@@ -58,12 +48,12 @@ Examples:
   eigenfield export scene.glb -o quilt.png --as quilt --resolution 420x560
   eigenfield export scene.glb -o capture --as colmap"""
 )
-@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("scene", type=PATH)
 @click.option(
     "--output",
     "-o",
     required=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="PATH",
     help="A file or a folder; a file's ending says what is made, if --as does not.",
 )
@@ -73,7 +63,10 @@ Examples:
     "--metres-per-unit", type=float, metavar="M", help="Metres in one unit of the capture, for headsets (html)."
 )
 @click.option(
-    "--quilt", callback=_parse_views, metavar="CxR", help="Columns and rows of views (quilt).  [default: 8x6]"
+    "--quilt",
+    callback=pair_of_numbers("COLUMNSxROWS: 8x6"),
+    metavar="CxR",
+    help="Columns and rows of views (quilt).  [default: 8x6]",
 )
 @click.option(
     "--spread",
@@ -88,9 +81,7 @@ Examples:
 @residual_option
 @click.option("--overwrite", is_flag=True, help="Replace existing files, and folders that an export wrote.")
 @common_options
-def command(
-    scene: Path, output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any
-) -> None:  # fmt: skip
+def command(scene: Path, output: Path, kind: str | None, overwrite: bool, quiet: bool, **options: Any) -> None:
     """Write SCENE for other programs.
 
     \b
@@ -116,8 +107,7 @@ def command(
         frames = DEFAULT_FRAMES if options["frames"] is None else options["frames"]
         points = path_points(options["path"] or DEFAULT_PATH, frames)
     _refuse(chosen, output, points, overwrite)
-    job = RenderJob(load(scene), *(options[name] for name in
-                  ("resolution", "background", "weights", "filter", "textures", "samples", "renderer")))  # fmt: skip
+    job = RenderJob(load(scene), **{name: options[name] for name in PICTURE_OPTIONS})
     with progress_bars(quiet) as progress:
         made = _write(chosen, job, points, output, options, overwrite, progress)
     note(f"wrote {made}", quiet)
@@ -129,15 +119,14 @@ def _refuse(kind: str, output: Path, points: NDArray[np.float64] | None, overwri
     from eigenfield.runtime.files import refuse_existing
     from eigenfield.viewer import exports
 
-    if kind in ("mp4", "png"):
-        assert points is not None
-        refuse_flight(output, len(points), overwrite)
-    elif kind == "html":
-        refuse_existing(output, overwrite)
-    elif _is_obj(output):
+    if _is_obj(output):
         exports.refuse_obj(output, overwrite)
-    elif kind != "quilt":
+    elif kind not in ENDINGS:
         exports.refuse_folder(output, overwrite)
+    elif points is not None:
+        refuse_flight(output, len(points), overwrite)
+    elif kind != "quilt":
+        refuse_existing(output, overwrite)
 
 
 def _write(
@@ -148,30 +137,31 @@ def _write(
     from eigenfield.rendering.render_jobs import write_flight
     from eigenfield.viewer import exports
 
-    scene: Scene = job.scene
-    how: dict[str, Any] = {"overwrite": overwrite}
+    scene = job.scene
+    how: dict[str, Any] = {"overwrite": overwrite, "progress": progress}
     if kind == "html":
-        exports.write_page(scene, output, title=options["title"], metres_per_unit=options["metres_per_unit"], **how)
+        own = {name: options[name] for name in ("title", "metres_per_unit")}
+        exports.write_page(scene, output, overwrite=overwrite, **own)
         return f"{output}: {output.stat().st_size / 1e6:.1f} MB"
-    if kind in ("mp4", "png"):
-        assert points is not None
-        write_flight(job, points, output, options["fps"], progress=progress, **how)
-        return f"{output}: {len(points)} pictures"
     if _is_obj(output):
-        exports.write_obj(scene, output, **how)
+        exports.write_obj(scene, output, overwrite=overwrite)
         return f"{output}, its material and the mean; a folder with --as obj holds the eigen textures too"
     if kind == "obj":
-        exports.write_obj_folder(scene, output, textures=options["textures"], progress=progress, **how)
+        exports.write_obj_folder(scene, output, textures=job.textures, **how)
         return f"{output}: mesh, mean and eigen textures"
     if kind == "maps":
-        exports.write_maps(scene, output, textures=options["textures"], progress=progress, **how)
+        exports.write_maps(scene, output, textures=job.textures, **how)
         return f"{output}: {len(scene.rig.encoded)} texture maps"
     if kind == "quilt":
         quilt = exports.quilt_of(scene, options["quilt"], options["resolution"], options["spread"])
-        path = exports.write_quilt(job, quilt, output, progress=progress, **how)
+        path = exports.write_quilt(job, quilt, output, **how)
         return f"{path}: {quilt.columns * quilt.rows} views of {quilt.width}x{quilt.height}"
-    exports.write_colmap(job, output, points=points, residual=options["residual"], progress=progress, **how)
-    return f"{output}: {len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
+    if kind == "colmap":
+        exports.write_colmap(job, output, points=points, residual=options["residual"], **how)
+        return f"{output}: {len(scene.rig.names) if points is None else len(points)} pictures and a COLMAP model"
+    assert points is not None
+    write_flight(job, points, output, options["fps"], **how)
+    return f"{output}: {len(points)} pictures"
 
 
 def _is_obj(output: Path) -> bool:

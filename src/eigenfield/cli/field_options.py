@@ -3,33 +3,41 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any, TypeVar, get_args, get_type_hints
 
 import click
 
+from eigenfield.cli.common import PATH, Decorator, together
 from eigenfield.encoding.fields import Option, options_of
 
-F = TypeVar("F", bound=Callable[..., Any])
 T = TypeVar("T")
 
 
-def field_options(cls: type, **parsers: Callable[..., Any]) -> Callable[[F], F]:
+def field_options(cls: type, prefix: str = "", **parsers: Callable[..., Any]) -> Decorator:
     """Add an option for each field of a dataclass that carries one (`encoding.fields`), named as the field.
 
     Args:
         cls: The dataclass.
+        prefix: Of the names.
         parsers: Click callbacks by name, for values that are more than a word or a number.
     """
-    made = list(_field_options(cls, "", parsers))
-
-    def decorate(function: F) -> F:
-        for option in reversed(made):
-            function = option(function)
-        return function
-
-    return decorate
+    kinds, made = get_type_hints(cls), []
+    for field, one in options_of(cls):
+        name = prefix + field
+        if one.parts is not None:
+            made.append(field_options(one.parts, f"{name}_", **parsers))
+            continue
+        how: dict[str, Any] = {"help": one.help, "metavar": one.metavar, "callback": parsers.get(name)}
+        if name not in parsers:
+            how["type"] = _click_type(one, get_args(kinds[field]))
+        if how.get("type") is bool:
+            how |= {"is_flag": True, "default": None}
+        if one.bare is not None:
+            how |= {"is_flag": False, "flag_value": one.bare}
+        letters = [] if one.letter is None else [one.letter]
+        made.append(click.option(f"--{name.replace('_', '-')}", *letters, **how))
+    return together(*made)
 
 
 def from_fields(cls: type[T], values: dict[str, Any], prefix: str = "") -> T:
@@ -50,28 +58,10 @@ def from_fields(cls: type[T], values: dict[str, Any], prefix: str = "") -> T:
     return cls(**given)
 
 
-def _field_options(cls: type, prefix: str, parsers: Mapping[str, Callable[..., Any]]) -> Iterator[Callable[[F], F]]:
-    kinds = get_type_hints(cls)
-    for field, one in options_of(cls):
-        name = prefix + field
-        if one.parts is not None:
-            yield from _field_options(one.parts, f"{name}_", parsers)
-            continue
-        how: dict[str, Any] = {"help": one.help, "metavar": one.metavar, "callback": parsers.get(name)}
-        if name not in parsers:
-            how["type"] = _click_type(one, get_args(kinds[field]))
-        if how.get("type") is bool:
-            how |= {"is_flag": True, "default": None}
-        if one.bare is not None:
-            how |= {"is_flag": False, "flag_value": one.bare}
-        letters = [] if one.letter is None else [one.letter]
-        yield click.option(f"--{name.replace('_', '-')}", *letters, **how)
-
-
 def _click_type(option: Option, kinds: tuple[Any, ...]) -> Any:
     """The click type of an option whose field has one of these types."""
     if option.choices:
         return click.Choice(option.choices)
     if option.limits is not None:
         return click.IntRange(*option.limits)
-    return click.Path(path_type=Path) if os.PathLike[str] in kinds else kinds[0]
+    return PATH if os.PathLike[str] in kinds else kinds[0]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import common_options, echo_json
+from eigenfield.cli.common import PATH, common_options, echo_json, first_names
 
 if TYPE_CHECKING:
     import numpy as np
@@ -30,7 +30,7 @@ Examples:
   eigenfield info scene.glb
   eigenfield info --json scene.glb"""
 )
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="The same as JSON.")
 @common_options
 def command(file: Path, as_json: bool, quiet: bool) -> None:
@@ -123,7 +123,7 @@ def _text_lines(facts: dict[str, Any]) -> list[str]:
     sizes = ", ".join(f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"])
     lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")
     if cameras["held_out"]:
-        lines.append(f"held out      {_first_names(cameras['held_out'])}")
+        lines.append(f"held out      {first_names(cameras['held_out'], 8)}")
     if cameras["harmonised"]:
         lines.extend(
             f"{title:14}"
@@ -151,11 +151,6 @@ def _size(size: list[int]) -> str:
 
 def _vector(numbers: list[float]) -> str:
     return "(" + ", ".join(f"{number:.4g}" for number in numbers) + ")"
-
-
-def _first_names(names: list[str], most: int = 8) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return ", ".join(names[:most]) + more
 
 
 def _tree(value: dict[str, Any], indent: str) -> list[str]:

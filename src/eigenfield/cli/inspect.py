@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import capture_options, common_options, echo_json, note, progress_bars
+from eigenfield.cli.common import PATH, capture_options, common_options, echo_json, note, progress_bars
 from eigenfield.core.errors import OptionError
 
 if TYPE_CHECKING:
-    from eigenfield.capture import GridLayout, LightField, PhotoSet
+    from eigenfield.capture import Capture, GridLayout, LightField, PhotoSet
+    from eigenfield.capture.lightfield import View
     from eigenfield.capture.survey import CameraArray
     from eigenfield.core.errors import CaptureError
     from eigenfield.core.mesh import Mesh
@@ -31,25 +32,21 @@ Examples:
   eigenfield inspect videos/ --frame 2.5s
   eigenfield inspect capture/ --proxy mesh.ply --overlay overlay.png""",
 )
-@click.argument("capture", type=click.Path(path_type=Path))
+@click.argument("capture", type=PATH)
 @capture_options
-@click.option("--proxy", type=click.Path(path_type=Path), metavar="MESH", help="The proxy mesh to draw with --overlay.")
+@click.option("--proxy", type=PATH, metavar="MESH", help="The proxy mesh to draw with --overlay.")
 @click.option(
     "--overlay",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="PNG",
     help="Draw the proxy's outline over the photographs at the array's corners and centre.",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing overlay.")
 @click.option("--json", "as_json", is_flag=True, help="Print JSON; docs/captures.md says what is in it.")
-@common_options  # fmt: skip
+@common_options
 def command(
     capture: Path,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     proxy: Path | None,
     overlay: Path | None,
     overwrite: bool,
@@ -73,9 +70,7 @@ def command(
     from eigenfield.capture import open_any
     from eigenfield.capture.survey import decode_all
 
-    opened = open_any(
-        capture, calibration=calibration, masks=masks, strict=False, format=format, grid=grid, frame=frame
-    )  # fmt: skip
+    opened = open_any(capture, strict=False, **place)
     if proxy is not None and opened.light_field is None:
         raise OptionError(
             "proxy-needs-cameras",
@@ -89,10 +84,8 @@ def command(
         mesh = read_mesh(proxy)
     with progress_bars(quiet) as progress:
         damaged = decode_all(opened, progress)
-    report = describe_photographs(opened, damaged) if opened.light_field is None else describe(opened, damaged)
-    options = {"calibration": calibration, "masks": masks, "format": format, "frame": frame}
-    options["grid"] = None if grid is None else f"{grid[0]}x{grid[1]}"
-    report["next"] = _next_commands(report, capture, options)
+    report = describe(opened, damaged)
+    report["next"] = _next_commands(report, capture, place)
     if mesh is not None and opened.light_field is not None:
         report["proxy"] = _proxy(mesh, opened, damaged, overlay, overwrite)
         if overlay is not None:
@@ -103,71 +96,40 @@ def command(
         click.echo("\n".join(report_lines(report)))
 
 
-def describe(light_field: LightField, damaged: list[CaptureError]) -> dict[str, Any]:
+def describe(capture: Capture, damaged: list[CaptureError]) -> dict[str, Any]:
     """The report, as `--json` prints it; `docs/captures.md` documents the keys."""
+    from eigenfield.capture.messages import count_phrase
     from eigenfield.capture.survey import file_kinds, measure_array
 
-    views = light_field.views
-    sizes = Counter((view.camera.width, view.camera.height) for view in views)
-    problems = list(light_field.problems)
+    views = () if capture.light_field is None else capture.light_field.views
+    sizes = Counter(capture.sizes)
+    problems = list(capture.problems)
     if len(sizes) > 1:
         problems.append(f"the photographs have {len(sizes)} different sizes")
-    if len(views) < 3:
-        problems.append(f"{len(views)} photographs with a camera are too few, at least 3 are needed")
-    array = measure_array(light_field.cameras) if len(views) >= 3 else None
+    if len(capture) < 3:
+        bare = count_phrase(capture.sources, "photograph is", "photographs are")
+        what = f"{len(views)} photographs with a camera are" if capture.light_field is not None else bare
+        problems.append(f"{what} too few, at least 3 are needed")
+    array = measure_array([view.camera for view in views]) if len(views) >= 3 else None
     if array is not None and array.plane.extent[0] == 0:
         problems.append("all cameras stand in one place")
     return {
         "schema": SCHEMA,
-        "root": str(light_field.root),
-        "format": light_field.format,
+        "root": str(capture.root),
+        "format": capture.format,
         "views": len(views),
-        "bytes": sum(light_field.bytes(i) for i in range(len(views))),
+        "bytes": sum(capture.bytes(i) for i in range(len(capture))),
         "sizes": [{"width": w, "height": h, "views": n} for (w, h), n in sizes.most_common()],
-        "files": [{"format": f, "depth": d, "alpha": a, "views": n} for f, d, a, n in file_kinds(light_field)],
-        "distorted": sum(view.lens is not None for view in views),
-        "masks": sum(view.mask is not None for view in views),
+        "files": [{"format": f, "depth": d, "alpha": a, "views": n} for f, d, a, n in file_kinds(capture)],
+        "distorted": sum(source.lens is not None for source in capture.sources),
+        "masks": sum(source.mask is not None for source in capture.sources),
         "array": None if array is None else _array(array),
         "problems": problems + [str(error) for error in damaged],
         "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
-        "cameras": [_camera(light_field, i) for i in range(len(views))],
+        "cameras": [_camera(view) for view in views],
         "proxy": None,
-        "layout": None if light_field.layout is None else _layout(light_field.layout),
-        "photographs": [],
-        "next": [],
-    }
-
-
-def describe_photographs(photo_set: PhotoSet, damaged: list[CaptureError]) -> dict[str, Any]:
-    """The report of photographs without cameras: the same keys, `views` 0, `photographs` in place of `cameras`."""
-    from eigenfield.capture.messages import count_phrase
-    from eigenfield.capture.survey import file_kinds
-
-    sizes = Counter((shot.width, shot.height) for shot in photo_set.shots)
-    problems = list(photo_set.problems)
-    if len(sizes) > 1:
-        problems.append(f"the photographs have {len(sizes)} different sizes")
-    if len(photo_set) < 3:
-        problems.append(
-            f"{count_phrase(photo_set.shots, 'photograph is', 'photographs are')} too few, at least 3 are needed"
-        )
-    return {
-        "schema": SCHEMA,
-        "root": str(photo_set.root),
-        "format": photo_set.format,
-        "views": 0,
-        "bytes": sum(photo_set.bytes(i) for i in range(len(photo_set))),
-        "sizes": [{"width": w, "height": h, "views": n} for (w, h), n in sizes.most_common()],
-        "files": [{"format": f, "depth": d, "alpha": a, "views": n} for f, d, a, n in file_kinds(photo_set)],
-        "distorted": 0,
-        "masks": sum(shot.mask is not None for shot in photo_set.shots),
-        "array": None,
-        "problems": problems + [str(error) for error in damaged],
-        "damaged": [{"file": error.path, "code": error.code, "message": error.message} for error in damaged],
-        "cameras": [],
-        "proxy": None,
-        "layout": None if photo_set.layout is None else _layout(photo_set.layout),
-        "photographs": [_photograph(photo_set, i) for i in range(len(photo_set))],
+        "layout": None if capture.layout is None else _layout(capture.layout),
+        "photographs": [] if capture.light_field is not None else _photographs(capture),
         "next": [],
     }
 
@@ -186,25 +148,30 @@ def _layout(layout: GridLayout) -> dict[str, Any]:
     }
 
 
-def _photograph(photo_set: PhotoSet, index: int) -> dict[str, Any]:
-    shot, layout = photo_set.shots[index], photo_set.layout
-    return {
-        "name": shot.name,
-        "file": str(shot.path),
-        "width": shot.width,
-        "height": shot.height,
-        "focal": shot.focal,
-        "mask": None if shot.mask is None else str(shot.mask),
-        "node": None if layout is None else [int(layout.rows[index]), int(layout.columns[index])],
-        "position": None if layout is None else layout.positions[index].tolist(),
-    }
+def _photographs(photo_set: PhotoSet) -> list[dict[str, Any]]:
+    layout = photo_set.layout
+    return [
+        {
+            "name": shot.name,
+            "file": str(shot.path),
+            "width": shot.width,
+            "height": shot.height,
+            "focal": shot.focal,
+            "mask": None if shot.mask is None else str(shot.mask),
+            "node": None if layout is None else [int(layout.rows[index]), int(layout.columns[index])],
+            "position": None if layout is None else layout.positions[index].tolist(),
+        }
+        for index, shot in enumerate(photo_set.shots)
+    ]
 
 
-def _next_commands(report: dict[str, Any], capture: Path, options: dict[str, Any]) -> list[str]:
+def _next_commands(report: dict[str, Any], capture: Path, place: dict[str, Any]) -> list[str]:
     """Commands that make sense now, with the options that this one had, most useful first."""
     if max(report["views"], len(report["photographs"])) < 3:
         return []
-    said = [f"--{name} {shlex.quote(str(value))}" for name, value in options.items() if value is not None]
+    grid = None if place["grid"] is None else "x".join(map(str, place["grid"]))
+    given = {**place, "grid": grid}.items()
+    said = [f"--{name} {shlex.quote(str(value))}" for name, value in given if value is not None]
     words = " ".join([shlex.quote(str(capture)), *said])
     encode = f"eigenfield encode {words} -o scene.glb"
     return [encode] if report["views"] else [encode, f"eigenfield calibrate {words}"]
@@ -228,8 +195,7 @@ def _array(array: CameraArray) -> dict[str, Any]:
     }
 
 
-def _camera(light_field: LightField, index: int) -> dict[str, Any]:
-    view = light_field.views[index]
+def _camera(view: View) -> dict[str, Any]:
     K = view.camera.K
     return {
         "name": view.name,
@@ -277,18 +243,17 @@ def report_lines(report: dict[str, Any]) -> list[str]:
         f"{f['format']} {f['depth']} bit{' with alpha' if f['alpha'] else ''} ({f['views']})" for f in report["files"]
     )
     bare = len(report["photographs"])
+    lenses = f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading"
     what = f"{bare} photographs without cameras" if bare else f"{report['views']} views"
     lines = [
         f"{report['root']}: {what} from {report['format']}",
         f"  sizes      {sizes or 'none'}",
         f"  files      {files or 'none'}, {report['bytes']:,} bytes",
-        f"  lenses     {report['distorted']} of {report['views']} views are undistorted on reading",
+        f"  focal      {_focal_text(report['photographs'])}" if bare else lenses,
         f"  masks      {report['masks']} files",
     ]
-    if report["photographs"]:
-        lines[3] = f"  focal      {_focal_text(report['photographs'])}"
     if report["layout"] is not None:
-        lines += _layout_lines(report["layout"], bool(report["photographs"]))
+        lines += _layout_lines(report["layout"], bare > 0)
     if report["array"] is not None:
         lines += _array_lines(report["array"])
     if report["proxy"] is not None:

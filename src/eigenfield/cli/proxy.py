@@ -9,13 +9,13 @@ from typing import Any
 import click
 
 from eigenfield.cli.common import (
+    PATH,
     capture_options,
     common_options,
     note,
-    note_all,
     progress_bars,
+    reconstruct_capture,
     reconstruction_options,
-    timings,
 )
 
 
@@ -28,10 +28,8 @@ Examples:
   eigenfield proxy photos/ --fit-sphere out_08_08.jpg:150,180,200,210 -o mesh.glb
   eigenfield encode photos/ --calibration mesh.cameras/transforms.json --proxy mesh.glb -o scene.glb"""
 )
-@click.argument("capture", type=click.Path(path_type=Path))
-@click.option(
-    "--output", "-o", required=True, type=click.Path(path_type=Path), metavar="FILE", help="The .glb or .ply to write."
-)
+@click.argument("capture", type=PATH)
+@click.option("--output", "-o", required=True, type=PATH, metavar="FILE", help="The .glb or .ply to write.")
 @capture_options
 @reconstruction_options
 @click.option(
@@ -39,7 +37,7 @@ Examples:
 )
 @click.option(
     "--work",
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="DIR",
     help="Folder that keeps finished stages; the same command goes on from there.  [default: OUTPUT.work]",
 )
@@ -48,11 +46,7 @@ Examples:
 def command(
     capture: Path,
     output: Path,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     work: Path | None,
     overwrite: bool,
     quiet: bool,
@@ -62,29 +56,21 @@ def command(
 
     The mesh is in the world of the cameras, which are written beside it (OUTPUT.cameras) where they were estimated.
     """  # fmt: skip
-    from eigenfield.capture import open_any
     from eigenfield.capture.writers.save import save_calibration
     from eigenfield.proxy import check_mesh_name, write_mesh
-    from eigenfield.reconstruction import reconstruct
     from eigenfield.runtime.files import refuse_existing
 
     started = time.monotonic()
     check_mesh_name(output)
     refuse_existing(output, overwrite)
     work = work if work is not None else output.with_suffix(".work")
-    opened = open_any(
-        capture, calibration=calibration, masks=masks, format=format, grid=grid, frame=frame, work=work / "frames"
-    )
-    note_all(opened.problems, quiet)
     with progress_bars(quiet) as progress:
-        made = reconstruct(opened, work=work, progress=progress, **settings)
-    note_all(made.light_field.problems[len(opened.problems) :], quiet)
+        made = reconstruct_capture(capture, place, work, progress, quiet, **settings)
     if made.calibration is not None:
-        place = output.with_suffix(".cameras")
-        save_calibration(made.light_field, place, overwrite=True)
-        note(f"cameras: {place}", quiet)
+        cameras = output.with_suffix(".cameras")
+        save_calibration(made.light_field, cameras, overwrite=True)
+        note(f"cameras: {cameras}", quiet)
     write_mesh(made.mesh, output, overwrite=overwrite)
-    note_all([*timings(made.seconds), *made.report.lines(made.light_field.names)], quiet)
     click.echo(
         f"{output}: {len(made.mesh.vertices)} vertices, {len(made.mesh.faces)} triangles for {len(made.light_field)} "
         f"photographs, {time.monotonic() - started:.0f} s"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import click
 
-from eigenfield.cli.common import common_options, note, progress_bars
+from eigenfield.cli.common import PATH, common_options, note, progress_bars
 from eigenfield.cli.drawing import DEFAULT_FRAMES, flight_options, picture_options, residual_option
 from eigenfield.core.errors import OptionError
 
@@ -32,12 +33,12 @@ Examples:
   eigenfield render scene.glb --path circle --frames 240 -o around.mp4
   eigenfield render scene.glb --path grid --frames 25 -o 'frames/%04d.png'"""
 )
-@click.argument("scene", type=click.Path(path_type=Path))
+@click.argument("scene", type=PATH)
 @click.option(
     "--output",
     "-o",
     required=True,
-    type=click.Path(path_type=Path),
+    type=PATH,
     metavar="FILE",
     help="A .png, an .mp4 for a path, or a .png with %04d in its name for a path's single pictures.",
 )
@@ -52,9 +53,7 @@ Examples:
 @common_options
 def command(
     scene: Path, output: Path, at: tuple[float, float] | None, camera: str | None, path: str | None,
-    frames: int | None, fps: Fraction, resolution: tuple[int, int] | None, background: tuple[float, ...] | None,
-    weights: str, filter: str, textures: int | None, samples: int | None, renderer: str, residual: bool,
-    overwrite: bool, quiet: bool,
+    frames: int | None, fps: Fraction, residual: bool, overwrite: bool, quiet: bool, **picture: Any,
 ) -> None:  # fmt: skip
     """Draw SCENE: one picture, or a fly-through.
 
@@ -62,7 +61,14 @@ def command(
     """
     from eigenfield.runtime.files import is_numbered, refuse_existing, write_bytes
 
-    _check_options(output, is_numbered(output), at, camera, path, frames, background)
+    given = [name for name, value in (("--at", at), ("--camera", camera), ("--path", path)) if value is not None]
+    if len(given) > 1:
+        raise OptionError("viewpoint", f"{' and '.join(given)} exclude each other", remedy="give one of them")
+    _check_output(output, path is not None, is_numbered(output))
+    if path is None and frames is not None:
+        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
+    if path is not None and not is_numbered(output) and picture["background"] is None:
+        raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")
     if residual and (at is not None or path is not None):
         raise OptionError("residual", "only captured views have a residual", remedy="name a --camera, or leave it out")
     from eigenfield.encoding.residual.views import captured_pixels, difference_of
@@ -70,55 +76,35 @@ def command(
     from eigenfield.rendering import RenderJob, camera_index, path_points, viewpoint, viewpoint_colour
     from eigenfield.rendering.render_jobs import png, refuse_flight, write_flight
 
-    count = DEFAULT_FRAMES if frames is None else frames
-    points = None if path is None else path_points(path, count)
-    if points is None:
-        refuse_existing(output, overwrite)
-    else:
-        refuse_flight(output, count, overwrite)
-    job = RenderJob(load(scene), resolution, background, weights, filter, textures, samples, renderer)
+    if path is not None:
+        points = path_points(path, DEFAULT_FRAMES if frames is None else frames)
+        refuse_flight(output, len(points), overwrite)
+        job = RenderJob(load(scene), **picture)
+        with progress_bars(quiet) as progress:
+            write_flight(job, points, output, fps, overwrite=overwrite, progress=progress)
+        note(f"wrote {output}: {len(points)} pictures", quiet)
+        return
+    refuse_existing(output, overwrite)
+    job = RenderJob(load(scene), **picture)
     if residual:
         index = job.scene.rig.reference if camera is None else camera_index(job.scene, camera)
         data = png(captured_pixels(job, index, difference_of(job.scene, index)))
-        write_bytes(output, data, overwrite=overwrite)
-        note(f"wrote {output}", quiet)
-        return
-    if points is None:
-        chosen = viewpoint(job.scene, at=at, camera=camera, weights=weights)
-        colour = viewpoint_colour(job.scene, at=at, camera=camera)
-        write_bytes(output, job.png(*chosen, colour), overwrite=overwrite)
-        note(f"wrote {output}", quiet)
-        return
-    with progress_bars(quiet) as progress:
-        write_flight(job, points, output, fps, overwrite=overwrite, progress=progress)
-    note(f"wrote {output}: {count} pictures", quiet)
+    else:
+        chosen = viewpoint(job.scene, at=at, camera=camera, weights=job.weights)
+        data = job.png(*chosen, viewpoint_colour(job.scene, at=at, camera=camera))
+    write_bytes(output, data, overwrite=overwrite)
+    note(f"wrote {output}", quiet)
 
 
-def _check_options(
-    output: Path,
-    numbered: bool,
-    at: tuple[float, float] | None,
-    camera: str | None,
-    path: str | None,
-    frames: int | None,
-    background: tuple[float, ...] | None,
-) -> None:
-    """Refuse combinations that cannot be, before anything is read."""
-    given = [name for name, value in (("--at", at), ("--camera", camera), ("--path", path)) if value is not None]
+def _check_output(output: Path, flight: bool, numbered: bool) -> None:
     kind = output.suffix.lower()
-    if len(given) > 1:
-        raise OptionError("viewpoint", f"{' and '.join(given)} exclude each other", remedy="give one of them")
     if kind not in (".png", ".mp4"):
         raise OptionError("output-kind", f"{output}: the output is a .png or an .mp4", remedy="name it so")
-    if path is None and (kind == ".mp4" or numbered):
+    if not flight and (kind == ".mp4" or numbered):
         raise OptionError("output-kind", f"{output}: one picture makes no film", remedy="give --path, or name a .png")
-    if path is not None and kind == ".png" and not numbered:
+    if flight and kind == ".png" and not numbered:
         raise OptionError(
             "output-kind",
             f"{output}: a path makes many pictures",
             remedy="name an .mp4, or a .png with %04d in its name",
         )
-    if path is None and frames is not None:
-        raise OptionError("frames", "--frames needs --path", remedy="give a path, or leave it out")
-    if kind == ".mp4" and background is None:
-        raise OptionError("background", "a film cannot be transparent", remedy="name a colour, or write .png pictures")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from eigenfield.cli.common import common_options, echo_json
+from eigenfield.cli.common import PATH, common_options, echo_json
 
 
 @click.command(
@@ -19,7 +19,7 @@ Examples:
   eigenfield validate scene.glb
   eigenfield validate --json scenes/*.glb"""
 )
-@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=click.Path(path_type=Path))
+@click.argument("files", nargs=-1, required=True, metavar="FILE...", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="Findings as JSON, a list with one object a file.")
 @common_options
 @click.pass_context
@@ -32,10 +32,10 @@ def command(context: click.Context, files: tuple[Path, ...], as_json: bool, quie
         echo_json([{"file": str(file), "findings": [asdict(f) for f in findings]} for file, findings in found.items()])
     else:
         for file, findings in found.items():
-            shown = [finding for finding in findings if finding.severity == "error" or not quiet]
             if not findings and not quiet:
                 click.echo(f"{file}: no findings")
-            for finding in shown:
-                click.echo(f"{file}: {finding.severity} {finding.code} at {finding.where}: {finding.message}")
+            for finding in findings:
+                if finding.severity == "error" or not quiet:
+                    click.echo(f"{file}: {finding.severity} {finding.code} at {finding.where}: {finding.message}")
     if any(finding.severity == "error" for findings in found.values() for finding in findings):
         context.exit(2)

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eigenfield.cli.common import capture_options, common_options, note
+from eigenfield.cli.common import PATH, capture_options, common_options, note
 from eigenfield.core.errors import FormatError, OptionError
 
 if TYPE_CHECKING:
     from eigenfield.core.scene import Scene
-    from eigenfield.viewer import Photographs, Server
+    from eigenfield.viewer import Photographs
 
 
 @click.command(
@@ -25,8 +25,8 @@ Examples:
   eigenfield view scene.glb capture/
   eigenfield view scene.glb --no-browser --port 8000"""
 )
-@click.argument("scene", type=click.Path(path_type=Path))
-@click.argument("capture", type=click.Path(path_type=Path), required=False)
+@click.argument("scene", type=PATH)
+@click.argument("capture", type=PATH, required=False)
 @capture_options
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="Port.  [default: one that is free]"
@@ -45,11 +45,7 @@ Examples:
 def command(
     scene: Path,
     capture: Path | None,
-    calibration: Path | None,
-    masks: Path | None,
-    format: str | None,
-    grid: tuple[int, int] | None,
-    frame: str | None,
+    place: dict[str, Any],
     port: int,
     host: str,
     no_browser: bool,
@@ -66,7 +62,6 @@ def command(
     from eigenfield.viewer import Server, make_manifest
 
     check_scale(metres_per_unit)
-    options = {"calibration": calibration, "masks": masks, "format": format, "grid": grid, "frame": frame}
     try:
         loaded, data = outline(scene)
     except FormatError as error:
@@ -76,11 +71,14 @@ def command(
         glb, photographs = scene.read_bytes(), None
     else:
         glb = without_residual(data)
-        photographs = _photographs(loaded, capture, options, quiet)
+        photographs = _photographs(loaded, capture, place, quiet)
     manifest = make_manifest(glb, scene.name, photographs, metres_per_unit)
     with Server(manifest, host, port) as server:
         try:
-            _announce(server, quiet)
+            click.echo(server.address)
+            if server.is_public:
+                note(f"listening on {server.host}: anyone on the network can see the scene", quiet)
+            note("Ctrl-C ends it", quiet)
             if not no_browser and not webbrowser.open(server.address):
                 note("no browser was found: open the address in one", quiet)
             _wait()
@@ -88,9 +86,9 @@ def command(
             note("stopped", quiet)
 
 
-def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any], quiet: bool) -> Photographs | None:
+def _photographs(scene: Scene, capture: Path | None, place: Mapping[str, Any], quiet: bool) -> Photographs | None:
     if capture is None:
-        given = [name for name, value in options.items() if value is not None]
+        given = [name for name, value in place.items() if value is not None]
         if given:
             raise OptionError(
                 "no-capture", f"--{given[0]} is for a capture, and none is named", remedy="name it behind the scene"
@@ -100,19 +98,12 @@ def _photographs(scene: Scene, capture: Path | None, options: Mapping[str, Any],
     from eigenfield.evaluation import match_photographs, with_scene_cameras
     from eigenfield.viewer import Photographs
 
-    light_field = with_scene_cameras(scene, open_any(capture, **options))
+    light_field = with_scene_cameras(scene, open_any(capture, **place))
     photographs = Photographs(scene, light_field, match_photographs(scene, light_field))
     missing = len(scene.rig.names) - len(photographs.names)
     if missing:
         note(f"{missing} of {len(scene.rig.names)} cameras have no photograph in {capture}", quiet)
     return photographs
-
-
-def _announce(server: Server, quiet: bool) -> None:
-    click.echo(server.address)
-    if server.is_public:
-        note(f"listening on {server.host}: anyone on the network can see the scene", quiet)
-    note("Ctrl-C ends it", quiet)
 
 
 def _wait() -> None:

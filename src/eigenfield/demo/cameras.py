@@ -53,13 +53,7 @@ def array_cameras(rows: int, columns: int, size: int) -> list[Camera]:
     jitter = random.uniform(-0.08, 0.08, (rows, columns, 2)) * (
         2 * DEMO_HALF_ARRAY_UNITS / max(columns - 1, rows - 1, 1)
     )
-    xs, ys = np.linspace(-1, 1, columns) if columns > 1 else [0.0], np.linspace(1, -1, rows) if rows > 1 else [0.0]
-    return [
-        array_camera(
-            DEMO_HALF_ARRAY_UNITS * float(xs[c]) + float(jitter[r, c, 0]),
-            0.94 * DEMO_HALF_ARRAY_UNITS * float(ys[r]) + float(jitter[r, c, 1]),
-            size,
-        )
-        for r in range(rows)
-        for c in range(columns)
-    ]
+    xs = np.linspace(-1, 1, columns) if columns > 1 else np.zeros(1)
+    ys = np.linspace(1, -1, rows) if rows > 1 else np.zeros(1)
+    places = np.stack(np.meshgrid(xs, ys), axis=-1) * (DEMO_HALF_ARRAY_UNITS, 0.94 * DEMO_HALF_ARRAY_UNITS) + jitter
+    return [array_camera(x, y, size) for x, y in places.reshape(-1, 2).tolist()]

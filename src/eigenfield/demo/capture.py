@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.capture.lightfield import LightField, View
+from eigenfield.capture.writers.transforms import transforms_document
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.mesh import Mesh
@@ -78,8 +80,10 @@ def _draw_into(folder: Path, rows: int, columns: int, size: int, progress: Progr
     write_ply(mesh, folder / "proxy.ply")
     cameras = array_cameras(rows, columns, size)
     names = [f"images/{index // columns:02d}_{index % columns:02d}.png" for index in range(len(cameras))]
+    views = tuple(View(name, folder / name, camera) for name, camera in zip(names, cameras, strict=True))
+    document = transforms_document(LightField(folder, views, (), "transforms"), folder, None)
     (folder / "images").mkdir()
-    (folder / "transforms.json").write_text(json.dumps(_transforms(cameras, names), indent=1), encoding="utf-8")
+    (folder / "transforms.json").write_text(json.dumps(document, indent=1), encoding="utf-8")
     surface, room = bake_surface(min(DEMO_TEXELS_PER_PIXEL * size, DEMO_MAX_ATLAS_TEXELS)), environment_map()
 
     def png(camera: Camera) -> bytes:
@@ -120,24 +124,3 @@ def _tone_map(linear: NDArray[np.float32]) -> NDArray[np.uint8]:
     x = np.minimum(x, np.float32(0.6)) + np.float32(0.4) * (1 - np.exp(-high / np.float32(0.4)))
     coded = np.where(x <= 0.0031308, 12.92 * x, 1.055 * np.power(np.maximum(x, 1e-8), 1 / 2.4) - 0.055)
     return np.clip(np.round(coded * 255), 0, 255).astype(np.uint8)
-
-
-def _transforms(cameras: list[Camera], names: list[str]) -> dict[str, object]:
-    """nerfstudio's form: camera-to-world with OpenGL axes (x right, y up, z backwards), intrinsics a frame."""
-    frames = []
-    for camera, name in zip(cameras, names, strict=True):
-        pose = np.eye(4)
-        pose[:3, :3] = camera.R.T * (1, -1, -1)
-        pose[:3, 3] = camera.centre
-        k = camera.K
-        frames.append(
-            {
-                "file_path": name,
-                "fl_x": k[0, 0],
-                "fl_y": k[1, 1],
-                "cx": k[0, 2],
-                "cy": k[1, 2],
-                "transform_matrix": pose.tolist(),
-            }
-        )
-    return {"camera_model": "PINHOLE", "w": cameras[0].width, "h": cameras[0].height, "frames": frames}

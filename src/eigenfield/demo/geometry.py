@@ -73,14 +73,9 @@ class DemoGeometry:
     part: NDArray[np.int64]
 
 
-def demo_scene_geometry() -> Mesh:
-    """The exact proxy of the demo's capture, with a valid atlas; a PLY restores its float32 numbers exactly."""
-    return build_geometry().mesh
-
-
 @cache
 def build_geometry() -> DemoGeometry:
-    """All parts in one mesh, with charts packed into the unit square."""
+    """All parts in one mesh, with charts packed into the unit square. A PLY restores its float32 numbers exactly."""
     parts = [
         *_background(),
         _surface_of_revolution("body", BODY_PROFILE, 66, 128),

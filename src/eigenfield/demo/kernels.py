@@ -95,10 +95,10 @@ def shade_view(
     side = environment.shape[1]
     share = np.float32(1.0 / (samples * samples))
     one = np.float32(1)
-    value = np.empty(8, np.float32)
+    value, total = np.empty(8, np.float32), np.empty(3, np.float32)
     for row in range(picture.shape[0]):
         for column in range(picture.shape[1]):
-            red, green, blue = np.float32(0), np.float32(0), np.float32(0)
+            total[:] = 0
             for sample in range(samples * samples):
                 i = row * samples + sample // samples
                 j = column * samples + sample % samples
@@ -131,8 +131,8 @@ def shade_view(
                 square = graze * graze
                 fresnel = value[6] + (min(one, np.float32(12) * value[6]) - value[6]) * square * square * graze
                 # octahedral map: the sphere onto |x| + |y| + |z| = 1, the lower half folded outwards
-                total = one / (abs(rx) + abs(ry) + abs(rz))
-                ox, oz = rx * total, rz * total
+                shrink = one / (abs(rx) + abs(ry) + abs(rz))
+                ox, oz = rx * shrink, rz * shrink
                 if ry < 0:
                     fold = (one - abs(oz)) if ox >= 0 else abs(oz) - one
                     oz = (one - abs(ox)) if oz >= 0 else abs(ox) - one
@@ -147,18 +147,12 @@ def shade_view(
                     weight = fresnel * (value[7] if layer == 1 else one - value[7])
                     if weight > np.float32(1e-4):
                         e = environment[layer]
-                        red += weight * (
-                            w00 * e[v, u, 0] + w01 * e[v, u + 1, 0] + w10 * e[v + 1, u, 0] + w11 * e[v + 1, u + 1, 0]
-                        )
-                        green += weight * (
-                            w00 * e[v, u, 1] + w01 * e[v, u + 1, 1] + w10 * e[v + 1, u, 1] + w11 * e[v + 1, u + 1, 1]
-                        )
-                        blue += weight * (
-                            w00 * e[v, u, 2] + w01 * e[v, u + 1, 2] + w10 * e[v + 1, u, 2] + w11 * e[v + 1, u + 1, 2]
-                        )
-                red += value[0]
-                green += value[1]
-                blue += value[2]
-            picture[row, column, 0] = red * share
-            picture[row, column, 1] = green * share
-            picture[row, column, 2] = blue * share
+                        upper, lower = e[v], e[v + 1]
+                        for c in range(3):
+                            total[c] += weight * (
+                                w00 * upper[u, c] + w01 * upper[u + 1, c] + w10 * lower[u, c] + w11 * lower[u + 1, c]
+                            )
+                for c in range(3):
+                    total[c] += value[c]
+            for c in range(3):
+                picture[row, column, c] = total[c] * share

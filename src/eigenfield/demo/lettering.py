@@ -53,11 +53,12 @@ def _draw_poster() -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     )
     for k, (text, capital, baseline) in enumerate(POSTER_LINES):
         scale = capital / _outline_points("H").max(axis=0)[1]
-        wide = (_bounds(text)[1] - _bounds(text)[0]) * scale
+        x = _outline_points(text)[:, 0]
+        wide = float(x.max() - x.min()) * scale
         if wide > 0.9:  # too long: smaller letters
             scale *= 0.9 / wide
             wide = 0.9
-        start = 0.5 - wide / 2 - _bounds(text)[0] * scale
+        start = 0.5 - wide / 2 - float(x.min()) * scale
         _fill_outlines(
             red if k in POSTER_RED_LINES else ink,
             text,
@@ -114,11 +115,6 @@ def _text_polygons(text: str) -> list[NDArray[np.float64]]:
 
 def _outline_points(text: str) -> NDArray[np.float64]:
     return np.concatenate(_text_polygons(text))
-
-
-def _bounds(text: str) -> tuple[float, float]:
-    x = _outline_points(text)[:, 0]
-    return float(x.min()), float(x.max())
 
 
 def _fill_outlines(fine: NDArray[np.uint8], text: str, scale: float, origin: tuple[float, float]) -> None:

@@ -44,25 +44,14 @@ WINDOW_CENTRE_UNITS, WINDOW_HALF_SIZE_UNITS, WINDOW_BLUR_UNITS = (0.42, 0.62), (
 WINDOW_BAR_OFFSETS_UNITS, WINDOW_BAR_HALF_WIDTH_UNITS = (-0.74, 0.58), 0.035
 WINDOW_SHADE_FRACTION = 0.25  # of the key light, outside the frame
 SHADOW_SOFTNESS_TANGENT = 0.16  # of the key light's half-width
-SHADOW_SPHERES = (  # spheres (centre, radius) that stand for the objects
-    ((0.0, 0.16, 0.0), 0.34), ((0.0, 0.45, 0.0), 0.47), ((0.0, 0.68, 0.0), 0.51), ((0.0, 0.95, 0.0), 0.36),
-    ((0.0, 1.12, 0.0), 0.31), ((0.0, 1.35, 0.0), 0.085), ((-0.735, 0.205, 0.42), 0.205), ((0.36, 0.125, 0.80), 0.125),
-    ((0.80, 0.14, 0.28), 0.19), ((0.80, 0.26, 0.28), 0.18), ((0.88, 0.13, 0.17), 0.14), ((0.72, 0.13, 0.39), 0.14),
-)  # fmt: skip
-SHADOW_SPHERE_PARTS = (
-    "body",
-    "body",
-    "body",
-    "body",
-    "lid",
-    "lid",
-    "orange",
-    "marble",
-    "block",
-    "block",
-    "block",
-    "block",
-)
+SHADOW_SPHERES = {  # spheres (centre, radius) that stand for the parts
+    "body": (((0.0, 0.16, 0.0), 0.34), ((0.0, 0.45, 0.0), 0.47), ((0.0, 0.68, 0.0), 0.51), ((0.0, 0.95, 0.0), 0.36)),
+    "lid": (((0.0, 1.12, 0.0), 0.31), ((0.0, 1.35, 0.0), 0.085)),
+    "orange": (((-0.735, 0.205, 0.42), 0.205),),
+    "marble": (((0.36, 0.125, 0.80), 0.125),),
+    "block": (((0.80, 0.14, 0.28), 0.19), ((0.80, 0.26, 0.28), 0.18), ((0.88, 0.13, 0.17), 0.14),
+              ((0.72, 0.13, 0.39), 0.14)),
+}  # fmt: skip
 
 
 def radiance(directions: Array, softness: float) -> Array:
@@ -127,9 +116,8 @@ def irradiance(points: Array, normals: Array, owner: str) -> tuple[Array, Array]
     """
     ambient = np.ones(len(points))
     visible = [np.ones(len(points)) for _ in SOFT_BOXES]
-    for (centre, radius), name in zip(SHADOW_SPHERES, SHADOW_SPHERE_PARTS, strict=True):
-        if name == owner or (name, owner) == ("body", "lid"):
-            continue
+    others = [name for name in SHADOW_SPHERES if name != owner and (name, owner) != ("body", "lid")]
+    for centre, radius in (sphere for name in others for sphere in SHADOW_SPHERES[name]):
         offset = np.array(centre) - points
         square = dot_rows(offset, offset)
         toward = dot_rows(offset, normals) / np.sqrt(square)

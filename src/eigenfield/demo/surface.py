@@ -38,13 +38,13 @@ class Finish(NamedTuple):
 
     Attributes:
         pigment: (n, 3) linear RGB.
-        reflectance: (n,) at normal incidence.
-        roughness: (n,).
+        reflectance: (n,) or a number, at normal incidence.
+        roughness: (n,) or a number.
     """
 
     pigment: Array
-    reflectance: Array
-    roughness: Array
+    reflectance: Array | float
+    roughness: Array | float
 
 
 def bake_surface(side: int) -> NDArray[np.float32]:
@@ -95,9 +95,9 @@ def _shade_texels(name: str, point: Array, normal: Array) -> NDArray[np.float32]
         bumped = normal - slope + dot_rows(slope, normal)[:, None] * normal
         bumped /= np.sqrt(dot_rows(bumped, bumped))[:, None]
     light, ambient = irradiance(point, bumped, name)
-    return np.column_stack(
-        [finish.pigment * light, bumped, finish.reflectance * ambient**1.5, finish.roughness]
-    ).astype(np.float32)
+    roughness = np.broadcast_to(finish.roughness, len(point))
+    columns = [finish.pigment * light, bumped, finish.reflectance * ambient**1.5, roughness]
+    return np.column_stack(columns).astype(np.float32)
 
 
 def _dilate_charts(surface: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float32]:
@@ -153,23 +153,12 @@ def mix(a: Array, b: Array, share: Array) -> Array:
     return np.asarray(a + (b - a) * share[:, None])
 
 
-def constant(n: int, value: float) -> Array:
-    """(n,) equal values.
-
-    Args:
-        n: How many.
-        value: The value.
-    """
-    return np.full(n, value)
-
-
 FLOOR_TILE_UNITS = 0.37
 PAINT_EDGE_UNITS = 0.006  # width of a paint edge, a little over a pixel
 
 
 def _floor(point: Array, normal: Array) -> Finish:
     """Cement tiles: a quatrefoil and a star in turn, ruled with fine lines, in a pale joint."""
-    n = len(point)
     x, z = (point[:, 0] + 0.11) / FLOOR_TILE_UNITS, (point[:, 2] - 0.05) / FLOOR_TILE_UNITS
     i, j = np.floor(x), np.floor(z)
     a, b = x - i - 0.5, z - j - 0.5
@@ -198,12 +187,11 @@ def _floor(point: Array, normal: Array) -> Finish:
     inside = edge(chip, width)
     pigment = mix(pigment, linear_colour("6E675C") * (1 + 0.3 * grain)[:, None], inside)
     rough = np.clip(0.72 + 0.2 * cloud + 0.3 * inside, 0, 1)
-    return Finish(pigment, constant(n, 0.045) * (1 - 0.8 * inside), rough)
+    return Finish(pigment, 0.045 * (1 - 0.8 * inside), rough)
 
 
 def _wall(point: Array, normal: Array) -> Finish:
     """Lime plaster in two tones over a skirting of boards, and a printed sheet."""
-    n = len(point)
     x, y = point[:, 0], point[:, 1]
     cloud = noise(point, 2.2, 5, 21, 0.6)
     grain = noise(point * (1, 1, 0), 60.0, 3, 22, 0.8)
@@ -230,7 +218,7 @@ def _wall(point: Array, normal: Array) -> Finish:
     paper = mix(paper, linear_colour("B5301F"), red)
     shadow = 1 - 0.45 * np.exp(-np.maximum(_outside(x - 0.012, y + 0.016), 0) / 0.016)
     pigment = mix(pigment * shadow[:, None], paper, sheet)
-    return Finish(pigment, constant(n, 0.025), constant(n, 1.0))
+    return Finish(pigment, 0.025, 1.0)
 
 
 def _outside(x: Array, y: Array) -> Array:
@@ -242,10 +230,9 @@ def _outside(x: Array, y: Array) -> Array:
 
 def _body(point: Array, normal: Array) -> Finish:
     """Porcelain painted in cobalt: waves on the shoulder, rosettes on the belly's lobes, leaves and bands."""
-    n = len(point)
     angle, y = np.arctan2(point[:, 0], point[:, 2]), point[:, 1]
     around = angle / (2 * np.pi)
-    cobalt = np.zeros(n)
+    cobalt = np.zeros(len(point))
     for level, half in ((0.272, 0.006), (0.300, 0.003), (0.855, 0.006), (0.880, 0.003), (0.985, 0.004), (0.06, 0.006)):
         cobalt = np.maximum(cobalt, edge(np.abs(y - level) - half, PAINT_EDGE_UNITS))
     waves = _waves(around * 40, (y - 0.79) / 0.036)
@@ -265,7 +252,7 @@ def _body(point: Array, normal: Array) -> Finish:
     glaze = linear_colour("D3D3CF") * (1 + 0.04 * flow + 0.03 * brush)[:, None]
     ink = mix(linear_colour("3F66B4"), linear_colour("10246B"), np.clip(wash * 1.1 - 0.2 + 0.2 * flow, 0, 1))
     pigment = mix(glaze, ink, np.clip(wash * 1.25, 0, 1))
-    return Finish(pigment, constant(n, 0.07), np.clip(0.04 + 0.10 * cobalt, 0, 1))
+    return Finish(pigment, 0.07, np.clip(0.04 + 0.10 * cobalt, 0, 1))
 
 
 def _waves(u: Array, v: Array) -> Array:
@@ -327,7 +314,6 @@ def _lid(point: Array, normal: Array) -> Finish:
 
 def _orange(point: Array, normal: Array) -> Finish:
     """A waxed orange: pores, and a green blush where its stalk was."""
-    n = len(point)
     local = (point - ORANGE_SPHERE[0]) / ORANGE_SPHERE[1]
     pits = edge(0.30 - noise(local, 19.0, 1, 51), 0.5)
     cloud = noise(local, 2.6, 4, 52)
@@ -340,12 +326,11 @@ def _orange(point: Array, normal: Array) -> Finish:
         linear_colour("3F4A1A"),
         edge(pole - 0.075 + 0.02 * np.cos(5 * np.arctan2(local[:, 0] - 0.35, local[:, 2] - 0.49)), 0.03),
     )
-    return Finish(pigment, constant(n, 0.045), constant(n, 0.3))
+    return Finish(pigment, 0.045, 0.3)
 
 
 def _marble(point: Array, normal: Array) -> Finish:
     """A lacquered ball: bands of red and cream under a clear coat, with gold specks."""
-    n = len(point)
     local = (point - MARBLE_SPHERE[0]) / MARBLE_SPHERE[1]
     tilted = local @ np.array([0.35, 0.85, -0.40])
     swirl = tilted * 5.5 + 0.9 * noise(local, 1.6, 3, 61)
@@ -353,12 +338,11 @@ def _marble(point: Array, normal: Array) -> Finish:
     pigment = mix(linear_colour("7E0F16"), linear_colour("F1DFBE"), edge(band, 0.05))
     pigment = mix(pigment, linear_colour("17181C"), edge(np.abs(band) - 0.035, 0.03))
     pigment = mix(pigment, linear_colour("C8921E"), edge(0.55 - noise(local, 9.0, 1, 62), 0.08))
-    return Finish(pigment, constant(n, 0.07), constant(n, 0.0))
+    return Finish(pigment, 0.07, 0.0)
 
 
 def _block(point: Array, normal: Array) -> Finish:
     """A wooden block: a letter in a frame on each side, and long grain."""
-    n = len(point)
     c, s = np.cos(BLOCK_ANGLE_RADIANS), np.sin(BLOCK_ANGLE_RADIANS)
     frame = np.array([(c, 0, -s), (0, 1, 0), (s, 0, c)])
     local, facing = (point - BLOCK_CENTRE) @ frame.T / BLOCK_SIDE_UNITS, normal @ frame.T
@@ -368,11 +352,7 @@ def _block(point: Array, normal: Array) -> Finish:
     side = np.abs(facing).argmax(axis=1)
     a = np.where(side == 0, -np.sign(facing[:, 0]) * local[:, 2], local[:, 0])
     b = np.where(side == 1, -local[:, 2], local[:, 1])
-    paint = np.where(
-        (side == 0)[:, None],
-        linear_colour("23508C"),
-        np.where((side == 1)[:, None], linear_colour("2E6B3A"), linear_colour("A62B21")),
-    )
+    paint = np.array([linear_colour(code) for code in ("23508C", "2E6B3A", "A62B21")])[side]
     border = np.maximum(np.abs(a), np.abs(b))
     worn = np.clip(1.0 - 0.9 * np.maximum(noise(local, 12.0, 3, 73) - 0.18, 0), 0, 1)
     marks = edge(np.abs(border - 0.40) - 0.022, 0.02)
@@ -380,7 +360,7 @@ def _block(point: Array, normal: Array) -> Finish:
         marks = np.maximum(marks, np.where(side == k, letter_mask(letter, a + 0.5, 0.5 - b), 0.0))
     pigment = mix(pigment, paint * (1 + 0.15 * fibre)[:, None], marks * worn)
     pigment = pigment * (1 - 0.35 * edge(0.485 - border, 0.02))[:, None]
-    return Finish(pigment, constant(n, 0.04), constant(n, 0.8))
+    return Finish(pigment, 0.04, 0.8)
 
 
 SURFACE_FINISHES: dict[str, Callable[[Array, Array], Finish]] = {

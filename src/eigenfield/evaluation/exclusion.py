@@ -58,10 +58,7 @@ def read_circles(path: str | os.PathLike[str], names: Sequence[str]) -> dict[str
     except (OSError, UnicodeDecodeError, json.JSONDecodeError) as error:
         reason = (error.strerror or "cannot be read") if isinstance(error, OSError) else f"is no JSON: {error}"
         raise OptionError(
-            "circles-unreadable",
-            reason,
-            path=path,
-            remedy='give {"circles": {"a.jpg": {"cx": ...}}}',
+            "circles-unreadable", reason, path=path, remedy='give {"circles": {"a.jpg": {"cx": ...}}}'
         ) from error
     entries = document.get("circles") if isinstance(document, dict) else None
     if not isinstance(entries, dict):
@@ -83,10 +80,7 @@ def _parse_circle(key: str, entry: object, path: str | os.PathLike[str]) -> Excl
     numbers = [float(v) for v in values if isinstance(v, (int, float)) and not isinstance(v, bool) and math.isfinite(v)]
     if len(numbers) != 3 or numbers[2] < 0:
         raise OptionError(
-            "circles-malformed",
-            f"the circle of {key} needs a finite cx, cy and r",
-            path=path,
-            remedy="mend its entry",
+            "circles-malformed", f"the circle of {key} needs a finite cx, cy and r", path=path, remedy="mend its entry"
         )
     return ExcludedCircle(*numbers)
 

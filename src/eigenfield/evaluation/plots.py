@@ -21,19 +21,14 @@ from eigenfield.capture import LightField
 from eigenfield.core.errors import OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation.session import Session, start_session
-from eigenfield.imaging.metrics import to_codes
+from eigenfield.imaging.metrics import PictureArray, to_codes
 from eigenfield.runtime.files import output_errors, write_bytes
 
-ContactSheetRow = tuple[
-    str, NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]
-]  # title, photograph, drawn, error
+ContactSheetRow = tuple[str, PictureArray, PictureArray, PictureArray]  # title, photograph, drawn, error
 
-PLOT_CURVE_FILE, PLOT_CAMERAS_FILE, PLOT_BYTES_FILE, PLOT_CONTACT_SHEET_FILE = (
-    "uv-curve.png",
-    "cameras.png",
-    "bytes.png",
-    "contact-sheet.png",
-)
+PLOT_CURVE_FILE, PLOT_BYTES_FILE, PLOT_CAMERAS_FILE, PLOT_CONTACT_SHEET_FILE = PLOT_FILES = (
+    "uv-curve.png", "bytes.png", "cameras.png", "contact-sheet.png",
+)  # fmt: skip
 PLOT_DPI = 150
 PLOT_BLUE, PLOT_ORANGE, PLOT_GREY = "#2f6db3", "#d9822b", "#5f6670"
 PLOT_PARTS = (  # of a file: key, label, colour
@@ -45,20 +40,6 @@ PLOT_PARTS = (  # of a file: key, label, colour
 )
 PLOT_MAX_NAME_CHARACTERS = 32  # longer names lose their beginning
 PLOT_ERROR_GAIN = 5  # of the errors in the contact sheet
-
-
-def plot_names(scores: Mapping[str, Any]) -> list[str]:
-    """The files that `write_plots` writes.
-
-    Args:
-        scores: Of `evaluate`.
-    """
-    names = [PLOT_CAMERAS_FILE, PLOT_CONTACT_SHEET_FILE]
-    if scores.get("bytes") is not None:
-        names.insert(0, PLOT_BYTES_FILE)
-    if scores.get("curve") and scores["uv"] is not None:
-        names.insert(0, PLOT_CURVE_FILE)
-    return names
 
 
 def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
@@ -73,7 +54,7 @@ def refuse_existing_plots(folder: Path, overwrite: bool) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise OutputError("not-a-folder", "is a file", path=folder, remedy="name a folder for --plots")
-    for name in (PLOT_CURVE_FILE, PLOT_CAMERAS_FILE, PLOT_BYTES_FILE, PLOT_CONTACT_SHEET_FILE):
+    for name in PLOT_FILES:
         if (folder / name).exists() and not overwrite:
             raise OutputError(
                 "output-exists", "exists already", path=folder / name, remedy="use --overwrite or another folder"
@@ -110,19 +91,16 @@ def write_plots(
     refuse_existing_plots(folder, overwrite)
     with output_errors(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for name in plot_names(scores):
-        if name == PLOT_CURVE_FILE:
-            figure = curve_figure(scores)
-        elif name == PLOT_BYTES_FILE:
-            figure = bytes_figure(scores["bytes"], scores.get("ratio"))
-        elif name == PLOT_CAMERAS_FILE:
-            figure = cameras_figure(scores["cameras"], _coordinates(scores["cameras"], session))
-        else:
-            figure = contact_sheet_figure(_contact_sheet_rows(scores["cameras"], session))
+    figures = {}
+    if scores.get("curve") and scores["uv"] is not None:
+        figures[PLOT_CURVE_FILE] = curve_figure(scores)
+    if scores.get("bytes") is not None:
+        figures[PLOT_BYTES_FILE] = bytes_figure(scores["bytes"], scores.get("ratio"))
+    figures[PLOT_CAMERAS_FILE] = cameras_figure(scores["cameras"], _coordinates(scores["cameras"], session))
+    figures[PLOT_CONTACT_SHEET_FILE] = contact_sheet_figure(_contact_sheet_rows(scores["cameras"], session))
+    for name, figure in figures.items():
         write_bytes(folder / name, _png(figure), overwrite=overwrite)
-        written.append(folder / name)
-    return written
+    return [folder / name for name in figures]
 
 
 def curve_figure(scores: Mapping[str, Any]) -> Figure:
@@ -155,38 +133,38 @@ def cameras_figure(cameras: Sequence[Mapping[str, Any]], coordinates: NDArray[np
         cameras: Their scores.
         coordinates: (n, 2) positions on the view plane.
     """
-    measured = [
-        (camera, place) for camera, place in zip(cameras, coordinates, strict=True) if camera["psnr"] is not None
-    ]
+    measured = [camera for camera in cameras if camera["psnr"] is not None]
+    places = coordinates[[camera["psnr"] is not None for camera in cameras]]
+    values = np.array([camera["psnr"] for camera in measured])
+    held_out = np.array([camera["held_out"] for camera in measured], bool)
     figure = _figure(7.6, 6.4)
     axes = figure.add_subplot()
-    values = np.array([camera["psnr"] for camera, _ in measured])
     size = float(np.clip(26000 / max(len(measured), 1), 14, 260))
-    low, high = (float(values.min()), float(values.max())) if len(values) else (0.0, 1.0)
     drawn = None
-    for held_out, marker, label in ((False, "o", "encoded"), (True, "s", "held out")):
-        of_kind = [(camera["psnr"], place) for camera, place in measured if camera["held_out"] == held_out]
-        if of_kind:
+    for here, marker, edge, width, label in (
+        (~held_out, "o", "none", 0.0, "encoded"),
+        (held_out, "s", "#202428", 0.9, "held out"),
+    ):
+        if here.any():
             drawn = axes.scatter(
-                [place[0] for _, place in of_kind],
-                [place[1] for _, place in of_kind],
-                c=[value for value, _ in of_kind],
+                places[here, 0],
+                places[here, 1],
+                c=values[here],
                 s=size,
                 marker=marker,
                 cmap="viridis",
-                vmin=low,
-                vmax=high,
-                edgecolors="#202428" if held_out else "none",
-                linewidths=0.9 if held_out else 0,
-                label=f"{label}, mean {np.mean([value for value, _ in of_kind]):.2f} dB",
+                vmin=values.min(),
+                vmax=values.max(),
+                edgecolors=edge,
+                linewidths=width,
+                label=f"{label}, mean {values[here].mean():.2f} dB",
             )
     if drawn is not None:
         figure.colorbar(drawn, ax=axes, label="PSNR in dB, covered pixels", shrink=0.85)
-        worst, place = min(measured, key=lambda pair: pair[0]["psnr"])
-        axes.scatter(
-            place[0], place[1], s=2.6 * size, marker="o", facecolors="none", edgecolors="#c2352b", linewidths=1.8
-        )
-        text = f"worst, ringed: {_shorten(worst['name'])}, {worst['psnr']:.2f} dB"
+        worst = int(values.argmin())
+        x, y = places[worst]
+        axes.scatter(x, y, s=2.6 * size, marker="o", facecolors="none", edgecolors="#c2352b", linewidths=1.8)
+        text = f"worst, ringed: {_shorten(measured[worst]['name'])}, {values[worst]:.2f} dB"
         axes.annotate(
             text, (1, -0.11), xycoords="axes fraction", ha="right", va="top", color="#c2352b", parse_math=False
         )
@@ -212,20 +190,14 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
     """
     figure = _figure(8.2, 3.6)
     axes = figure.add_subplot()
-    shown = [(label, sizes[key], colour) for key, label, colour in PLOT_PARTS]
-    total = max(sizes["total"], 1)
-    axes.barh([label for label, _, _ in shown], [size / 1e3 for _, size, _ in shown], color=[c for _, _, c in shown])
+    keys, labels, colours = zip(*PLOT_PARTS, strict=True)
+    kilobytes = np.array([sizes[key] for key in keys]) / 1e3
+    shares = kilobytes / max(sizes["total"], 1) * 1e5
+    bars = axes.barh(labels, kilobytes, color=colours)
     axes.invert_yaxis()
-    for at, (_, size, _) in enumerate(shown):
-        axes.annotate(
-            f"{size / 1e3:,.1f} kB, {100 * size / total:.1f} %",
-            (size / 1e3, at),
-            textcoords="offset points",
-            xytext=(5, 0),
-            va="center",
-            color=PLOT_GREY,
-        )
-    axes.set_xlim(0, 1.28 * max(size for _, size, _ in shown) / 1e3 or 1)
+    texts = [f"{size:,.1f} kB, {share:.1f} %" for size, share in zip(kilobytes, shares, strict=True)]
+    axes.bar_label(bars, texts, padding=5, color=PLOT_GREY)
+    axes.set_xlim(0, 1.28 * kilobytes.max() or 1)
     axes.set_xlabel("kB (1000 bytes)")
     known = {"photographs": "photographs", "texture_maps_png": "texture maps as PNG", "raw": "raw pixels"}
     times = [(ratio[key], label) for key, label in known.items()] if ratio else []
@@ -237,9 +209,7 @@ def bytes_figure(sizes: Mapping[str, int], ratio: Mapping[str, float | None] | N
     return figure
 
 
-def contact_sheet_figure(
-    rows: Sequence[ContactSheetRow],
-) -> Figure:
+def contact_sheet_figure(rows: Sequence[ContactSheetRow]) -> Figure:
     """Photograph, drawn picture and error side by side; a title for each row.
 
     Args:
@@ -270,12 +240,11 @@ def _contact_sheet_rows(cameras: Sequence[Mapping[str, Any]], session: Session) 
         camera = order[at]
         index = session.scene.rig.names.index(camera["name"])
         photograph = session.photograph(index).pixels
-        drawn, surface = session.draw(index)
-        error = np.abs(drawn - photograph) * PLOT_ERROR_GAIN * surface[..., None]
-        about = (
-            f"{kind}{', held out' if camera['held_out'] else ''} {camera['psnr']:.2f} dB, {_shorten(camera['name'])}"
-        )
-        rows.append((about, photograph, drawn, error.astype(np.float32)))
+        drawn = session.picture(index)
+        error = np.abs(drawn.image - photograph) * PLOT_ERROR_GAIN * drawn.covered[..., None]
+        held_out = ", held out" if camera["held_out"] else ""
+        about = f"{kind}{held_out} {camera['psnr']:.2f} dB, {_shorten(camera['name'])}"
+        rows.append((about, photograph, drawn.image, error.astype(np.float32)))
     return rows
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import time
 from collections.abc import Mapping
@@ -14,7 +15,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.encoding.residual.views import with_differences
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import summarise_scores
-from eigenfield.evaluation.session import CameraScores, Session, start_session
+from eigenfield.evaluation.session import CameraScores, PictureScores, Session, start_session
 from eigenfield.gltf import parts
 from eigenfield.runtime.parallel import parallel_stream
 
@@ -65,6 +66,7 @@ def evaluate(
     measured = parallel_stream(lambda view: (view[0], session.measure(*view)), views)
     found = dict(track(measured, "measuring", len(indices), progress))
     results = {index: found[index] for index in indices}
+    held_out, maps = scene.rig.held_out, _png_maps(session, results, png_maps)
     scores: dict[str, Any] = {
         "schema": EVALUATION_SCHEMA,
         "textures": session.counts[-1],
@@ -72,13 +74,13 @@ def evaluate(
         "weights": weights,
         "uv": _uv(session, results, -1),
         "image": {
-            "encoded": _image(session, results, False),
-            "residual": _residual(session, results),
-            "held_out": _image(session, results, True),
+            "encoded": _image(session, {index: one.drawn for index, one in results.items() if not held_out[index]}),
+            "residual": _image(session, {index: one.residual for index, one in results.items() if one.residual}),
+            "held_out": _image(session, {index: one.drawn for index, one in results.items() if held_out[index]}),
         },
         "bytes": None if path is None else dict(parts(Path(path))),
-        "ratio": None if path is None else _ratios(session, results, parts(Path(path))["total"]),
-        "png_maps": _png_maps(session, results, png_maps),
+        "ratio": None if path is None else _ratios(session, maps, parts(Path(path))["total"]),
+        "png_maps": maps,
         "missing": [name for index, name in enumerate(scene.rig.names) if index not in session.photographs],
         "cameras": [_camera(session, index, result) for index, result in results.items()],
     }
@@ -94,7 +96,8 @@ def evaluate(
             for point in [_uv(session, {index: results[index] for index in session.curved}, at)]
         ]
     scores["seconds"] = time.monotonic() - started
-    return _round_floats(scores)
+    rounded: dict[str, Any] = json.loads(json.dumps(scores), parse_float=lambda text: round(float(text), 6))
+    return rounded  # more decimals are noise
 
 
 def stored_scores(scores: Mapping[str, Any]) -> dict[str, Any]:
@@ -118,21 +121,7 @@ def _uv(session: Session, results: Mapping[int, CameraScores], at: int) -> dict[
     return summarise_scores([{"ssim": t.ssim[at], "psnr": t.psnr[at]} for _, t in taken], [name for name, _ in taken])
 
 
-def _image(session: Session, results: Mapping[int, CameraScores], held_out: bool) -> dict[str, Any] | None:
-    indices = [index for index in results if bool(session.scene.rig.held_out[index]) == held_out]
-    if not indices:
-        return None
-    names = [session.scene.rig.names[index] for index in indices]
-    scores = {"cameras": len(indices), **summarise_scores([results[index].image for index in indices], names)}
-    outside = [result for index in indices if (result := results[index].outside) is not None]
-    if outside:
-        scores["outside"] = summarise_scores(outside, names)
-    return scores
-
-
-def _residual(session: Session, results: Mapping[int, CameraScores]) -> dict[str, Any] | None:
-    """The scores of encoded cameras with the residual; other cameras have none."""
-    found = {index: result.residual for index, result in results.items() if result.residual is not None}
+def _image(session: Session, found: Mapping[int, PictureScores]) -> dict[str, Any] | None:
     if not found:
         return None
     names = [session.scene.rig.names[index] for index in found]
@@ -144,19 +133,17 @@ def _residual(session: Session, results: Mapping[int, CameraScores]) -> dict[str
 
 
 def _camera(session: Session, index: int, result: CameraScores) -> dict[str, Any]:
-    texture = result.texture
+    image, texture = result.drawn[0], result.texture
     scores: dict[str, Any] = {
         "name": session.scene.rig.names[index],
         "held_out": bool(session.scene.rig.held_out[index]),
-        "psnr": result.image["psnr"],
-        "ssim": result.image["ssim"],
-        "coverage": result.image["coverage"],
+        **{key: image[key] for key in ("psnr", "ssim", "coverage")},
         "uv_psnr": None if texture is None else texture.psnr[-1],
         "uv_ssim": None if texture is None else texture.ssim[-1],
     }
     if result.residual is not None:
         scores["residual"] = {key: result.residual[0][key] for key in ("psnr", "ssim")}
-    return scores | ({"flip": result.image["flip"]} if "flip" in result.image else {})
+    return scores | ({"flip": image["flip"]} if "flip" in image else {})
 
 
 def _png_maps(session: Session, results: Mapping[int, CameraScores], mode: str) -> dict[str, Any] | None:
@@ -168,16 +155,13 @@ def _png_maps(session: Session, results: Mapping[int, CameraScores], mode: str) 
     return {"mode": mode, "packed": len(sizes), "of": total, "bytes": round(sum(sizes) * total / len(sizes))}
 
 
-def _ratios(session: Session, results: Mapping[int, CameraScores], size: int) -> dict[str, float | None]:
+def _ratios(session: Session, maps: Mapping[str, Any] | None, size: int) -> dict[str, float | None]:
     """How many times smaller the file is than the encoded photographs' files, all maps as PNG, and raw pixels."""
-    scene = session.scene
-    maps = _png_maps(session, results, "")
     photographs = _photograph_bytes(session)
     return {
         "photographs": None if photographs is None else photographs / size,
         "texture_maps_png": None if maps is None else maps["bytes"] / size,
-        "raw": sum(3 * scene.rig.cameras[index].width * scene.rig.cameras[index].height for index in scene.rig.encoded)
-        / size,
+        "raw": sum(3 * camera.width * camera.height for camera in session.scene.rig.encoded_cameras) / size,
     }
 
 
@@ -189,14 +173,3 @@ def _photograph_bytes(session: Session) -> int | None:
     recorded = session.scene.settings.get("photographs")
     size = recorded.get("bytes") if isinstance(recorded, Mapping) else None
     return size if isinstance(size, int) else None
-
-
-def _round_floats(value: Any) -> Any:
-    """Floats to six decimals, recursively: more is noise, and JSON would print it."""
-    if isinstance(value, float):
-        return round(value, 6)
-    if isinstance(value, Mapping):
-        return {key: _round_floats(entry) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [_round_floats(entry) for entry in value]
-    return value

@@ -25,6 +25,8 @@ from eigenfield.rendering import Picture, Renderer, camera_colour, camera_weight
 
 log = logging.getLogger("eigenfield.evaluation")
 
+PictureScores = tuple[ImageScores, ImageScores | None]  # of all of a picture, and outside its circle
+
 EVALUATION_LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 PNG_MAP_CHOICES = CURVE_CHOICES = ("all", "sample", "none")
 EVALUATION_SAMPLE_CAMERAS = 16  # of "sample"
@@ -36,16 +38,14 @@ class CameraScores:
     """The scores of one camera.
 
     Attributes:
-        image: Of the drawn picture.
-        outside: Of the picture outside its circle; None without circles.
+        drawn: Of the drawn picture.
         texture: Of the texture map; None if it is not measured, or the camera is held out.
-        residual: Of the picture with its residual, and outside its circle; None without a residual.
+        residual: Of the picture with its residual; None without one.
     """
 
-    image: ImageScores
-    outside: ImageScores | None
+    drawn: PictureScores
     texture: MapScores | None
-    residual: tuple[ImageScores, ImageScores | None] | None
+    residual: PictureScores | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +62,8 @@ class Session:
         filter: "bicubic" or "bilinear", for drawing.
         weights: Kind of view weights of held-out cameras.
         resampling: Filter of the texture maps.
-        align: Whether the texture maps are aligned.
         atlas: Of the texture maps; None if none are measured.
-        reference: The texture map and visibility that maps are aligned to; None without alignment.
+        reference: The texture map and visibility that maps are aligned to; None: they are not aligned.
         circles: Excluded circles by camera, if any.
         packed: Indices of cameras whose filled maps are packed as PNG.
         flip: Whether FLIP is measured.
@@ -79,7 +78,6 @@ class Session:
     filter: str
     weights: str
     resampling: str
-    align: bool
     atlas: Atlas | None
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
     circles: Mapping[str, ExcludedCircle] | None
@@ -107,15 +105,6 @@ class Session:
             )
         return picture
 
-    def draw(self, index: int) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-        """The picture drawn from a camera, (H, W, 3), and (H, W) the pixels that the proxy covers.
-
-        Args:
-            index: Of the camera.
-        """
-        picture = self.picture(index)
-        return picture.image, picture.covered
-
     def picture(self, index: int, samples: int | None = None) -> Picture:
         """The picture drawn from a camera.
 
@@ -125,15 +114,13 @@ class Session:
             index: Of the camera.
             samples: Samples a pixel. Default: the renderer's.
         """
-        weights = camera_weights(self.scene, index, self.weights)
-        colour = camera_colour(self.scene, index)
         return self.renderer.draw(
             self.scene.rig.cameras[index],
-            weights,
+            camera_weights(self.scene, index, self.weights),
             filter=self.filter,
             textures=self.counts[-1],
             samples=samples,
-            colour=colour,
+            colour=camera_colour(self.scene, index),
         )
 
     def texture(self, index: int, photograph: Photograph) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -150,7 +137,7 @@ class Session:
         colour = camera_colour(self.scene, index)
         if colour is not None:
             values = harmonised_map(values, seen, colour)
-        if not self.align or self.reference is None or index == self.scene.rig.reference:
+        if self.reference is None or index == self.scene.rig.reference:
             return values, seen
         return align_map(self.atlas, values, seen, *self.reference)
 
@@ -172,7 +159,6 @@ class Session:
         """
         photograph = self.photograph(index)
         drawn = self.picture(index)
-        scores, outside = self._scores_of(index, drawn, photograph)
         residual = None
         if difference is not None:
             samples = captured_samples(self.scene, index)
@@ -186,9 +172,9 @@ class Session:
             texture = measure_map(
                 self.scene.appearance.planes[0], row, self.atlas, values, seen, counts, index in self.packed
             )
-        return CameraScores(scores, outside, texture, residual)
+        return CameraScores(self._scores_of(index, drawn, photograph), texture, residual)
 
-    def _scores_of(self, index: int, drawn: Picture, photograph: Photograph) -> tuple[ImageScores, ImageScores | None]:
+    def _scores_of(self, index: int, drawn: Picture, photograph: Photograph) -> PictureScores:
         """Of the whole picture, and of the part outside its circle if there are circles."""
         given = drawn.image, drawn.covered, photograph.pixels, photograph.mask
         scores = measure_picture(*given, self.flip)
@@ -242,9 +228,8 @@ def start_session(
         )
     photographs = match_photographs(scene, capture)
     resampling, align = _recorded_settings(scene)
-    maps = (
-        len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None and "fitted" not in scene.settings
-    )  # a fit makes none
+    one_plane = len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None
+    maps = one_plane and "fitted" not in scene.settings  # a fit makes none
     if curve != "none" and not maps:
         raise OptionError(
             "curve",
@@ -259,7 +244,13 @@ def start_session(
         encoded = []
     height, width = scene.appearance.atlas
     some = {"all": encoded, "sample": sample_evenly(encoded, EVALUATION_SAMPLE_CAMERAS), "none": []}
-    count = _texture_count(scene, textures)
+    count = scene.appearance.textures if textures is None else textures
+    if not 0 <= count <= scene.appearance.textures:
+        raise OptionError(
+            "textures",
+            f"{count} textures were asked for, the scene has {scene.appearance.textures}",
+            remedy=f"ask for 0 to {scene.appearance.textures}",
+        )
     session = Session(
         scene=scene,
         capture=capture,
@@ -270,17 +261,16 @@ def start_session(
         filter=filter,
         weights=weights,
         resampling=resampling,
-        align=align,
         atlas=make_atlas(scene.proxy.mesh, width, height) if encoded else None,
         reference=None,
         circles=circles,
         packed=frozenset(some[png_maps]),
         flip=flip,
     )
-    if not align or not encoded:
-        return session
-    reference = session.texture(scene.rig.reference, session.photograph(scene.rig.reference))
-    return replace(session, reference=reference)
+    if align and encoded:
+        reference = session.texture(scene.rig.reference, session.photograph(scene.rig.reference))
+        session = replace(session, reference=reference)
+    return session
 
 
 def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
@@ -371,18 +361,6 @@ def _recorded_settings(scene: Scene) -> tuple[str, bool]:
             remedy="evaluate with the version that encoded it",
         )
     return resampling, align is not None
-
-
-def _texture_count(scene: Scene, textures: int | None) -> int:
-    if textures is None:
-        return scene.appearance.textures
-    if not 0 <= textures <= scene.appearance.textures:
-        raise OptionError(
-            "textures",
-            f"{textures} textures were asked for, the scene has {scene.appearance.textures}",
-            remedy=f"ask for 0 to {scene.appearance.textures}",
-        )
-    return textures
 
 
 def sample_evenly(indices: Sequence[int], count: int) -> list[int]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from eigenfield.core.appearance import Plane
 from eigenfield.encoding.projected.atlas import Atlas
 from eigenfield.encoding.projected.uv_measure import measure_map as measure_pictures
-from eigenfield.evaluation.kernels import add_textures
+from eigenfield.runtime.jit import kernel
 
 UV_STRIDE_TEXELS = 512  # that the kernel sums at a time
 
@@ -54,7 +54,7 @@ def reconstruct_maps(plane: Plane, row: int, counts: Sequence[int]) -> Iterator[
             if begin < end:
                 factor = basis.weights[row, begin:end, None] * basis.scale[begin:end]
                 offset = (factor * basis.zero[begin:end]).sum(axis=0)
-                add_textures(
+                _add_textures(
                     total.reshape(-1),
                     basis.textures[begin:end].reshape(end - begin, -1),
                     np.tile(factor, UV_STRIDE_TEXELS),
@@ -108,3 +108,28 @@ def png_size(atlas: Atlas, filled: NDArray[np.uint8]) -> int:
     how = [cv2.IMWRITE_PNG_COMPRESSION, 6, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_FILTERED]
     pictures = [charts[..., ::-1]] if charts.shape[2] == 3 else [charts[..., c] for c in range(charts.shape[2])]
     return sum(len(cv2.imencode(".png", picture, how)[1]) for picture in pictures)
+
+
+@kernel()
+def _add_textures(total, stored, factor, offset):  # type: ignore[no-untyped-def]
+    """total[i] += Σ_j factor[j, k] stored[j, i] - offset[k] with k = i modulo the period, for flat pictures.
+
+    The period is a multiple of the channels: a long one lets the inner loop run over many texels at once.
+
+    Args:
+        total: (n,) float32, added to.
+        stored: (m, n) of any type.
+        factor: (m, period) float32.
+        offset: (period,) float32.
+    """
+    size, period = total.shape[0], offset.shape[0]
+    for start in range(0, size, period):
+        length = min(period, size - start)
+        part = total[start : start + length]
+        for k in range(length):
+            part[k] -= offset[k]
+        for j in range(stored.shape[0]):
+            texture = stored[j, start : start + length]
+            scale = factor[j]
+            for k in range(length):
+                part[k] += scale[k] * texture[k]

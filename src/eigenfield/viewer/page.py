@@ -8,11 +8,15 @@ import html
 import json
 import re
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from eigenfield.core.errors import OutputError
+from eigenfield.core.scene import Scene
 from eigenfield.core.version import __version__
+from eigenfield.gltf import encode_scene
+from eigenfield.runtime.files import refuse_existing, write_bytes
 
 STATIC_FOLDER = Path(__file__).parent / "static"  # what `npm run build` in web/ leaves here
 TITLE_ELEMENT = "<title>eigenfield</title>"
@@ -50,13 +54,7 @@ def page_html(config: Mapping[str, Any]) -> bytes:
     return _encode(_configure(_text("index.html"), config))
 
 
-def single_file(
-    glb: bytes,
-    *,
-    title: str,
-    photographs: Mapping[str, tuple[bytes, str]] | None = None,
-    metres_per_unit: float | None = None,
-) -> bytes:
+def single_file(glb: bytes, *, title: str, metres_per_unit: float | None = None) -> bytes:
     """The viewer and a scene as one page that needs nothing else, from file:// too; the same bytes for the same input.
 
     The page's own policy allows its one script and style, named by their hashes, and no connection to anywhere.
@@ -64,7 +62,6 @@ def single_file(
     Args:
         glb: The scene's file.
         title: Of the page.
-        photographs: Camera name to an encoded picture, of the camera's size, and its media type.
         metres_per_unit: Metres in one unit of the capture, for headsets.
 
     Raises:
@@ -73,8 +70,6 @@ def single_file(
     config: dict[str, Any] = {"title": title, "embedded": True, "bytes": len(glb), "version": __version__}
     if metres_per_unit is not None:
         config["metresPerUnit"] = metres_per_unit
-    if photographs is not None:
-        config["photographs"] = {name: _data_url(*picture) for name, picture in photographs.items()}
     script, style = _inline_script(_text("viewer.js")), _inline_style(_text("viewer.css"))
     policy = (
         f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src blob: data:; "
@@ -88,6 +83,34 @@ def single_file(
     page = _replace_once(page, HEAD_ELEMENT, lambda head: f"{head}\n{meta}")
     data = f'<script type="application/octet-stream" id="eigenfield-scene">{scene}</script>'
     return _encode(_configure(page, config, data))
+
+
+def write_page(
+    scene: Scene,
+    output: Path,
+    *,
+    title: str | None = None,
+    metres_per_unit: float | None = None,
+    overwrite: bool = False,
+) -> None:
+    """Write a page that opens by double click and needs no network: viewer and scene in one file.
+
+    The residual, which the viewer does not show, is left out. Payloads are not coded anew.
+
+    Args:
+        scene: The scene.
+        output: The .html.
+        title: Of the page. Default: the output's name.
+        metres_per_unit: Metres in one unit of the capture, for headsets.
+        overwrite: Whether an existing file is replaced.
+
+    Raises:
+        OutputError: `viewer-build`; the file cannot be written.
+    """
+    refuse_existing(output, overwrite)
+    glb = encode_scene(replace(scene, residual=None))
+    data = single_file(glb, title=output.stem if title is None else title, metres_per_unit=metres_per_unit)
+    write_bytes(output, data, overwrite=overwrite)
 
 
 def _text(name: str) -> str:
@@ -138,10 +161,6 @@ def _replace_once(page: str, pattern: re.Pattern[str], text: Callable[[str], str
 
 def _hash(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode("utf-8")).digest()).decode("ascii")
-
-
-def _data_url(data: bytes, mime: str) -> str:
-    return f"data:{mime};base64,{base64.b64encode(data).decode('ascii')}"
 
 
 def _encode(page: str) -> bytes:

@@ -1,4 +1,5 @@
 """HTTP/1.1 on one connection: `http.server` of the standard library, made strict, with limits of time and size.
+Byte ranges and validators are those of RFC 9110, sections 13 and 14.
 
 `BaseHTTPRequestHandler` takes request lines and headers apart, keeps connections and writes answers. Written by hand is
 what it does not promise:
@@ -19,6 +20,7 @@ import socket
 import time
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
 from typing import ClassVar
@@ -31,9 +33,11 @@ LINGER_SECONDS = 2.0  # for reading what a refused client still sends, so that i
 SEND_PIECE_BYTES = 256 * 1024  # of an answer, sent at a time
 TOKEN_PATTERN = rb"[!#$%&'*+.^_`|~0-9A-Za-z-]+"
 REQUEST_LINE = re.compile(TOKEN_PATTERN + rb" [^ \r\n]+ HTTP/[0-9]\.[0-9]\r\n")
+RANGE_HEADER = re.compile(r"bytes=\s*([0-9]{0,100})-([0-9]{0,100})\s*", re.IGNORECASE)
 HEADER_LINE = re.compile(TOKEN_PATTERN + rb":[^\x00-\x08\x0a-\x1f]*\r\n")
 
 
+@dataclass(eq=False)
 class RefusedError(Exception):
     """A request that is answered with an error.
 
@@ -43,18 +47,9 @@ class RefusedError(Exception):
         headers: Of the answer.
     """
 
-    def __init__(self, status: int, reason: str, headers: Mapping[str, str] | None = None) -> None:
-        """Refuse a request.
-
-        Args:
-            status: Of HTTP.
-            reason: One line for a person.
-            headers: Of the answer.
-        """
-        self.status = status
-        self.reason = reason
-        self.headers = dict(headers or {})
-        super().__init__(status, reason)
+    status: int
+    reason: str
+    headers: Mapping[str, str] = field(default_factory=dict)
 
 
 class StrictHandler(BaseHTTPRequestHandler, ABC):
@@ -225,3 +220,49 @@ class _Incoming(io.RawIOBase):
             raise TimeoutError
         self._connection.settimeout(left)
         return self._connection.recv_into(buffer)
+
+
+def wanted_range(headers: Mapping[str, str], size: int, tag: str) -> tuple[int, int] | None:
+    """First byte and the one behind the last that a GET asks for; None: all of it.
+
+    None also for several ranges and for a Range that cannot be read, which a server may ignore, and where If-Range
+    names another content.
+
+    Args:
+        headers: Of the request, by names in lower case.
+        size: Of the content, in bytes.
+        tag: Strong ETag of the content, quotes included.
+
+    Raises:
+        RefusedError: 416: no byte of the content is in the range.
+    """
+    match = RANGE_HEADER.fullmatch(headers.get("range", ""))
+    if match is None or headers.get("if-range", tag) != tag:
+        return None
+    first, last = match[1], match[2]
+    if not first:
+        if not last:
+            return None
+        if int(last) == 0 or size == 0:
+            raise _outside(size)
+        return max(0, size - int(last)), size
+    if last and int(last) < int(first):
+        return None
+    if int(first) >= size:
+        raise _outside(size)
+    return int(first), min(size, int(last) + 1) if last else size
+
+
+def is_known(headers: Mapping[str, str], tag: str) -> bool:
+    """Whether If-None-Match says that the client has this content already: status 304.
+
+    Args:
+        headers: Of the request, by names in lower case.
+        tag: Strong ETag of the content, quotes included.
+    """
+    tags = [entry.strip().removeprefix("W/") for entry in headers.get("if-none-match", "").split(",")]
+    return tag in tags or tags == ["*"]
+
+
+def _outside(size: int) -> RefusedError:
+    return RefusedError(416, f"there are {size} bytes", {"Content-Range": f"bytes */{size}"})

@@ -21,8 +21,7 @@ from typing import Any
 
 from eigenfield.core.errors import EigenfieldError, OptionError
 from eigenfield.viewer.manifest import Content, Manifest
-from eigenfield.viewer.ranges import RangeError, is_known, wanted_range
-from eigenfield.viewer.request import RefusedError, StrictHandler
+from eigenfield.viewer.request import RefusedError, StrictHandler, is_known, wanted_range
 
 log = logging.getLogger("eigenfield.viewer")
 
@@ -182,10 +181,7 @@ class _Answers(StrictHandler):
             return
         size, status = len(content.data), 200
         about = {"Content-Type": content.type, "ETag": content.tag, "Accept-Ranges": "bytes"}
-        try:
-            part = wanted_range(headers, size, content.tag) if self.command == "GET" else None
-        except RangeError:
-            raise RefusedError(416, f"there are {size} bytes", {"Content-Range": f"bytes */{size}"}) from None
+        part = wanted_range(headers, size, content.tag) if self.command == "GET" else None
         first, last = part or (0, size)
         if part is not None:
             status, about["Content-Range"] = 206, f"bytes {first}-{last - 1}/{size}"
@@ -237,18 +233,17 @@ def _listen(host: str, port: int) -> socket.socket:
     try:
         listener = socket.create_server(place, family=family, backlog=SERVER_MAX_CONNECTIONS)
     except OSError as error:
-        raise _not_listening(host, port, error) from error
+        if error.errno == errno.EADDRINUSE:
+            raise OptionError(
+                "port-busy", f"port {port} of {host} is in use", remedy="leave out --port, or name another"
+            ) from error
+        raise OptionError(
+            "port-refused",
+            f"port {port} of {host}: {error.strerror or 'cannot be listened on'}",
+            remedy="leave out --port and --host, or name others",
+        ) from error
     listener.setblocking(False)  # a client that goes away again before it is accepted blocks nobody
     return listener
-
-
-def _not_listening(host: str, port: int, error: OSError) -> OptionError:
-    if error.errno == errno.EADDRINUSE:
-        return OptionError("port-busy", f"port {port} of {host} is in use", remedy="leave out --port, or name another")
-    reason = error.strerror or "cannot be listened on"
-    return OptionError(
-        "port-refused", f"port {port} of {host}: {reason}", remedy="leave out --port and --host, or name others"
-    )
 
 
 def _authority(place: str, port: int) -> str:

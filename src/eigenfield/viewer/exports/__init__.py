@@ -10,13 +10,11 @@ from eigenfield.viewer.exports.folder import refuse_folder
 from eigenfield.viewer.exports.maps import write_maps
 from eigenfield.viewer.exports.names import file_names
 from eigenfield.viewer.exports.obj import refuse_obj, write_obj, write_obj_folder
-from eigenfield.viewer.exports.page import write_page
-from eigenfield.viewer.exports.quilt import Quilt, quilt_file, quilt_of, write_quilt
+from eigenfield.viewer.exports.quilt import quilt_of, write_quilt
+from eigenfield.viewer.page import write_page
 
 __all__ = [
-    "Quilt",
     "file_names",
-    "quilt_file",
     "quilt_of",
     "refuse_folder",
     "refuse_obj",

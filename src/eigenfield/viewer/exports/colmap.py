@@ -77,7 +77,7 @@ def write_colmap(
         OptionError: `residual`: the scene has none, or its cameras skew; `no-points`; as `Renderer.draw`.
         OutputError: The folder cannot be written.
     """
-    redrawn_views = _captured_views(job) if points is None else _views_along(job, points)
+    redrawn_views = _redrawn_views(job, points)
     files = file_names([redrawn.name for redrawn in redrawn_views])
     refuse_attributes(job.scene.appearance.channels)
     sparse = _sparse_points(job.scene, redrawn_views)
@@ -115,25 +115,17 @@ def write_colmap(
         write_listing(part, "colmap", {"images": named, **held})
 
 
-def _captured_views(job: RenderJob) -> list[RedrawnView]:
-    scene = job.scene
-    return [
-        RedrawnView(
-            name,
-            _pinhole(camera, job.resolution),
-            camera_weights(scene, index, job.weights),
-            camera_colour(scene, index),
-        )
-        for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True))
-    ]
-
-
-def _views_along(job: RenderJob, points: NDArray[np.float64]) -> list[RedrawnView]:
-    made = []
+def _redrawn_views(job: RenderJob, points: NDArray[np.float64] | None) -> list[RedrawnView]:
+    scene, views = job.scene, []
+    if points is None:
+        for index, (name, camera) in enumerate(zip(scene.rig.names, scene.rig.cameras, strict=True)):
+            weights, colour = camera_weights(scene, index, job.weights), camera_colour(scene, index)
+            views.append(RedrawnView(name, _pinhole(camera, job.resolution), weights, colour))
+        return views
     for number, (x, y) in enumerate(points.tolist()):
-        camera, weights = viewpoint(job.scene, at=(x, y), weights=job.weights)
-        made.append(RedrawnView(f"path_{number:04d}", _pinhole(camera, job.resolution), weights, None))
-    return made
+        camera, weights = viewpoint(scene, at=(x, y), weights=job.weights)
+        views.append(RedrawnView(f"path_{number:04d}", _pinhole(camera, job.resolution), weights, None))
+    return views
 
 
 def _pinhole(camera: Camera, resolution: tuple[int, int] | None) -> Camera:

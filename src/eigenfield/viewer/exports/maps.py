@@ -86,18 +86,17 @@ def mean_map(scene: Scene) -> NDArray[np.float32]:
     return _composer(scene)(ViewWeights(), 0)
 
 
-def eigen_maps(scene: Scene, textures: int | None = None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
+def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:
     """Every eigen texture of every plane: (H, W, C) that it adds to a drawn picture, and its (No,) weights.
 
     Args:
         scene: The scene.
-        textures: Number of eigen textures of each basis. Default: all.
+        count: Number of eigen textures of each basis.
 
     Raises:
         OptionError: `not-a-picture`.
     """
-    count = scene.appearance.textures if textures is None else textures
-    kept = [[basis.truncate(min(count, basis.count)) for basis in plane.bases] for plane in scene.appearance.planes]
+    kept = [[basis.truncate(count) for basis in plane.bases] for plane in scene.appearance.planes]
     total, first, planes = sum(basis.count for bases in kept for basis in bases), 0, []
     for plane, bases in zip(scene.appearance.planes, kept, strict=True):
         alone = []

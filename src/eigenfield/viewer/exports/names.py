@@ -14,19 +14,18 @@ NAME_FORBIDDEN_CHARACTERS = '<>:"|?*'  # on Windows; and everywhere what is not 
 NAME_RESERVED = re.compile(r"(con|prn|aux|nul|com[0-9¹²³]|lpt[0-9¹²³])(\..*)?", re.IGNORECASE)  # devices of Windows
 
 
-def file_names(names: Sequence[str], ending: str = ".png") -> list[str]:
-    """A relative path with forward slashes for each name.
+def file_names(names: Sequence[str]) -> list[str]:
+    """The relative path of a .png, with forward slashes, for each name.
 
     Sub-folders stay. What leads outside, or what some system does not allow, is left out or becomes `_`. Names that
     would then be the same file, also where case does not count, are numbered: `a.png`, `a-2.png`.
 
     Args:
-        names: Of cameras.
-        ending: Of the files, in place of a photograph's own.
+        names: Of cameras; a photograph's own ending is replaced.
     """
     files: set[str] = set()
     folders: set[str] = set()
-    return [_free_path(_parts(name), ending, files, folders) for name in names]
+    return [_free_path(_parts(name), files, folders) for name in names]
 
 
 def file_name(name: str, otherwise: str) -> str:
@@ -46,28 +45,21 @@ def file_name(name: str, otherwise: str) -> str:
 
 
 def _parts(name: str) -> list[str]:
-    stem = name
-    for extension in PHOTOGRAPH_EXTENSIONS:
-        if name.lower().endswith(extension):
-            stem = name[: -len(extension)]
-            break
-    parts = [file_name(part, "") for part in re.split(r"[/\\]", stem)]
-    named = [part for part in parts if part]
-    if not named:
-        return ["camera"]
-    return (
-        [*named[: PATH_MAX_PARTS - 1], "_".join(named[PATH_MAX_PARTS - 1 :])] if len(named) > PATH_MAX_PARTS else named
-    )
+    extension = next((ending for ending in PHOTOGRAPH_EXTENSIONS if name.lower().endswith(ending)), "")
+    stem = name[: len(name) - len(extension)]
+    parts = list(filter(None, (file_name(part, "") for part in re.split(r"[/\\]", stem)))) or ["camera"]
+    last = PATH_MAX_PARTS - 1
+    return parts if len(parts) <= PATH_MAX_PARTS else [*parts[:last], "_".join(parts[last:])]
 
 
-def _free_path(parts: list[str], ending: str, files: set[str], folders: set[str]) -> str:
+def _free_path(parts: list[str], files: set[str], folders: set[str]) -> str:
     """The path of `parts`, numbered where it is taken; adds it and its folders to `files` and `folders`."""
     parents = [_key("/".join(parts[:depth])) for depth in range(1, len(parts))]
     if any(parent in files for parent in parents):
         parts, parents = ["_".join(parts)], []
     number = 1
     while True:
-        last = _truncate(parts[-1], NAME_MAX_BYTES) + (f"-{number}" if number > 1 else "") + ending
+        last = _truncate(parts[-1], NAME_MAX_BYTES) + (f"-{number}" if number > 1 else "") + ".png"
         path = "/".join([*parts[:-1], last])
         if _key(path) not in files | folders:
             break

@@ -55,10 +55,7 @@ class Quilt:
 
 
 def quilt_of(
-    scene: Scene,
-    grid: tuple[int, int] | None = None,
-    resolution: tuple[int, int] | None = None,
-    spread: float = 1.0,
+    scene: Scene, grid: tuple[int, int] | None = None, resolution: tuple[int, int] | None = None, spread: float = 1.0
 ) -> Quilt:
     """The shape of a scene's quilt.
 
