@@ -45,6 +45,7 @@ def joined(first: Mesh, second: Mesh) -> Mesh:
     return Mesh(np.concatenate([first.vertices, second.vertices]), faces.astype(np.int32))
 
 
+@pytest.mark.slow
 def test_with_exact_geometry_both_ways_on_the_proxy_beat_those_without_it(capture):
     _, light_field, scene, file = capture
     result = between(*start(scene, light_field), file=file)

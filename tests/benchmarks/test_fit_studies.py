@@ -40,6 +40,7 @@ def test_parts_are_put_back():
                for a, b in zip(one.values(), other.values(), strict=True))  # fmt: skip
 
 
+@pytest.mark.slow
 def test_a_part_that_is_taken_away_changes_the_file_or_the_pictures(ready, monkeypatch):
     monkeypatch.setattr(fit_studies, "QUALITIES", (70, fit_studies.QUALITY))
     # four cameras have no region, one round of textures at most, and a square for a proxy

@@ -33,6 +33,7 @@ def test_what_a_peer_needs_at_equal_quality():
     assert rate_tables._saved(ours["points"][2], None, "psnr") == "–"
 
 
+@pytest.mark.slow
 def test_a_small_capture_from_end_to_end(tmp_path, monkeypatch):
     folder = write_capture(tmp_path / "nine")
     fast = dataclasses.replace(

@@ -82,7 +82,7 @@ def assert_near_before_far(planar, scale):
     assert np.median(d[-30:-5, 5:30]) == pytest.approx(-0.65, abs=0.15)
 
 
-@pytest.mark.parametrize(("right", "down"), [(-1.0, -0.9), (-1.0, 1.1)])
+@pytest.mark.parametrize(("right", "down"), [(-1.0, -0.9), pytest.param(-1.0, 1.1, marks=pytest.mark.slow)])
 def test_near_and_far_are_told_by_occlusion(right, down, names):
     pictures, places = array(right, down)
     planar = refine_planar(pictures, start_planar(pictures, layout(), names))
@@ -110,6 +110,7 @@ def test_a_regular_grid_is_left_as_it_is(names):
     assert np.abs(moved).max() == 0
 
 
+@pytest.mark.slow
 def test_a_view_that_took_no_part_is_registered(jittering, names):
     pictures, places, _ = jittering
     new = np.array([2, 7, 13])

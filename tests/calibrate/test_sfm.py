@@ -109,6 +109,7 @@ def test_points_lie_where_the_photographs_show_them(scene, solved):
         assert np.median(np.abs(shown - points.colours[points.point[here]] / 255)) < 0.1
 
 
+@pytest.mark.slow
 def test_a_focal_length_is_found_where_none_is_known(scene):
     photos, truth = scene
     motion = structure_from_motion(photos)
@@ -182,6 +183,7 @@ def test_photographs_that_do_not_belong_are_named_and_a_twin_stands_in_its_place
     assert np.linalg.norm(a.centre - b.centre) < 0.01 and angle_between(a.R, b.R) < 0.05
 
 
+@pytest.mark.slow
 def test_a_second_scene_is_named_as_a_group_apart(scene, tmp_path):
     photos, _ = scene
     mesh, texture = relief(), spotted(5)

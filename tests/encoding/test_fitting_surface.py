@@ -184,6 +184,7 @@ def test_what_a_step_changes_is_what_a_camera_then_draws():
     np.testing.assert_allclose(out[1], np.square(out[0]), rtol=1e-9)
 
 
+@pytest.mark.slow
 def test_a_mesh_that_is_off_costs_an_encode_little(tmp_path, monkeypatch):
     """The same photographs on the right depths and on wrong ones: what is fitted makes good what was wrong."""
     cameras = row_grid(9, 64, 56)

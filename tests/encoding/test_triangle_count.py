@@ -107,6 +107,7 @@ def test_large_photographs_are_looked_at_smaller():
     assert view.grey.shape == (view.camera.height, view.camera.width) == view.inverse_depth.shape
 
 
+@pytest.mark.slow
 def test_a_fit_has_fewer_triangles_the_coarser_its_quality_and_as_many_as_were_asked_for(tmp_path):
     smooth = ball(radius=1.5, level=3)
     bumps = 1 + 0.03 * np.sin(9 * smooth.vertices).prod(axis=1, keepdims=True)

@@ -208,6 +208,7 @@ def test_too_few_triangles_are_refused():
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a shell script stands for the process")
+@pytest.mark.slow
 def test_a_mesh_larger_than_a_pipe_reaches_a_slow_xatlas(monkeypatch, tmp_path):
     """The process starts to read only after several ticks: none of the mesh may get lost on the way."""
     script = tmp_path / "python"

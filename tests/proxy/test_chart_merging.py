@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.graph import edge_components
@@ -121,6 +122,7 @@ def test_shared_edges_run_opposite_ways_once_each():
     assert len(shared_edges(FLAT.vertices, three).length) == 0  # an edge of three triangles is nobody's
 
 
+@pytest.mark.slow
 def test_a_noisy_ball_has_fewer_charts_than_xatlas_cuts(monkeypatch):
     smooth = ball(level=4)
     noise = np.random.default_rng(0).normal(size=(len(smooth.vertices), 1))

@@ -210,7 +210,7 @@ def test_rough_surfaces_get_an_atlas_without_overlap(seed):
         )
         return u, v, 0.1 * waves
 
-    vertices, faces = patch(14, 14, place)
+    vertices, faces = patch(10, 10, place)
     mesh = Mesh(vertices.astype(np.float32), faces)
     result = unwrap_mesh(mesh, cameras=[looking_along(2, 1, 3.0)])
     statistics = atlas_statistics(result)

@@ -64,7 +64,7 @@ def test_the_surface_is_true_covers_and_is_manifold(whole, points, scene, camera
     assert (mesh.face_normals()[mesh.face_areas() > 0] @ [0, 0, -1]).mean() > 0.5
 
 
-@pytest.mark.parametrize("seen", ["nothing", "the air"])
+@pytest.mark.parametrize("seen", ["nothing", pytest.param("the air", marks=pytest.mark.slow)])
 def test_a_bare_patch_stays_unless_depth_maps_look_through_it(points, scene, cameras, seen):
     bare = (np.abs(points.positions[:, :2] - [2.0, 0]) < 0.75).all(axis=1) & (points.positions[:, 2] > 1.1)
     fewer = points.subset(~bare)

@@ -206,7 +206,7 @@ def before_a_wall():
     return sphere, cameras, [photograph_of(mesh, len(wall.faces), camera) for camera in cameras]
 
 
-@pytest.mark.parametrize("known_depth", [False, True])
+@pytest.mark.parametrize("known_depth", [False, pytest.param(True, marks=pytest.mark.slow)])
 def test_a_sphere_is_found_from_a_careless_box(before_a_wall, known_depth):
     sphere, cameras, pictures = before_a_wall
     around = sphere_outline(sphere, cameras[1])

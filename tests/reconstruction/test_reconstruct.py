@@ -63,6 +63,7 @@ def test_refined_cameras_are_kept_for_other_tools(photos, made):
             np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-6)
 
 
+@pytest.mark.slow
 def test_blind_views_only_register_their_own_camera(photos, made, tmp_path):
     _, seeing = made
     blind = reconstruct(open_any(photos), work=tmp_path, blind="every:5")

@@ -113,7 +113,7 @@ def test_on_the_plane_rays_meet_it_at_the_eye(context, loaded, at):
     agree(renderer.draw(camera), renderer.draw(camera, weights))
 
 
-@pytest.mark.parametrize("eye", FREE)
+@pytest.mark.parametrize("eye", [FREE[0], *(pytest.param(eye, marks=pytest.mark.slow) for eye in FREE[1:])])
 def test_off_the_plane_every_point_has_its_own_weights(context, loaded, eye):
     camera = free_camera(np.array(eye))
     drawn = OpenGLRenderer(loaded, filter="bilinear", context=context).draw(camera)

@@ -78,7 +78,10 @@ def test_more_textures_than_one_draw_sums(context):
         assert np.abs(texture_of(context, made, count, mix) - composed(made, mix, count)).max() < CLOSE
 
 
-@pytest.mark.parametrize("eye", [(0.35, -0.2, -1.9), (-0.6, 0.3, -4.5), (0.1, 0.1, -3.0)])
+@pytest.mark.parametrize(
+    "eye",
+    [(0.35, -0.2, -1.9), *(pytest.param(eye, marks=pytest.mark.slow) for eye in [(-0.6, 0.3, -4.5), (0.1, 0.1, -3.0)])],
+)
 def test_each_texel_of_each_size_has_its_own_weights(context, eye):
     made = flat(layered_scene(), 0.0, 1.0)
     sizes = {size for plane in made.appearance.planes for size in plane.sizes}

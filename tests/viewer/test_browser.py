@@ -69,5 +69,6 @@ def test_in_node(path):
 
 
 @pytest.mark.parametrize("path", cases(plain=False))
+@pytest.mark.slow
 def test_in_chromium(path, folder):
     run_node(path, EIGENFIELD_SCENES=str(folder), EIGENFIELD_CHROMIUM=str(CHROMIUM))

@@ -34,11 +34,11 @@ LONGEST = 21  # binary digits of an integer's magnitude - 1, at most: |value| <=
 START = 26214  # weight of a prediction at first: 0.4
 SHIFT = 14  # of the mixer's rate
 
-SQUASH = np.rint(ONE / (1 + np.exp(-np.arange(-2047, 2048) / 256))).astype(np.int64)
+SQUASH = np.rint(ONE / (1 + np.exp(-np.arange(-2047, 2048) / 256))).astype(np.int32)
 STRETCH = np.rint(
     256 * np.log((np.arange(4096) + 0.5) / (4095.5 - np.arange(4096)))  # of the middle of 16 steps of 1/65536
-).astype(np.int64)
-RATES = np.rint(ONE / (np.arange(LIMIT + 1) + 1.5)).astype(np.int64)
+).astype(np.int16)
+RATES = np.rint(ONE / (np.arange(LIMIT + 1) + 1.5)).astype(np.int32)
 
 
 class Coder(NamedTuple):
@@ -140,7 +140,7 @@ def code_bit(coder, bit, a, b, c, mixture):
     p, n, w = coder.probability, coder.seen, coder.weights
     s0, s1, s2 = STRETCH[p[a] >> 4], STRETCH[p[b] >> 4], STRETCH[p[c] >> 4]
     s = (w[mixture, 0] * s0 + w[mixture, 1] * s1 + w[mixture, 2] * s2) >> 16
-    one = SQUASH[min(max(s, -2047), 2047) + 2047]
+    one = np.int64(SQUASH[min(max(s, -2047), 2047) + 2047])
     bit = code_split(coder, bit, one)
     error = (ONE - one) if bit else -one
     w[mixture, 0] += (s0 * error) >> SHIFT
