@@ -93,7 +93,6 @@ def store(name: str, figures: dict[str, Any]) -> Path:
 
     Where that file cannot be read (see `runs`) it stays as it is, the run goes to NAME.json.new and SystemExit says so.
     """
-    RESULTS.mkdir(exist_ok=True)
     path = RESULTS / f"{name}.json"
     date = datetime.now(UTC).isoformat(timespec="seconds")
     command = " ".join(["python", *sys.argv])
@@ -102,15 +101,18 @@ def store(name: str, figures: dict[str, Any]) -> Path:
     try:
         kept = runs(name) if path.exists() else []
     except SystemExit as error:
-        _write(new, [run])
+        write_json(new, {"runs": [run]})
         raise SystemExit(f"{error}; this run is kept as {new}") from error
-    _write(new, [*kept, run][-KEPT:])
-    new.replace(path)  # whole or not at all, should this be killed
+    write_json(path, {"runs": [*kept, run][-KEPT:]})
     return path
 
 
-def _write(path: Path, runs: list[dict[str, Any]]) -> None:
-    path.write_text(json.dumps({"runs": runs}, indent=1) + "\n", encoding="utf-8")
+def write_json(path: Path, value: Any) -> None:
+    """A JSON file, whole or not at all, should this be killed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(value, indent=1) + "\n", encoding="utf-8")
+    part.replace(path)
 
 
 def runs(name: str) -> list[dict[str, Any]]:

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import argparse
 import datetime
-import json
 import os
 import shlex
 import sys
@@ -84,9 +83,7 @@ def _records(record: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def _write(out: Path, results: dict[str, Any]) -> None:
-    part = out / "results.json.part"
-    part.write_text(json.dumps(results, indent=1) + "\n", encoding="utf-8")
-    part.replace(out / "results.json")
+    measure.write_json(out / "results.json", results)
     page.write(results, out)
 
 

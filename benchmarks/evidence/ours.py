@@ -147,11 +147,6 @@ def access(path: Path, index: int) -> dict[str, float]:
     return {"first": round(first, 4), "next": round(time.perf_counter() - started - first, 4)}
 
 
-def surfaces(prepared: Prepared, light_field: LightField, order: Sequence[int]) -> Covered:
-    """The covered pixels of each view: what the whole proxy covers, within the mask where there is one."""
-    return covered_pixels(prepared.work / "all.glb", order, light_field)
-
-
 def covered_pixels(path: Path, order: Sequence[int], light_field: LightField) -> Covered:
     """The pixels that a file's mesh covers in some of a light field's views, within the mask where there is one."""
     scene = ef.load(path)

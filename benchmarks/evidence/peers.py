@@ -53,7 +53,8 @@ def peers(prepared: Prepared, folder: Path) -> dict[str, Any]:
     order = codecs.order(light_field.cameras)
     views = Views(
         light_field, order, [light_field.names[index] for index in order],
-        parallel_map(lambda index: codes(light_field, index), order), ours.surfaces(prepared, light_field, order),
+        parallel_map(lambda index: codes(light_field, index), order),
+        ours.covered_pixels(prepared.work / "all.glb", order, light_field),
     )  # fmt: skip
     part = (prepared, light_field, order, views.photographs, views.covered)
     mine, _ = ours.fitted(*part, asked=ours.QUICK_QUALITIES if prepared.quick else ours.QUALITIES)
@@ -102,7 +103,6 @@ def _curve(codec: VideoCodec | StillCodec, views: Views, kept: Path, key: str, q
             return curve
         except ValueError:  # cut off
             pass
-    kept.mkdir(parents=True, exist_ok=True)
     points = []
     with tempfile.TemporaryDirectory() as folder:
         for rate in codec.rates[1::2] if quick else codec.rates:
@@ -118,9 +118,7 @@ def _curve(codec: VideoCodec | StillCodec, views: Views, kept: Path, key: str, q
         "chroma": codec.chroma if isinstance(codec, VideoCodec) else "444", "points": points,
         "date": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }  # fmt: skip
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(as_json(curve)), encoding="utf-8")
-    part.replace(path)
+    measure.write_json(path, as_json(curve))
     return curve
 
 

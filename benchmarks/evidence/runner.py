@@ -9,7 +9,7 @@ import json
 import sys
 import time
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -91,7 +91,7 @@ def _step(
     record["seconds"] = round(time.perf_counter() - started, 1)
     say(f"{capture.name:>12}  {name:<9} {record['seconds']:7.1f} s  {record.get('error', '')}")
     if "error" not in record:
-        write_record(path, record)
+        measure.write_json(path, record)
     return record
 
 
@@ -101,7 +101,7 @@ def _asked(capture: Capture) -> str:
 
 
 def read_record(path: Path) -> dict[str, Any] | None:
-    """What `write_record` left; None where nothing whole is there."""
+    """What a step or `kept` left; None where nothing whole is there."""
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):  # not there, or cut off: it is measured again
@@ -116,16 +116,8 @@ def kept(place: Path, program: Path, make: Callable[[], dict[str, Any]], more: s
     record = read_record(place)
     if record is None or record["code"] != code:
         record = {"code": code, "figures": as_json(make())}
-        write_record(place, record)
+        measure.write_json(place, record)
     return dict(record["figures"])
-
-
-def write_record(path: Path, record: Mapping[str, Any]) -> None:
-    """Figures and the code that they came of, whole or not at all."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(record, indent=1) + "\n", encoding="utf-8")
-    part.replace(path)
 
 
 @functools.cache

@@ -109,7 +109,7 @@ def _capture(source: Source, name: str, figures: Tree) -> Html:
         [
             element("div", *charts, class_="charts"),
             _table_1(figures, said),
-            _figure_6(source, figures),
+            *(_pictures_6(source, row) for row in listing(figures, "figure6")),
             details("PSNR in UV, and every point of the curves", more, _points(curve)),
         ]
     )
@@ -222,10 +222,6 @@ def _table_1(figures: Tree, said: Any) -> Html:
     )
     caption = "Table 1: what the photographs, their texture maps and the eigen textures weigh"
     return table(columns, rows, groups=groups, caption=caption, note=note)
-
-
-def _figure_6(source: Source, figures: Tree) -> Html:
-    return join(_pictures_6(source, row) for row in listing(figures, "figure6"))
 
 
 def _pictures_6(source: Source, row: Tree) -> Html:

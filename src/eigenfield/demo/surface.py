@@ -80,7 +80,8 @@ def bake_surface(side: int) -> NDArray[np.float32]:
         surface[texel[start:stop]] = _shade_texels(name, point, normal)
 
     parallel_map(work, jobs)
-    return _dilate_charts(surface.reshape(side, side, 8), raster.face >= 0)
+    nearest = distance_transform_edt(raster.face < 0, return_distances=False, return_indices=True)  # inside a chart
+    return np.ascontiguousarray(surface.reshape(side, side, 8)[tuple(nearest)])
 
 
 def _shade_texels(name: str, point: Array, normal: Array) -> NDArray[np.float32]:
@@ -98,12 +99,6 @@ def _shade_texels(name: str, point: Array, normal: Array) -> NDArray[np.float32]
     roughness = np.broadcast_to(finish.roughness, len(point))
     columns = [finish.pigment * light, bumped, finish.reflectance * ambient**1.5, roughness]
     return np.column_stack(columns).astype(np.float32)
-
-
-def _dilate_charts(surface: NDArray[np.float32], inside: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Gutters take the value of the nearest texel inside a chart."""
-    rows, columns = distance_transform_edt(~inside, return_distances=False, return_indices=True)
-    return np.ascontiguousarray(surface[rows, columns])
 
 
 def noise(points: Array, frequency: float, octaves: int, seed: int, gain: float = 0.5) -> Array:
