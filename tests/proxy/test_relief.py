@@ -207,7 +207,7 @@ def test_two_layers_share_the_atlas_without_overlap():
     d = (0.02 * x + np.sin(y / 9)).astype(np.float32)
     near = gaussian_filter((np.random.default_rng(1).random(d.shape) > 0.995).astype(np.float64), 4) > 0.005
     frame = reference_view(*d.shape)
-    mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1, gutter=4)
+    mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1)
     statistics = atlas_statistics(mesh)
     assert statistics.overlap == 0 and statistics.fill > 0.6
     assert atlas_fault(mesh) is None

@@ -12,14 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import (
-    PlanarArray,
-    PlanarStart,
-    refine_planar,
-    register_views,
-    start_given,
-    start_planar,
-)
+from eigenfield.calibrate import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration
@@ -28,12 +21,8 @@ from eigenfield.core.errors import CaptureError, ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress
 from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.proxy import (
-    estimate_second_layer,
-    read_mesh,
-    relief_mesh,
-    write_ply,
-)
+from eigenfield.proxy import estimate_second_layer, read_mesh, relief_mesh, write_ply
+from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
 from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -191,10 +180,8 @@ def _layered_relief(
         valid &= _inside_masks(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
     low, high = np.percentile(depth.d[depth.count > 0], [1, 99])
-    cut, speck = (
-        max(ARRAY_TUNING.cut_pixels / reach, ARRAY_TUNING.cut_range_fraction * float(high - low)),
-        ARRAY_TUNING.speckle_fraction,
-    )
+    cut = max(ARRAY_TUNING.cut_pixels / reach, ARRAY_TUNING.cut_range_fraction * float(high - low))
+    speck = ARRAY_TUNING.speckle_fraction
     for _ in range(ARRAY_TUNING.cut_rounds):
         d = remove_speckles(depth.d, find_discontinuities(depth.d, 1 / reach, cut), round(speck * depth.d.size))
         second = estimate_second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
@@ -276,15 +263,13 @@ def _inverse_depths(
     plane = fit_view_plane(cameras)
     middle = cameras[int(np.argmin(np.linalg.norm(plane.coordinates([c.centre for c in cameras]), axis=1)))]
     if points is not None and len(points) >= ARRAY_TUNING.min_points:
-        pixels, depth = middle.project(points)
-        inside = (depth > 0) & (pixels > 0).all(axis=1) & (pixels < (middle.width, middle.height)).all(axis=1)
+        _, depth, inside = project_inside(middle, points)
         if inside.sum() >= ARRAY_TUNING.min_points:
             low, high = np.percentile(1 / depth[inside], [1, 99])
-            return max(float(low - ARRAY_TUNING.range_margin_fraction * (high - low)), 0.3 * float(low)), float(
-                high + ARRAY_TUNING.range_margin_fraction * (high - low)
-            )
+            room = ARRAY_TUNING.range_margin_fraction * (high - low)
+            return max(float(low - room), 0.3 * float(low)), float(high + room)
     # disparities of one step, from infinity to a fifth of the picture
-    provisional = start_given(cameras, *(1e-3, 1.0))
+    provisional = start_given(cameras, 1e-3, 1.0)
     reference = provisional.model.reference_view(0)
     matrices = provisional.model.matrices(reference, np.arange(len(cameras)), provisional.parameters)
     chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[: ARRAY_TUNING.range_views]

@@ -203,9 +203,8 @@ def _poisson(
         (folder / STAGE_ERROR_FILE).write_text(json.dumps(asdict(surface.error)), encoding="utf-8")
 
     folder = run.stage("surface", inputs, build)
-    return read_mesh(folder / STAGE_MESH_FILE), SurfaceError(
-        **json.loads((folder / STAGE_ERROR_FILE).read_text(encoding="utf-8"))
-    )
+    error = json.loads((folder / STAGE_ERROR_FILE).read_text(encoding="utf-8"))
+    return read_mesh(folder / STAGE_MESH_FILE), SurfaceError(**error)
 
 
 def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh, identity: list[Any]) -> Mesh:
@@ -215,7 +214,7 @@ def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh, identity: 
     by_hand = [settings.primitives, settings.fit_spheres] if relief else []
     if relief and not any(by_hand):
         return mesh
-    inputs = [identity, mesh_digest(mesh), by_hand]
+    inputs = [identity, hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest(), by_hand]
 
     def build(folder: Path) -> None:
         result = mesh
@@ -225,15 +224,6 @@ def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh, identity: 
         write_ply(result, folder / STAGE_MESH_FILE)
 
     return read_mesh(run.stage("proxy", inputs, build) / STAGE_MESH_FILE)
-
-
-def mesh_digest(mesh: Mesh) -> str:
-    """A digest of a mesh's vertices and faces.
-
-    Args:
-        mesh: The mesh.
-    """
-    return hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
 
 
 def _requested_primitives(run: StageRunner, light_field: LightField) -> list[Primitive]:

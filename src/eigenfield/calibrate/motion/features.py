@@ -10,6 +10,7 @@ import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -17,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
+from eigenfield.calibrate.lenses import KnownLens, undistort_pixels
 from eigenfield.calibrate.motion.colmap_core import pycolmap
+from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
@@ -79,14 +81,6 @@ class Features:
         """
         return Features(self.points[chosen], self.scales[chosen], self.descriptors[chosen], self.colours[chosen])
 
-    def with_points(self, points: NDArray[np.float64]) -> Features:
-        """The same features at other places.
-
-        Args:
-            points: (n, 2) pixels.
-        """
-        return replace(self, points=points)
-
 
 def extract_features(
     photos: PhotoSet, options: FeatureOptions | None = None, progress: Progress | None = None
@@ -110,12 +104,7 @@ def extract_features(
 def _extract(
     shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
-    def extract(shot: Shot) -> Features | CaptureError:
-        try:
-            return extract_features_of(shot, options)
-        except CaptureError as error:
-            return error
-
+    extract = or_error(partial(extract_features_of, options=options))
     return list(track(parallel_stream(extract, shots), stage, len(shots), progress))
 
 
@@ -165,12 +154,9 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
         Image.fromarray(grey).save(place / "grey.png", compress_level=1)
         with FEATURE_EXTRACTION_SLOTS:
             pycolmap.extract_features(
-                place / "features.db",
-                place,
-                image_names=["grey.png"],
-                extraction_options=settings,
+                place / "features.db", place, image_names=["grey.png"], extraction_options=settings,
                 device=pycolmap.Device.cpu,
-            )
+            )  # fmt: skip
         database = pycolmap.Database.open(place / "features.db")
         try:
             image = database.read_image_with_name("grey.png")
@@ -181,3 +167,16 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
         finally:
             database.close()
     return keypoints, descriptors.reshape(-1, 128)
+
+
+def undistort_features(features: Features, lens: KnownLens) -> tuple[Features, Features]:
+    """The features as a pinhole camera sees them, and as the photograph shows them, without those beyond the lens.
+
+    Args:
+        features: Of a photograph.
+        lens: The photograph's.
+    """
+    points = undistort_pixels(features.points, lens)
+    good = np.asarray(np.isfinite(points).all(axis=1))
+    seen = features.subset(good)
+    return replace(seen, points=points[good]), seen

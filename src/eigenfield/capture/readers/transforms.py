@@ -25,9 +25,8 @@ TRANSFORMS_FILE = "transforms.json"
 TRANSFORMS_MAX_BYTES = 256 * 2**20
 TRANSFORMS_PERSPECTIVE_MODELS = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "PERSPECTIVE")
 TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE",)
-TRANSFORMS_OWN_MODEL = (
-    "EIGENFIELD"  # a lens that no other reader of this format knows: they refuse the name, as they should
-)
+# a lens that no other reader of this format knows: they refuse the name, as they should
+TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
     "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
 }  # fmt: skip
@@ -245,8 +244,7 @@ def _read_lens(top: Mapping[str, Any], frame: Mapping[str, Any], label: str, pat
 
 def _read_own_lens(value: Any, label: str, path: Path) -> Lens:
     """A lens as `writers.transforms` writes it."""
-    model = value.get("model") if isinstance(value, dict) else None
-    numbers = value.get("coefficients") if isinstance(value, dict) else None
+    model, numbers = (value.get("model"), value.get("coefficients")) if isinstance(value, dict) else (None, None)
     if model not in TRANSFORMS_OWN_COEFFICIENTS or not isinstance(numbers, list) or not all(map(_is_number, numbers)):
         raise CaptureError("lens", f"{label} has no lens that is known", path=path, remedy="mend or remove its entry")
     coefficients = tuple(_as_float(number) for number in numbers)

@@ -66,7 +66,7 @@ def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
     total = max(float(surface.sum()), 1e-300)
     stretch, anisotropy = _stretch(p[laid], q[laid], surface[laid], signed[laid])
     return AtlasStatistics(
-        charts=len(chart_sizes(mesh)),
+        charts=int(chart_labels(mesh).max(initial=-1)) + 1,
         fill=float(np.abs(signed).sum()) * covered / max(int(layers.sum()), 1),
         overlap=doubled / covered if covered else 0.0,
         flat=float(surface[~laid].sum()) / total,
@@ -116,15 +116,6 @@ def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     label = vertex_components(mesh.faces, len(mesh.vertices))
     _, chart = np.unique(label[mesh.faces[:, 0]], return_inverse=True)
     return chart.astype(np.int32)
-
-
-def chart_sizes(mesh: Mesh) -> NDArray[np.int64]:
-    """(charts,) number of triangles of each chart.
-
-    Args:
-        mesh: The mesh.
-    """
-    return np.bincount(chart_labels(mesh))
 
 
 def atlas_fault(mesh: Mesh) -> str | None:

@@ -24,6 +24,7 @@ log = logging.getLogger("eigenfield.proxy")
 
 FUSION_ROWS_PER_TASK = 32
 FUSION_MAX_POINTS = 1_500_000
+FUSION_MIN_AGREEING_VIEWS = 2  # other views that must confirm a point
 FUSION_CELL_GROWTH = 1.25  # of the cells in each step, until few enough points remain
 
 
@@ -91,7 +92,6 @@ def fuse_depth_maps(
     views: Sequence[DepthView],
     *,
     tolerance: float = 0.01,
-    agreement: int = 2,
     limit: int = FUSION_MAX_POINTS,
     progress: Progress | None = None,
 ) -> OrientedPoints:
@@ -102,7 +102,6 @@ def fuse_depth_maps(
     Args:
         views: Depth maps.
         tolerance: Relative difference of depth up to which two views agree.
-        agreement: How many other views must agree.
         limit: Merge points into growing cells until at most so many remain.
         progress: Called for each part.
 
@@ -118,7 +117,6 @@ def fuse_depth_maps(
         )
     total = len(stack.inverse_depth)
     mean, counts, keep = np.empty((total, 3)), np.zeros(total, np.int16), np.zeros(total, np.bool_)
-    everyone = np.arange(len(views))
     bands = [
         (v, *band)
         for v, (_, height, _) in enumerate(stack.layout)
@@ -128,30 +126,30 @@ def fuse_depth_maps(
 
     def confirm(band: tuple[int, int, int]) -> None:
         confirm_points(
-            *band, stack.layout, stack.projections, stack.unprojections, stack.centres, everyone, stack.inverse_depth,
-            stack.normals, stack.level, stack.inside, tolerance, agreement, mean[spans[band[0]]],
+            *band, stack.layout, stack.projections, stack.unprojections, stack.centres, stack.inverse_depth,
+            stack.normals, stack.inside, tolerance, FUSION_MIN_AGREEING_VIEWS, mean[spans[band[0]]],
             counts[spans[band[0]]],
         )  # fmt: skip
 
     def select(band: tuple[int, int, int]) -> None:
         select_finest(
-            *band, stack.layout, stack.projections, everyone, mean, stack.normals, stack.level, counts, tolerance,
+            *band, stack.layout, stack.projections, mean, stack.normals, stack.level, counts, tolerance,
             keep[spans[band[0]]],
         )  # fmt: skip
 
-    for part in track(pieces(len(bands), 64), "fusion", len(pieces(len(bands), 64)), progress):
+    parts = pieces(len(bands), 64)
+    for part in track(parts, "fusion", len(parts), progress):
         parallel_map(confirm, bands[slice(*part)])
     parallel_map(select, bands)
     chosen = np.flatnonzero(keep)
     if len(chosen) == 0:
         raise ProxyError(
             "surface-no-points",
-            f"no point is confirmed by {agreement + 1} of the {len(views)} views",
+            f"no point is confirmed by {FUSION_MIN_AGREEING_VIEWS + 1} of the {len(views)} views",
             remedy="check the calibration (eigenfield inspect); the photographs must overlap and have texture",
         )
-    points = OrientedPoints(
-        mean[chosen], stack.normals[chosen], _point_colours(views, chosen, spans), _point_spacing(stack, chosen)
-    )
+    spacing = (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)  # the middle of each level's range
+    points = OrientedPoints(mean[chosen], stack.normals[chosen], _point_colours(views, chosen, spans), spacing)
     log.info("fusion: %d points from %d views", len(points), len(views))
     return subsample_points(points, limit)
 
@@ -166,8 +164,7 @@ def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
         points: The points.
         limit: How many may remain.
     """
-    factor = 1.0
-    result = points
+    factor, result = 1.0, points
     while len(result) > limit:
         result = _merge_cells(points, factor)
         factor *= FUSION_CELL_GROWTH
@@ -234,8 +231,3 @@ def _point_colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans:
             first, last = np.searchsorted(chosen, [span.start, span.stop])
             colours[first:last] = view.colour.reshape(-1, 3)[chosen[first:last] - span.start]
     return colours
-
-
-def _point_spacing(stack: _StackedViews, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    """From the levels: the middle of each level's range."""
-    return (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)

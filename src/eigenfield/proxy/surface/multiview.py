@@ -152,26 +152,15 @@ def surface_from_views(
         chosen = spread_views(cameras, MULTIVIEW_TUNING.coarse_views)
         pictures = _pictures(light_field, chosen, MULTIVIEW_TUNING.coarse_pixels, progress)
         views, tolerance = _depth_views(pictures, None, progress)
-        points = fuse_depth_maps(
-            views,
-            tolerance=tolerance,
-            agreement=MULTIVIEW_TUNING.min_neighbours,
-            limit=MULTIVIEW_TUNING.min_fused_points,
-            progress=progress,
-        ).positions
+        limit = MULTIVIEW_TUNING.min_fused_points
+        points = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress).positions
         log.info("coarse pass: %d points", len(points))
     chosen = spread_views(cameras, MULTIVIEW_TUNING.max_views)
-    pictures = _pictures(
-        light_field,
-        chosen,
-        min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen)),
-        progress,
-    )
+    most = min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen))
+    pictures = _pictures(light_field, chosen, most, progress)
     views, tolerance = _depth_views(pictures, points, progress)
     limit = max(MULTIVIEW_TUNING.points_per_triangle * triangles, MULTIVIEW_TUNING.min_fused_points)
-    fused = fuse_depth_maps(
-        views, tolerance=tolerance, agreement=MULTIVIEW_TUNING.min_neighbours, limit=limit, progress=progress
-    )
+    fused = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central_camera(cameras)]
     # masked pixels have no depth that could contradict a patch: nothing without points stays there
@@ -180,9 +169,8 @@ def surface_from_views(
     if masked:
         mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background
-    mesh, error = simplify_with_error(
-        mesh, fused, round((1 - MULTIVIEW_TUNING.background_fraction * closed) * triangles), middle
-    )
+    share = 1 - MULTIVIEW_TUNING.background_fraction * closed
+    mesh, error = simplify_with_error(mesh, fused, round(share * triangles), middle)
     for primitive in primitives:
         mesh = insert_primitive(mesh, primitive, cameras)
     if closed:
@@ -288,9 +276,8 @@ def _inverse_range(
     distances = np.sort([float(np.linalg.norm(other.centre - camera.centre)) for other in cameras])
     baseline = float(np.median(distances[distances > 0][:3])) if (distances > 0).any() else 1.0
     parallax = camera.K[0, 0] * baseline
-    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, MULTIVIEW_TUNING.max_parallax_sides * max(
-        camera.width, camera.height
-    ) / parallax
+    most = MULTIVIEW_TUNING.max_parallax_sides * max(camera.width, camera.height)
+    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, most / parallax
 
 
 def _depth_map(
@@ -309,11 +296,11 @@ def _depth_map(
     for slot, i in zip(stack, [index, *others], strict=True):
         part = pictures[i].pixels
         slot[: part.shape[0], : part.shape[1]] = part
-    depth = estimate_depth(
-        stack, [own.camera, *cameras], reference, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds
-    )
+    rounds = MULTIVIEW_TUNING.refinement_rounds
+    depth = estimate_depth(stack, [own.camera, *cameras], reference, (0.0, reach), rounds=rounds)
     w = reference.offset + reference.scale * depth.d
-    w[(depth.d <= MULTIVIEW_TUNING.range_end_labels) | (depth.d >= reach - MULTIVIEW_TUNING.range_end_labels)] = 0
+    end = MULTIVIEW_TUNING.range_end_labels
+    w[(depth.d <= end) | (depth.d >= reach - end)] = 0
     for kept in (own.mask, own.known):
         if kept is not None:
             w[~kept] = 0
