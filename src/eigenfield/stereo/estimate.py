@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,11 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera import Camera
 from eigenfield.imaging.sampling import farthest_points
 from eigenfield.stereo.detail import detail_pictures
 from eigenfield.stereo.extend import extend_depth
-from eigenfield.stereo.reference_view import ReferenceView, view_matrices
 from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
@@ -65,32 +62,15 @@ class DepthTuning:
 DEPTH_TUNING = DepthTuning()
 
 
-@dataclass(frozen=True, eq=False)
-class DepthMap:
-    """The depth map of a reference view.
-
-    Attributes:
-        d: (h, w) float32 labels.
-        confidence: (h, w) float32, about 1 / variance of d; 0 where nothing is known.
-        count: (h, w) int32 number of views that see the point.
-        texture: (h, w, 3) float32 mean of these views, grey levels.
-    """
-
-    d: NDArray[np.float32]
-    confidence: NDArray[np.float32]
-    count: NDArray[np.int32]
-    texture: NDArray[np.float32]
-
-
 def estimate_depth(
     pictures: Pictures,
-    cameras: Sequence[Camera] | NDArray[np.float64],
-    reference: ReferenceView | tuple[int, int],
+    matrices: NDArray[np.float64],
+    shape: tuple[int, int],
     d_range: tuple[float, float],
     *,
     rounds: int = len(DEPTH_TUNING.refinement_step_labels),
-) -> DepthMap:
-    """The depth map of a reference view from V views.
+) -> NDArray[np.float32]:
+    """The depth map of a reference view from V views, (h, w) labels.
 
     Labels are first compared with the reference camera's own picture, if it is among the views. The first sweep and
     semi-global matching run at half resolution over the whole range, with the best half of the views. The second sweep
@@ -100,23 +80,16 @@ def estimate_depth(
 
     Args:
         pictures: (V, H, W, 3) uint8 or packed.
-        cameras: V cameras, or their (V, 3, 4) matrices on (x, y, d, 1).
-        reference: The reference view. With matrices, its (height, width) is enough.
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
         d_range: Lowest and highest label.
         rounds: Rounds of refinement over all views.
 
     Raises:
-        TypeError: `cameras` are cameras and `reference` is a shape.
         ValueError: The range is empty, or pictures or matrices are malformed.
     """
     packed = pack_pictures(pictures)
-    shape = reference.shape if isinstance(reference, ReferenceView) else reference
-    if isinstance(cameras, np.ndarray):
-        matrices = check_matrices(cameras, len(packed))
-    elif isinstance(reference, ReferenceView):
-        matrices = view_matrices(reference, cameras)
-    else:
-        raise TypeError("cameras need a ReferenceView; a shape goes with matrices")
+    matrices = check_matrices(matrices, len(packed))
     low, high = float(d_range[0]), float(d_range[1])
     if not low < high:
         raise ValueError(f"an empty range of labels: {low} to {high}")
@@ -133,7 +106,6 @@ def estimate_depth(
     d = _sweep_coarse(packed, matrices, shape, chosen, low, high, step)
     d = extend(np.asarray(cv2.resize(d, (shape[1], shape[0]), interpolation=cv2.INTER_NEAREST), np.float32))
     d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
-    confidence = np.zeros(shape, np.float32)
     steps = DEPTH_TUNING.refinement_step_labels
     buffers = np.empty((len(packed), *frame), np.float32)
     for number in range(rounds):
@@ -146,9 +118,7 @@ def estimate_depth(
         d = extend(np.clip(smooth_depth(d, confidence, guide), low, high).astype(np.float32))
         if number == 0 and rounds > 1:
             d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
-    depth_buffers(matrices, d, frame, out=buffers)
-    texture, count = mean_texture(packed, matrices, d, buffers)
-    return DepthMap(d, confidence, count, texture)
+    return d
 
 
 def warp_reference_picture(

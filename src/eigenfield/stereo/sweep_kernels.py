@@ -12,8 +12,7 @@ from eigenfield.stereo.taps import (
     TAP_FLOAT_SLOTS,
     TAP_INT_SLOTS,
     TAP_RUN,
-    bilinear_channel,
-    bilinear_weights,
+    bilinear_colour,
     fetch_run,
     is_visible,
     project_run,
@@ -32,10 +31,7 @@ def _add_colours(count, floats, ints, centre, scale_levels, total):
     """
     scale = np.float32(1) / (scale_levels * scale_levels) if scale_levels > _ZERO else _ZERO
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
-        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11)
-        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11)
-        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        r, g, b = bilinear_colour(floats, ints, i)
         er, eg, eb = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
         w = is_visible(floats, i) / (_ONE + (er * er + eg * eg + eb * eb) * scale)
         total[i] += w * r
@@ -49,10 +45,8 @@ def _add_moments(count, floats, ints, centre, max_difference, moments):
     """moments (2 slots): number, and sum of min(|colour - centre|^2, 3 max_difference^2) over visible points."""
     max_square = np.float32(3) * max_difference * max_difference
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
-        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11) - centre[i]
-        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11) - centre[i + TAP_RUN]
-        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11) - centre[i + 2 * TAP_RUN]
+        r, g, b = bilinear_colour(floats, ints, i)
+        r, g, b = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
         m = is_visible(floats, i)
         moments[i] += m
         moments[i + TAP_RUN] += m * min(r * r + g * g + b * b, max_square)

@@ -14,8 +14,7 @@ from eigenfield.stereo.taps import (
     TAP_FLOAT_SLOTS,
     TAP_INT_SLOTS,
     TAP_RUN,
-    bilinear_channel,
-    bilinear_weights,
+    bilinear_colour,
     fetch_run,
     is_visible,
     project_run,
@@ -101,9 +100,9 @@ def mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, 
 def _add_means(count, floats, ints, total):
     """total += visible (r, g, b, 1)."""
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
         m = is_visible(floats, i)
-        total[i] += m * bilinear_channel(ints, i, 0, w00, w01, w10, w11)
-        total[i + TAP_RUN] += m * bilinear_channel(ints, i, 8, w00, w01, w10, w11)
-        total[i + 2 * TAP_RUN] += m * bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        r, g, b = bilinear_colour(floats, ints, i)
+        total[i] += m * r
+        total[i + TAP_RUN] += m * g
+        total[i + 2 * TAP_RUN] += m * b
         total[i + 3 * TAP_RUN] += m

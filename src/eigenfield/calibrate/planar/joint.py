@@ -262,7 +262,7 @@ def refine_planar(
     everything = np.arange(len(pictures))
     if exact:
         span = (joint.low, joint.high)
-        joint.d = estimate_depth(pictures, joint.matrices(everything), joint.reference.shape, span).d
+        joint.d = estimate_depth(pictures, joint.matrices(everything), joint.reference.shape, span)
         joint.update_texture(everything, pictures)
         joint.extend(len(pictures))
     joint.measure_errors(everything)

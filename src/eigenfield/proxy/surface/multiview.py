@@ -28,8 +28,7 @@ from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_point
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.stereo import ReferenceView
-from eigenfield.stereo.estimate import estimate_depth
+from eigenfield.stereo import ReferenceView, estimate_depth, view_matrices
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -287,7 +286,8 @@ def _depth_map(
     own = pictures[index]
     cameras = [pictures[i].camera for i in others]
     axis = own.camera.R[2]
-    across = [np.linalg.norm(d - (d @ axis) * axis) for d in (camera.centre - own.camera.centre for camera in cameras)]
+    apart = [camera.centre - own.camera.centre for camera in cameras]
+    across = [np.linalg.norm(step - (step @ axis) * axis) for step in apart]
     unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
     reference = ReferenceView.with_margin(own.camera, 0, span[0], unit)
     reach = (span[1] - span[0]) / unit
@@ -296,11 +296,11 @@ def _depth_map(
     for slot, i in zip(stack, [index, *others], strict=True):
         part = pictures[i].pixels
         slot[: part.shape[0], : part.shape[1]] = part
-    rounds = MULTIVIEW_TUNING.refinement_rounds
-    depth = estimate_depth(stack, [own.camera, *cameras], reference, (0.0, reach), rounds=rounds)
-    w = reference.offset + reference.scale * depth.d
+    matrices = view_matrices(reference, [own.camera, *cameras])
+    d = estimate_depth(stack, matrices, reference.shape, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds)
+    w = reference.offset + reference.scale * d
     end = MULTIVIEW_TUNING.range_end_labels
-    w[(depth.d <= end) | (depth.d >= reach - end)] = 0
+    w[(d <= end) | (d >= reach - end)] = 0
     for kept in (own.mask, own.known):
         if kept is not None:
             w[~kept] = 0

@@ -38,14 +38,12 @@ class SurfaceError:
 
     Attributes:
         rms: Root mean square, world units.
-        p95: 95th percentile, world units.
         relative: rms over the diagonal of the points' box (1st to 99th percentiles).
         pixels: Root mean square in pixels of a camera, as if the whole distance were across the line of sight.
         pixels_p95: 95th percentile in pixels.
     """
 
     rms: float
-    p95: float
     relative: float
     pixels: float
     pixels_p95: float
@@ -159,7 +157,6 @@ def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) ->
     rms = float(np.sqrt((distance**2).mean()))
     return SurfaceError(
         rms,
-        float(np.percentile(distance, 95)),
         rms / (float(np.linalg.norm(high - low)) or 1.0),
         float(np.sqrt((pixels**2).mean())) if len(pixels) else 0.0,
         float(np.percentile(pixels, 95)) if len(pixels) else 0.0,
