@@ -17,9 +17,10 @@ from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
 from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, estimate_second_layer, relief_mesh
 from eigenfield.proxy.relief import height_field
 from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
-from eigenfield.proxy.relief.height_field import face_components, triangulate_height_field
+from eigenfield.proxy.relief.height_field import triangulate_height_field
 from eigenfield.proxy.relief.kernels import label_pixels
 from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
+from eigenfield.proxy.topology import face_components
 from eigenfield.stereo import ReferenceView, view_matrices
 
 OFFSET, SCALE = 0.25, 0.01  # 1/Z = OFFSET + SCALE d

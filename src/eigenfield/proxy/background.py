@@ -132,7 +132,7 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
     if len(mesh.faces) == 0:
         raise ProxyError("surface-empty", "the surface is empty", remedy="check the calibration and the depth range")
     samples, _ = surface_samples(mesh, BACKGROUND_TUNING.surface_samples)
-    directions = _sheet_directions(samples, cameras) or _dome_directions(samples, cameras)
+    directions = _sheet_directions(samples, cameras) or _dome_directions(cameras)
     far = _fit_inverse_distance(directions, samples, cameras)
     for _ in range(BACKGROUND_TUNING.push_rounds):
         w, hidden = _push_behind(directions, far, mesh, cameras)
@@ -146,7 +146,7 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
 
 
 def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[Mesh, int]:
-    """A mesh with those faces of another that some camera sees, and those next to them; how many they are.
+    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many.
 
     Args:
         mesh: The mesh.
@@ -154,7 +154,12 @@ def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[
         cameras: All cameras.
     """
     both = join_meshes(mesh, other)
-    chosen = add_face_ring(other.faces, seen_faces(both, cameras)[len(mesh.faces) :])
+    seen = np.zeros(len(both.faces), np.bool_)
+    for faces in parallel_map(lambda camera: np.unique(rasterise_view(both, _small_camera(camera)).face), cameras):
+        seen[faces[faces >= 0]] = True
+    touched = np.zeros(len(other.vertices), np.bool_)
+    touched[other.faces[seen[len(mesh.faces) :]]] = True
+    chosen = touched[other.faces].any(axis=1)
     kept = np.append(np.ones(len(mesh.faces), np.bool_), chosen)
     return remove_unused_vertices(Mesh(both.vertices, both.faces[kept])), int(chosen.sum())
 
@@ -182,34 +187,9 @@ def camera_coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64
     return np.array(parallel_map(lambda camera: float((rasterise_view(mesh, camera).face >= 0).mean()), cameras))
 
 
-def seen_faces(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.bool_]:
-    """(m,) faces that are nearest at some pixel of some camera, in small pictures.
-
-    Args:
-        mesh: The mesh.
-        cameras: The cameras.
-    """
-    seen = np.zeros(len(mesh.faces), np.bool_)
-    for faces in parallel_map(lambda camera: np.unique(rasterise_view(mesh, _small_camera(camera)).face), cameras):
-        seen[faces[faces >= 0]] = True
-    return seen
-
-
 def _small_camera(camera: Camera) -> Camera:
     scale = min(1.0, BACKGROUND_TUNING.visibility_pixels / max(camera.width, camera.height))
     return camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
-
-
-def add_face_ring(faces: NDArray[np.int32], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(m,) the chosen faces and all faces that share a vertex with them.
-
-    Args:
-        faces: (m, 3).
-        chosen: (m,) mask.
-    """
-    touched = np.zeros(int(faces.max()) + 1, np.bool_)
-    touched[faces[chosen]] = True
-    return np.asarray(touched[faces].any(axis=1))
 
 
 def corner_rays(camera: Camera) -> NDArray[np.float64]:
@@ -266,7 +246,7 @@ def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -
     return Directions(centre, vectors, faces.astype(np.int32), axis)
 
 
-def _dome_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions:
+def _dome_directions(cameras: Sequence[Camera]) -> Directions:
     """All directions from the middle of the cameras."""
     import trimesh
 

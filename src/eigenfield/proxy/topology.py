@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.imaging.graph import components, edge_components, face_edges
+from eigenfield.imaging.graph import components, edge_components, face_edges, vertex_components
 from eigenfield.proxy.topology_kernels import triangulate_least_area
 
 HOLE_MAX_EDGES = 200  # of a hole that is filled: the triangulation is cubic in it
@@ -37,6 +37,17 @@ def face_patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = Non
     chosen = np.arange(len(faces)) if which is None else np.flatnonzero(which)
     label[chosen] = edge_components(faces[chosen])
     return label
+
+
+def face_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
+    """(m,) index of the vertex-connected component of each triangle.
+
+    Args:
+        faces: (m, 3).
+        vertices: Number of vertices.
+    """
+    label = vertex_components(faces, vertices)
+    return np.unique(label[faces[:, 0]], return_inverse=True)[1].astype(np.int32)
 
 
 def remove_islands(mesh: Mesh, min_fraction: float) -> Mesh:

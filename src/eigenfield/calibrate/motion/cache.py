@@ -116,7 +116,7 @@ def _write_matches(path: Path, matches: Sequence[Match]) -> None:
     }
     np.savez(
         path,
-        pairs=np.array([(m.first, m.second, m.putative) for m in matches], np.int64).reshape(-1, 3),
+        pairs=np.array([(m.first, m.second) for m in matches], np.int64).reshape(-1, 2),
         verified=np.array([m.geometry is not None for m in matches], bool),
         config=np.array([int(m.geometry.config) for m in good], np.int64),
         count=np.array([m.inliers for m in good], np.int64),
@@ -134,7 +134,7 @@ def _read_matches(path: Path) -> list[Match]:
         stored = {name: file[name] for name in file.files}
     ends = np.cumsum(stored["count"])
     matches, number = [], 0
-    for (first, second, putative), verified in zip(stored["pairs"].tolist(), stored["verified"], strict=True):
+    for (first, second), verified in zip(stored["pairs"].tolist(), stored["verified"], strict=True):
         geometry = None
         if verified:
             geometry = pycolmap.TwoViewGeometry()
@@ -144,5 +144,5 @@ def _read_matches(path: Path) -> list[Match]:
                 if np.isfinite(stored[name][number]).all():
                     setattr(geometry, name, stored[name][number])
             number += 1
-        matches.append(Match(first, second, putative, geometry))
+        matches.append(Match(first, second, geometry))
     return matches

@@ -60,26 +60,16 @@ class Features:
 
     Attributes:
         points: (n, 2) float64 pixels of the photograph, centres at +0.5.
-        scales: (n,) float32 pixels.
         descriptors: (n, 128) uint8 of norm 512.
         colours: (n, 3) uint8.
     """
 
     points: NDArray[np.float64]
-    scales: NDArray[np.float32]
     descriptors: NDArray[np.uint8]
     colours: NDArray[np.uint8]
 
     def __len__(self) -> int:
         return len(self.points)
-
-    def subset(self, chosen: NDArray[np.bool_]) -> Features:
-        """Some of the features.
-
-        Args:
-            chosen: (n,) which.
-        """
-        return Features(self.points[chosen], self.scales[chosen], self.descriptors[chosen], self.colours[chosen])
 
 
 def extract_features(
@@ -135,7 +125,7 @@ def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     order = np.lexsort((points[:, 1], points[:, 0], -scales))
     order = order[counts[order]][: options.max_features]
     colours = np.rint(pixels[row, column] * 255).astype(np.uint8)
-    return Features(points[order], scales[order], np.ascontiguousarray(descriptors[order]), colours[order])
+    return Features(points[order], np.ascontiguousarray(descriptors[order]), colours[order])
 
 
 def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -178,5 +168,5 @@ def undistort_features(features: Features, lens: KnownLens) -> tuple[Features, F
     """
     points = undistort_pixels(features.points, lens)
     good = np.asarray(np.isfinite(points).all(axis=1))
-    seen = features.subset(good)
+    seen = Features(features.points[good], features.descriptors[good], features.colours[good])
     return replace(seen, points=points[good]), seen

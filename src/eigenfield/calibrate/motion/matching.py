@@ -77,13 +77,11 @@ class Match:
     Attributes:
         first: Index of the first photograph.
         second: Index of the second, larger than `first`.
-        putative: Number of matches before verification.
         geometry: COLMAP's two-view geometry with the verified matches; None if there is none.
     """
 
     first: int
     second: int
-    putative: int
     geometry: Any
 
     @property
@@ -245,7 +243,7 @@ def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j:
         again = _verify(a, b, cameras[i], cameras[j], _one_to_one(both), seed)
         if again is not None and len(again.inlier_matches) > len(geometry.inlier_matches):
             geometry = again
-    return Match(i, j, len(matches), geometry)
+    return Match(i, j, geometry)
 
 
 def _as_float(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:

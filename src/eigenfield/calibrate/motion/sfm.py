@@ -40,9 +40,7 @@ log = logging.getLogger("eigenfield.calibrate")
 
 SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
 SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known
-NO_FEATURES: Features = Features(
-    np.zeros((0, 2)), np.zeros(0, np.float32), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8)
-)
+NO_FEATURES = Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8))
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,7 @@ def structure_from_motion(
     report = _report(photos, found, matches, model)
     if model is None:
         raise _failure_error(photos, report)
-    return _assemble(photos, features, undistorted, known, model, report)
+    return _assemble(photos, features, known, model, report)
 
 
 def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
@@ -284,7 +282,6 @@ def _may_be_grid(photos: PhotoSet) -> bool:
 def _assemble(
     photos: PhotoSet,
     features: Sequence[Features],
-    undistorted: Sequence[Features],
     known: Sequence[KnownLens] | None,
     model: SparseModel,
     report: Sequence[ViewReport],

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
-from eigenfield.imaging.graph import vertex_components
 from eigenfield.proxy.atlas.kernels import count_layers
+from eigenfield.proxy.topology import face_components
 
 ATLAS_RASTER_TEXELS = 2048  # side of the raster on which overlap and fill are counted
 ATLAS_MARGIN_TEXELS = 0.05  # of that raster: UVs are often printed with six digits
@@ -113,9 +113,7 @@ def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     Args:
         mesh: The mesh.
     """
-    label = vertex_components(mesh.faces, len(mesh.vertices))
-    _, chart = np.unique(label[mesh.faces[:, 0]], return_inverse=True)
-    return chart.astype(np.int32)
+    return face_components(mesh.faces, len(mesh.vertices))
 
 
 def atlas_fault(mesh: Mesh) -> str | None:

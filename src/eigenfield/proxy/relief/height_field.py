@@ -18,7 +18,7 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
 from eigenfield.core.mesh import Mesh, barycentric_coordinates
-from eigenfield.imaging.graph import components, vertex_components
+from eigenfield.imaging.graph import components
 from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
 from eigenfield.proxy.relief.kernels import label_pixels, refine_greedily, wedge_moments
 from eigenfield.proxy.relief.triangulation import (
@@ -360,18 +360,6 @@ def height_field_to_world(reference: ReferenceView, mesh: HeightFieldMesh) -> Me
     d = np.maximum(mesh.d, (HEIGHT_FIELD_TUNING.min_inverse_ratio * nearest - reference.offset) / reference.scale)
     faces = np.ascontiguousarray(mesh.faces[:, ::-1])  # y is down: positive area is clockwise for the camera
     return Mesh(reference.points(mesh.x, mesh.y, d).astype(np.float32), faces)
-
-
-def face_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int64]:
-    """(m,) index of the vertex-connected component of each triangle, in order of their first triangles.
-
-    Args:
-        faces: (m, 3).
-        vertices: Number of vertices.
-    """
-    label = vertex_components(faces, vertices)[faces[:, 0]]
-    _, first, index = np.unique(label, return_index=True, return_inverse=True)
-    return np.asarray(np.argsort(np.argsort(first))[index], np.int64)
 
 
 def extract_faces(mesh: HeightFieldMesh, faces: NDArray[np.int64] | None = None) -> HeightFieldMesh:

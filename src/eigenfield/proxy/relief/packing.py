@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from eigenfield.core.mesh import signed_areas
-from eigenfield.proxy.relief.height_field import HeightFieldMesh, extract_faces, face_components
+from eigenfield.proxy.relief.height_field import HeightFieldMesh, extract_faces
 from eigenfield.proxy.relief.kernels import label_pixels, place_first_fit
 from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
+from eigenfield.proxy.topology import face_components
 
 PACK_MIN_BOX_FILL = 0.6  # fraction of its box that a piece should fill
 PACK_MIN_BOX_PIXELS = 24.0  # longer side of a box that is not divided further

@@ -1,4 +1,4 @@
-"""Fusion of the depth maps of many views into one set of oriented, coloured points.
+"""Fusion of the depth maps of many views into one set of oriented points.
 
 A point stays if enough other views confirm it and no majority sees through it. Of the pixels that show one surface
 element, the finest represents all of them. Merrell et al., "Real-Time Visibility-Based Fusion of Depth Maps", 2007.
@@ -36,13 +36,11 @@ class DepthView:
         camera: At the depth map's size.
         inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is
             none.
-        colour: (H, W, 3) uint8; None: grey.
         mask: (H, W) bool, True where the photograph is valid; None: everywhere.
     """
 
     camera: Camera
     inverse_depth: NDArray[np.float32]
-    colour: NDArray[np.uint8] | None = None
     mask: NDArray[np.bool_] | None = None
 
 
@@ -53,25 +51,15 @@ class OrientedPoints:
     Attributes:
         positions: (n, 3) float64.
         normals: (n, 3) float32, unit, outwards.
-        colours: (n, 3) uint8.
         spacing: (n,) float32, world units: approximate distance to the next point, a pixel's width on the surface.
     """
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float32]
-    colours: NDArray[np.uint8]
     spacing: NDArray[np.float32]
 
     def __len__(self) -> int:
         return len(self.positions)
-
-    def subset(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> OrientedPoints:
-        """Some of the points.
-
-        Args:
-            chosen: A mask or indices.
-        """
-        return OrientedPoints(self.positions[chosen], self.normals[chosen], self.colours[chosen], self.spacing[chosen])
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,7 +137,7 @@ def fuse_depth_maps(
             remedy="check the calibration (eigenfield inspect); the photographs must overlap and have texture",
         )
     spacing = (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)  # the middle of each level's range
-    points = OrientedPoints(mean[chosen], stack.normals[chosen], _point_colours(views, chosen, spans), spacing)
+    points = OrientedPoints(mean[chosen], stack.normals[chosen], spacing)
     log.info("fusion: %d points from %d views", len(points), len(views))
     return subsample_points(points, limit)
 
@@ -187,8 +175,7 @@ def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
     normals = average(points.normals.astype(np.float64))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     spacing = np.maximum(average(points.spacing.astype(np.float64)), factor * size[order][starts] / np.sqrt(2))
-    colours = np.rint(average(points.colours.astype(np.float64))).astype(np.uint8)
-    return OrientedPoints(average(points.positions), normals.astype(np.float32), colours, spacing.astype(np.float32))
+    return OrientedPoints(average(points.positions), normals.astype(np.float32), spacing.astype(np.float32))
 
 
 def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
@@ -222,12 +209,3 @@ def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
 
     parallel_map(fill, range(len(views)))
     return stack
-
-
-def _point_colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Sequence[slice]) -> NDArray[np.uint8]:
-    colours = np.full((len(chosen), 3), 128, np.uint8)
-    for view, span in zip(views, spans, strict=True):
-        if view.colour is not None:
-            first, last = np.searchsorted(chosen, [span.start, span.stop])
-            colours[first:last] = view.colour.reshape(-1, 3)[chosen[first:last] - span.start]
-    return colours

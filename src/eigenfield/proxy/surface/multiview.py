@@ -21,7 +21,7 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
 from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
-from eigenfield.proxy.background import camera_coverage, fill_background
+from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
@@ -92,14 +92,12 @@ class ReconstructedSurface:
     Attributes:
         mesh: Without UVs.
         error: Of its simplification, in pixels of the central camera.
-        coverage: (n,) fraction of each camera's pixels that the mesh covers.
         views: Number of depth maps.
         points: Number of fused points.
     """
 
     mesh: Mesh
     error: SurfaceError
-    coverage: NDArray[np.float64]
     views: int
     points: int
 
@@ -174,9 +172,7 @@ def surface_from_views(
         mesh = insert_primitive(mesh, primitive, cameras)
     if closed:
         mesh = fill_background(mesh, cameras)
-    covered = camera_coverage(mesh, cameras)
-    log.info("surface: %d triangles, coverage %.4f (least %.4f)", len(mesh.faces), covered.mean(), covered.min())
-    return ReconstructedSurface(mesh, error, covered, len(chosen), len(fused))
+    return ReconstructedSurface(mesh, error, len(chosen), len(fused))
 
 
 def _central_camera(cameras: Sequence[Camera]) -> int:
@@ -247,7 +243,7 @@ def _depth_views(
         inverse_depth, tolerance = _depth_map(index, others, pictures, span)
         tolerances.append(tolerance)
         picture = pictures[index]
-        views.append(DepthView(picture.camera, inverse_depth, picture.pixels, picture.mask))
+        views.append(DepthView(picture.camera, inverse_depth, picture.mask))
     if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
         raise ProxyError(
             "surface-overlap",
