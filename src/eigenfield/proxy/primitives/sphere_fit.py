@@ -205,15 +205,13 @@ def fit_sphere(
     chosen = _choose_views(view, cameras)
     views = _blur_views(chosen, cameras, observations, progress)
     baseline = float(np.median([np.linalg.norm(cameras[i].centre - camera.centre) for i in chosen[1:]]))
-    frame = _ReferenceFrame(camera, baseline)
     circle = np.array([*middle, (region.width + region.height) / 4])
-    box = _SearchBox(circle, np.array([region.width, region.height]))
+    search = _Search(camera, baseline, circle, np.array([region.width, region.height]))
     coarse_views = views.first(SPHERE_FIT_TUNING.coarse_views)
-    starts = _start_candidates(frame, coarse_views, box)
-    coarse = sorted((_minimise(p, frame, coarse_views, 0, box) for p in starts), key=lambda fit: fit[1])
-    fine = [_minimise(p, frame, views, -1, box) for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]]
-    best = min(fine, key=lambda fit: fit[1])[0]
-    sphere = frame.sphere(best)
+    starts = _start_candidates(search, coarse_views)
+    coarse = sorted((search.minimise(p, coarse_views, 0) for p in starts), key=lambda fit: fit[1])
+    fine = [search.minimise(p, views, -1) for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]]
+    sphere = search.sphere(min(fine, key=lambda fit: fit[1])[0])
     contrast = _contrast(sphere, views, -1)
     if not contrast > SPHERE_FIT_TUNING.min_contrast:
         raise ProxyError(
@@ -260,23 +258,23 @@ def sphere_outlines(
 
 
 @dataclass(frozen=True, eq=False)
-class _SearchBox:
-    """Where the outline is searched: the circle (x, y, radius) inside the box, and the box's width and height."""
-
-    circle: NDArray[np.float64]
-    size: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class _ReferenceFrame:
-    """Parameters of a sphere, four numbers in pixels.
+class _Search:
+    """The search of a sphere by four parameters in pixels.
 
     They are the outline's middle and radius in the reference view, and the parallax of its depth over the typical
     distance to the other cameras.
+
+    Attributes:
+        camera: Of the reference view.
+        baseline: Typical distance to the other cameras, world units.
+        circle: (3,) x, y and radius of the circle in the box in which the outline is searched.
+        size: (2,) width and height of the box.
     """
 
     camera: Camera
     baseline: float
+    circle: NDArray[np.float64]
+    size: NDArray[np.float64]
 
     def sphere(self, p: NDArray[np.float64]) -> SpherePrimitive:
         focal = self.camera.K[0, 0]
@@ -286,6 +284,15 @@ class _ReferenceFrame:
         angle = np.arctan(max(p[2], 1e-3) / focal * ray[2] / float(ray @ ray) ** 0.5)
         x, y, z = (self.camera.R.T @ (local - self.camera.t)).tolist()
         return SpherePrimitive((x, y, z), float(np.sin(angle) * np.linalg.norm(local)))
+
+    def cost(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> float:
+        """The negative mean step, plus the penalty for leaving the box."""
+        off = np.append((p[:2] - self.circle[:2]) / self.size, np.log(max(p[2], 1e-3) / self.circle[2]))
+        return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(self.sphere(p), views, level)
+
+    def minimise(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> tuple[NDArray[np.float64], float]:
+        step = SPHERE_FIT_TUNING.blur_sigma_pixels[level]
+        return _simplex(lambda q: self.cost(q, views, level), p, step, 250, 1e-5)
 
 
 def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
@@ -349,12 +356,6 @@ def _colour_steps(
     return np.minimum(steps, cap)
 
 
-def _cost(p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox) -> float:
-    """The negative mean step, plus the penalty for leaving the box."""
-    off = np.append((p[:2] - box.circle[:2]) / box.size, np.log(max(p[2], 1e-3) / box.circle[2]))
-    return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(frame.sphere(p), views, level)
-
-
 def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> float:
     """The mean step over the views that see enough of the outline; 0 if fewer than two (of several) do."""
     steps = _colour_steps(views, level, sphere)
@@ -363,13 +364,6 @@ def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> floa
     if int(enough.sum()) < min(2, len(views)):
         return 0.0
     return float((np.where(there, steps, 0).sum(axis=1)[enough] / there.sum(axis=1)[enough]).mean())
-
-
-def _minimise(
-    p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox
-) -> tuple[NDArray[np.float64], float]:
-    step = SPHERE_FIT_TUNING.blur_sigma_pixels[level]
-    return _simplex(lambda q: _cost(q, frame, views, level, box), p, step, 250, 1e-5)
 
 
 def _simplex(
@@ -386,19 +380,19 @@ def _simplex(
     return np.asarray(found.x, np.float64), float(found.fun)
 
 
-def _start_candidates(frame: _ReferenceFrame, views: _BlurredViews, box: _SearchBox) -> list[NDArray[np.float64]]:
+def _start_candidates(search: _Search, views: _BlurredViews) -> list[NDArray[np.float64]]:
     """The best circles of the reference view near the box, each at its best depths; the best of all these.
 
     Depths are parallaxes, evenly up to the picture's size.
     """
-    nearest = 0.6 * max(frame.camera.width, frame.camera.height)
+    nearest = 0.6 * max(search.camera.width, search.camera.height)
     depths = nearest * (np.arange(SPHERE_FIT_TUNING.swept_depths) + 0.5) / SPHERE_FIT_TUNING.swept_depths
-    x, y, r = box.circle
+    x, y, r = search.circle
     typical = float(np.median(depths))
     alone = views.first(1)
 
     def outline(p: NDArray[np.float64]) -> float:
-        return _cost(np.append(p, typical), frame, alone, 0, box)
+        return search.cost(np.append(p, typical), alone, 0)
 
     shifts, growths = SPHERE_FIT_TUNING.start_shifts, SPHERE_FIT_TUNING.start_growths
     grid = [np.array([x + dx * r, y + dy * r, g * r]) for dx in shifts for dy in shifts for g in growths]
@@ -407,7 +401,7 @@ def _start_candidates(frame: _ReferenceFrame, views: _BlurredViews, box: _Search
     found, costs = (np.array(part) for part in zip(*fits, strict=True))
     circles = _best_distinct(costs, found, near, SPHERE_FIT_TUNING.start_circles)
     solid = np.array([[*circle, w] for circle in circles for w in depths])
-    costs = np.array([_cost(p, frame, views, 0, box) for p in solid])
+    costs = np.array([search.cost(p, views, 0) for p in solid])
     step = 1.5 * float(np.diff(depths).max())
     return _best_distinct(costs, solid, np.append(near, step), SPHERE_FIT_TUNING.starts)
 

@@ -121,10 +121,8 @@ def _widen_reference(
             pixels = (points @ reference.camera.K.T)[:, :2] * inverse
             beyond = max(beyond, float(-pixels.min()), float((pixels - (width, height)).max()))
     pad = int(np.ceil(min(beyond, BACKDROP_MAX_BORDER_SIDES * max(reference.shape)))) + 2
-    inner = reference.camera.K.copy()
-    inner[:2, 2] += pad
-    camera = replace(reference.camera, K=inner, width=width + 2 * pad, height=height + 2 * pad)
-    return replace(reference, camera=camera, margin=reference.margin + pad)
+    wide = ReferenceView.with_margin(reference.camera, pad, reference.offset, reference.scale)
+    return replace(wide, margin=reference.margin + pad)
 
 
 def _farthest_labels(reference: ReferenceView, layers: Sequence[Mesh]) -> NDArray[np.float32]:
