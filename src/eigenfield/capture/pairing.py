@@ -16,7 +16,7 @@ from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
 from eigenfield.capture.messages import describe, natural_key
-from eigenfield.capture.photographs.read import Header, read_header
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map
@@ -101,22 +101,13 @@ def _match_entries(
 def _make_views(
     pairs: Sequence[tuple[Entry, Path]], finder: PhotographFinder, calibration: Path
 ) -> tuple[list[View], list[CaptureError], list[str]]:
-    headers = parallel_map(or_error(read_header), [path for _, path in pairs])
-    views: list[View] = []
-    errors: list[CaptureError] = []
-    rescaled: list[View] = []
-    for (entry, path), header in zip(pairs, headers, strict=True):
-        if isinstance(header, CaptureError):
-            errors.append(header)
-            continue
-        try:
-            view, scaled = _make_view(entry, path, header, finder, calibration)
-        except CaptureError as error:
-            errors.append(error)
-            continue
-        views.append(view)
-        if scaled:
-            rescaled.append(view)
+    def make(pair: tuple[Entry, Path]) -> tuple[View, bool]:
+        return _make_view(*pair, finder, calibration)
+
+    outcomes = parallel_map(or_error(make), pairs)
+    errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
+    made = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
+    views, rescaled = [view for view, _ in made], [view for view, scaled in made if scaled]
     if not rescaled:
         return views, errors, []
     camera, name = rescaled[0].camera, escape_name(rescaled[0].path.name)
@@ -126,10 +117,9 @@ def _make_views(
     ]  # fmt: skip
 
 
-def _make_view(
-    entry: Entry, path: Path, header: Header, finder: PhotographFinder, calibration: Path
-) -> tuple[View, bool]:
+def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: Path) -> tuple[View, bool]:
     """The view, and whether its camera was scaled to the photograph's size."""
+    header = read_header(path)
     claimed = entry.intrinsics.width, entry.intrinsics.height
     ways = (True, header.upright_size), (False, header.stored_size)
     fitting = [way for way in ways if all(c is None or c == s for c, s in zip(claimed, way[1], strict=True))]

@@ -6,7 +6,7 @@ import hashlib
 import json
 import logging
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -134,7 +134,8 @@ def reconstruct(
 def _identity(capture: Capture) -> list[Any]:
     """Everything that a result depends on: every file's bytes, cameras, lenses, layout."""
     if capture.light_field is None:
-        own: list[Any] = [] if capture.layout is None else [_as_json(capture.layout)]
+        layout = {} if capture.layout is None else vars(capture.layout)
+        own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
         own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
     else:
         own = [
@@ -147,12 +148,6 @@ def _identity(capture: Capture) -> list[Any]:
         return [source.name, file_digest(source.path), mask, source.upright]
 
     return [parallel_map(digest, capture.sources), own]
-
-
-def _as_json(value: Any) -> dict[str, Any]:
-    """A dataclass of arrays and numbers, JSON-able."""
-    items = ((field.name, getattr(value, field.name)) for field in fields(value))
-    return {name: item.tolist() if isinstance(item, np.ndarray) else item for name, item in items}
 
 
 def _estimate_cameras(run: StageRunner, photos: PhotoSet) -> tuple[LightField, NDArray[np.float64], Path]:

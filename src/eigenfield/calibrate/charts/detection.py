@@ -172,12 +172,9 @@ def _sample_variants(charts: ChartPictures, board: Board, progress: Progress | N
         counts[camera] += count
     if not any(counts):
         _refuse_other_board(charts, board)
-    old = Counter[bool]()
-    for count in counts:
-        for variant, corners in count.items():
-            old[variant.legacy] += corners
-    legacy = old[True] > old[False]
-    fitting = [variant for variant in variants if variant.legacy == legacy] if old.total() else variants
+    seen = sum(counts, Counter[BoardVariant]())
+    legacy = sum(corners if variant.legacy else -corners for variant, corners in seen.items()) > 0
+    fitting = [variant for variant in variants if variant.legacy == legacy] if seen else variants
     return [
         [max(fitting, key=lambda variant: count[variant])] if any(count[variant] for variant in fitting) else fitting
         for count in counts
@@ -201,16 +198,12 @@ def _sample_pictures(charts: ChartPictures, among: set[tuple[int, int]] | None =
 
 def _most_common_size(pictures: Sequence[NDArray[np.uint8]]) -> tuple[tuple[int, int], int] | None:
     """The size of checkerboard that most pictures show, and how many do."""
-    votes: Counter[tuple[int, int]] = Counter()
     for inverted in (False, True):
         sizes = parallel_map(functools.partial(detect_checkerboard_size, inverted=inverted), pictures)
-        votes.update(size for size in sizes if size is not None)
+        votes = Counter(size for size in sizes if size is not None)
         if votes:
-            break
-    if not votes:
-        return None
-    size = max(votes, key=lambda s: (votes[s], s))
-    return size, votes[size]
+            return max(votes.items(), key=lambda vote: (vote[1], vote[0]))
+    return None
 
 
 def _refuse_part_of_larger(charts: ChartPictures, board: Board, observations: Sequence[BoardObservation]) -> None:

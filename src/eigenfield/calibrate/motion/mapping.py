@@ -165,23 +165,22 @@ def _run(
     progress: Progress | None,
 ) -> None:  # fmt: skip
     pipeline = pycolmap.IncrementalPipeline(options, database, manager)
+    report = progress or (lambda stage, done, total: None)
     most = 0
 
     def report_registered() -> None:
         nonlocal most
         check()
         done = max((manager.get(k).num_reg_images() for k in range(manager.size())), default=0)
-        if progress is not None and done > most:
+        if done > most:
             most = done
-            progress(stage, done, count)
+            report(stage, done, count)
 
-    if progress is not None:
-        progress(stage, 0, count)
+    report(stage, 0, count)
     for event in ("INITIAL_IMAGE_PAIR_REG_CALLBACK", "NEXT_IMAGE_REG_CALLBACK"):
         pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, report_registered)
     pipeline.run()
-    if progress is not None:
-        progress(stage, count, count)
+    report(stage, count, count)
 
 
 def _register_leftovers(
