@@ -26,9 +26,7 @@ def five_cameras():
 def seen(points, camera):
     pixels, _ = camera.project(points)
     count = len(points)
-    return Features(
-        pixels, np.ones(count, np.float32), np.zeros((count, 128), np.uint8), np.zeros((count, 3), np.uint8)
-    )
+    return Features(pixels, np.zeros((count, 128), np.uint8), np.zeros((count, 3), np.uint8))
 
 
 def saved(folder, pictures, cameras):

@@ -60,7 +60,7 @@ def test_fusion_does_not_depend_on_threads(scene, cameras, points):
         three = fuse_depth_maps(depth_views(scene, cameras))
     finally:
         parallel.set_threads(None)
-    for name in ("positions", "normals", "colours", "spacing"):
+    for name in ("positions", "normals", "spacing"):
         assert np.array_equal(getattr(one, name), getattr(three, name))
         assert np.array_equal(getattr(one, name), getattr(points, name))
 
@@ -73,19 +73,6 @@ def test_wrong_depths_in_one_view_leave_no_trace(scene, cameras):
     views[4] = DepthView(views[4].camera, wrong)
     fused = fuse_depth_maps(views)
     assert np.percentile(truth(fused.positions), 99.5) < 0.02
-
-
-def test_colours_come_from_the_photographs(scene, cameras):
-    views = []
-    for camera in cameras:
-        raster = rasterise_view(scene, camera)
-        on_ball = (raster.face >= 0) & (raster.face < 20480)
-        colour = np.where(on_ball[..., None], np.uint8([255, 0, 0]), np.uint8([0, 128, 255]))
-        views.append(DepthView(camera, raster.inverse_depth, colour))
-    fused = fuse_depth_maps(views)
-    on_ball = np.abs(np.linalg.norm(fused.positions, axis=1) - 1) < 0.005
-    assert (fused.colours[on_ball] == [255, 0, 0]).all(axis=1).mean() > 0.99
-    assert (fused.colours[~on_ball] == [0, 128, 255]).all(axis=1).mean() > 0.98
 
 
 def test_masks_keep_the_foreground_only(scene, cameras):

@@ -17,9 +17,10 @@ from eigenfield.imaging.raster import rasterise_atlas, rasterise_view
 from eigenfield.proxy import atlas_fault, atlas_statistics, chart_labels, estimate_second_layer, relief_mesh
 from eigenfield.proxy.relief import height_field
 from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
-from eigenfield.proxy.relief.height_field import face_components, triangulate_height_field
+from eigenfield.proxy.relief.height_field import triangulate_height_field
 from eigenfield.proxy.relief.kernels import label_pixels
 from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
+from eigenfield.proxy.topology import face_components
 from eigenfield.stereo import ReferenceView, view_matrices
 
 OFFSET, SCALE = 0.25, 0.01  # 1/Z = OFFSET + SCALE d
@@ -207,7 +208,7 @@ def test_two_layers_share_the_atlas_without_overlap():
     d = (0.02 * x + np.sin(y / 9)).astype(np.float32)
     near = gaussian_filter((np.random.default_rng(1).random(d.shape) > 0.995).astype(np.float64), 4) > 0.005
     frame = reference_view(*d.shape)
-    mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1, gutter=4)
+    mesh = relief_mesh(frame, d, everywhere(d), (d - 2, near), cut=0.6, tolerance=0.1)
     statistics = atlas_statistics(mesh)
     assert statistics.overlap == 0 and statistics.fill > 0.6
     assert atlas_fault(mesh) is None

@@ -19,7 +19,7 @@ def with_uv(half, side):
 def test_a_report_tells_what_was_measured():
     ahead = looking(np.array([0, 0, -5.0]), (0, 0, 0), focal=120.0, width=120, height=120)  # sees 5 by 5
     aside = looking(np.array([1.25, 0, -5.0]), (1.25, 0, 0), focal=120.0, width=120, height=120)
-    error = SurfaceError(0.01, 0.02, 0.0005, 0.5, 1.25)
+    error = SurfaceError(0.01, 0.0005, 0.5, 1.25)
     report = measure_proxy(with_uv(2.5, 0.5), [ahead, aside], error)
     assert report.triangles == 32
     assert np.allclose(report.coverage, [1, 0.75], atol=0.01)

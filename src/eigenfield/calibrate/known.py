@@ -41,7 +41,7 @@ def read_known_lenses(path: Path, photos: PhotoSet) -> list[KnownLens]:
     if not path.exists():
         raise CaptureError("calibration-missing", "does not exist", path=path, remedy="check --intrinsics")
     entries = _read_plain_matrix(path) or _read_entries(path, photos)
-    distinct = list({_key(entry): entry for entry in entries.values()}.values())
+    distinct = list({repr(entry): entry for entry in entries.values()}.values())
     known = []
     for shot in photos.shots:
         entry = entries.get(_stem(shot.name)) or entries.get(_stem(shot.path.name))
@@ -62,10 +62,6 @@ def _stem(name: str) -> str:
     return PurePosixPath(name.replace("\\", "/")).stem.casefold()
 
 
-def _key(entry: LensEntry) -> str:
-    return repr(entry)
-
-
 def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
     """K of a text file that holds nine numbers and nothing else."""
     try:
@@ -78,7 +74,7 @@ def _read_plain_matrix(path: Path) -> Mapping[str, LensEntry] | None:
         return None
     K = values.reshape(3, 3)
     Camera.from_matrices(K, np.eye(3), np.zeros(3), 1, 1, path.name)
-    return {"": (Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2])), None)}
+    return {"": (Intrinsics.of_matrix(K), None)}
 
 
 def _read_entries(path: Path, photos: PhotoSet) -> Mapping[str, LensEntry]:

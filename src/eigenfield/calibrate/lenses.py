@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.photographs.lens import Lens
+from eigenfield.capture.photographs.lens import Lens, metashape_distortion
 
 F64 = NDArray[np.float64]
 
@@ -48,16 +48,14 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
     focal, principal = known.K[[0, 1], [0, 1]], known.K[:2, 2]
     target = (points - principal) / focal
     normalised = target.copy()
-    x_step, y_step = np.array([UNDISTORT_DERIVATIVE_STEP, 0.0]), np.array([0.0, UNDISTORT_DERIVATIVE_STEP])
     with np.errstate(all="ignore"):
         for _ in range(UNDISTORT_MAX_ITERATIONS):
             error = apply_distortion(normalised, known.lens) - target
-            right = (
-                apply_distortion(normalised + x_step, known.lens) - apply_distortion(normalised - x_step, known.lens)
-            ) / (2 * UNDISTORT_DERIVATIVE_STEP)
-            down = (
-                apply_distortion(normalised + y_step, known.lens) - apply_distortion(normalised - y_step, known.lens)
-            ) / (2 * UNDISTORT_DERIVATIVE_STEP)
+            right, down = (
+                (apply_distortion(normalised + step, known.lens) - apply_distortion(normalised - step, known.lens))
+                / (2 * UNDISTORT_DERIVATIVE_STEP)
+                for step in UNDISTORT_DERIVATIVE_STEP * np.eye(2)
+            )
             determinant = right[:, 0] * down[:, 1] - down[:, 0] * right[:, 1]
             step = np.column_stack([
                 (down[:, 1] * error[:, 0] - down[:, 0] * error[:, 1]) / determinant,
@@ -66,10 +64,8 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
             normalised = normalised - step
             if np.abs(step).max() < UNDISTORT_STEP_TOLERANCE:
                 break
-        wrong = ~(
-            np.abs(apply_distortion(normalised, known.lens) - target).max(axis=1)
-            < UNDISTORT_MAX_ERROR_PIXELS / focal.max()
-        )
+        left = np.abs(apply_distortion(normalised, known.lens) - target).max(axis=1)
+        wrong = ~(left < UNDISTORT_MAX_ERROR_PIXELS / focal.max())
         wrong |= ~((normalised**2).sum(axis=1) < known.lens.valid_radius() ** 2)
     normalised[wrong] = np.nan
     return normalised * focal + principal
@@ -94,25 +90,9 @@ def apply_distortion(normalised: F64, lens: Lens) -> F64:
         lens: The distortion.
     """
     if lens.model.startswith("metashape"):
-        return _apply_metashape(normalised, lens)
+        return np.column_stack(metashape_distortion(normalised[:, 0], normalised[:, 1], lens))
     rays = np.column_stack([normalised, np.ones(len(normalised))])[:, None]
     none, coefficients = np.zeros(3), np.array(lens.coefficients)
     if lens.model == "fisheye":
         return np.asarray(cv2.fisheye.projectPoints(rays, none, none, np.eye(3), coefficients)[0][:, 0])
     return np.asarray(cv2.projectPoints(rays, none, none, np.eye(3), coefficients)[0][:, 0])
-
-
-def _apply_metashape(normalised: F64, lens: Lens) -> F64:
-    k1, k2, k3, k4, p1, p2, p3, p4, skew = lens.coefficients
-    x, y = normalised.T
-    if lens.model != "metashape":
-        radius = np.maximum(np.hypot(x, y), 1e-12)
-        theta = np.arctan(radius)
-        scale = (theta if lens.model == "metashape-equidistant" else 2 * np.sin(theta / 2)) / radius
-        x, y = x * scale, y * scale
-    q = x * x + y * y
-    radial = 1 + q * (k1 + q * (k2 + q * (k3 + q * k4)))
-    more = 1 + q * (p3 + q * p4)
-    u = x * radial + (p1 * (q + 2 * x * x) + 2 * p2 * x * y) * more
-    v = y * radial + (p2 * (q + 2 * y * y) + 2 * p1 * x * y) * more
-    return np.column_stack([u + skew * v, v])

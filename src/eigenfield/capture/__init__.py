@@ -10,21 +10,19 @@
 
 from __future__ import annotations
 
-from eigenfield.capture.formats import FORMATS, Format
+from eigenfield.capture.formats import FORMATS
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.opening import open_any, open_capture, open_photographs
 from eigenfield.capture.photographs.lens import Lens
-from eigenfield.capture.photographs.read import Header, read_header
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import Capture, PhotoSet, Shot
 from eigenfield.core.observations import Photograph
 
 __all__ = [
     "FORMATS",
     "Capture",
-    "Format",
     "GridLayout",
-    "Header",
     "Lens",
     "LightField",
     "PhotoSet",

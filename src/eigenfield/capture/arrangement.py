@@ -6,13 +6,15 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, escape_name
 from eigenfield.capture.layout import GridLayout
 from eigenfield.capture.locate import IMAGES_FOLDER, photographs_in
-from eigenfield.capture.messages import count_phrase, list_names, natural_key
+from eigenfield.capture.messages import describe, natural_key
 from eigenfield.core.errors import CaptureError
 
 NAMES_MIN_PHOTOGRAPHS = 3  # photographs that must bear a format's names
@@ -68,7 +70,7 @@ def photographs_of(folder: Path) -> list[Path]:
             path=folder,
             remedy=f"name {folder / IMAGES_FOLDER}, or move the others away",
         )
-    return sorted(here if len(here) >= len(inner) else inner, key=lambda path: (natural_key(path.name), path.name))
+    return sorted(here if len(here) >= len(inner) else inner, key=lambda path: natural_key(path.name))
 
 
 def match_names(folder: Path, pattern: re.Pattern[str]) -> tuple[list[tuple[Path, re.Match[str]]], list[Path]]:
@@ -83,15 +85,15 @@ def match_names(folder: Path, pattern: re.Pattern[str]) -> tuple[list[tuple[Path
     return fitting, others
 
 
-def has_matching_names(folder: Path, pattern: re.Pattern[str]) -> bool:
-    """Whether the photographs of a folder, at least most of them, bear such names."""
-    fitting, others = match_names(folder, pattern)
-    return len(fitting) >= NAMES_MIN_PHOTOGRAPHS and len(fitting) >= NAMES_MIN_FRACTION * (len(fitting) + len(others))
-
-
 def find_by_names(pattern: re.Pattern[str]) -> Callable[[Path], Path | None]:
-    """The `find` of a format that is recognised by its names alone."""
-    return lambda folder: folder if has_matching_names(folder, pattern) else None
+    """The `find` of a format that is recognised by its names alone: at least most of a folder's photographs bear it."""
+
+    def find(folder: Path) -> Path | None:
+        fitting, others = match_names(folder, pattern)
+        least = max(NAMES_MIN_PHOTOGRAPHS, NAMES_MIN_FRACTION * (len(fitting) + len(others)))
+        return folder if len(fitting) >= least else None
+
+    return find
 
 
 def require_photographs(fitting: Sequence[object], folder: Path, what: str) -> None:
@@ -149,13 +151,12 @@ def make_grid_layout(
 
 def describe_missing_nodes(layout: GridLayout) -> list[str]:
     """A line that names nodes without a photograph, if there are any."""
-    missing = layout.missing_nodes
-    if not missing:
-        return []
-    places = list_names([f"row {row} column {column}" for row, column in missing])
-    return [f"{count_phrase(missing, 'node of the grid has', 'nodes of the grid have')} no photograph: {places}"]
+    places = [f"row {row} column {column}" for row, column in layout.missing_nodes]
+    return describe(places, "node of the grid has", "nodes of the grid have", "no photograph")
 
 
-def with_measured_positions(layout: GridLayout, x: Sequence[float], y: Sequence[float]) -> GridLayout:
-    """The layout with measured positions, X to the right and Y up."""
-    return replace(layout, positions=np.stack([x, y], axis=1).astype(np.float64), measured=True)
+def with_measured_positions(
+    layout: GridLayout, x: NDArray[np.float64], y: NDArray[np.float64], **changes: Any
+) -> GridLayout:
+    """The layout with measured positions, X to the right and Y up, and other changes."""
+    return replace(layout, positions=np.stack([x, y], axis=1), measured=True, **changes)

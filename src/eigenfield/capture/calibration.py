@@ -17,6 +17,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 
 T = TypeVar("T")
+Made = TypeVar("Made")
 
 # of focal lengths in pixels and positions in world units: products of two of them stay finite, and a file keeps float32
 CALIBRATION_MAX_MAGNITUDE = 1e30
@@ -45,6 +46,12 @@ class Intrinsics:
     focal: tuple[float, float] | None
     angle: tuple[float, float | None] | None
     principal: tuple[float | None, float | None]
+
+    @staticmethod
+    def of_matrix(K: NDArray[np.float64], width: int | None = None, height: int | None = None) -> Intrinsics:
+        """Those of a (3, 3) camera matrix without skew."""
+        focal, principal = (float(K[0, 0]), float(K[1, 1])), (float(K[0, 2]), float(K[1, 2]))
+        return Intrinsics(width, height, focal, None, principal)
 
     def matrix(self, width: int, height: int) -> NDArray[np.float64]:
         """(3, 3) K at the size that the calibration is for."""
@@ -86,9 +93,8 @@ class Entry:
     def camera(self, width: int, height: int, path: Path) -> Camera:
         """The camera at the calibration's own size; CaptureError naming `path`, the calibration, if it cannot be."""
         K = self.intrinsics.matrix(width, height)
-        if (
-            max(np.abs(K).max(), np.abs(self.centre).max()) > CALIBRATION_MAX_MAGNITUDE
-        ):  # False for NaN: `from_matrices` finds those
+        # False for NaN: `from_matrices` finds those
+        if max(np.abs(K).max(), np.abs(self.centre).max()) > CALIBRATION_MAX_MAGNITUDE:
             raise CaptureError(
                 "camera-not-finite",
                 f"camera {self.label} has entries beyond {CALIBRATION_MAX_MAGNITUDE:g}",
@@ -125,10 +131,18 @@ class Calibration:
 
 def read_each(read: Callable[[T], Entry], items: Iterable[T]) -> tuple[tuple[Entry, ...], tuple[CaptureError, ...]]:
     """The entries that `read` makes of items, and the errors that it raises for others, which stop nothing."""
-    entries, errors = [], []
-    for item in items:
+    outcomes = list(map(or_error(read), items))
+    entries = tuple(outcome for outcome in outcomes if isinstance(outcome, Entry))
+    return entries, tuple(outcome for outcome in outcomes if isinstance(outcome, CaptureError))
+
+
+def or_error(read: Callable[[T], Made]) -> Callable[[T], Made | CaptureError]:
+    """`read`, but a CaptureError is returned and not raised."""
+
+    def attempt(item: T) -> Made | CaptureError:
         try:
-            entries.append(read(item))
+            return read(item)
         except CaptureError as error:
-            errors.append(error)
-    return tuple(entries), tuple(errors)
+            return error
+
+    return attempt

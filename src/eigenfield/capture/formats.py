@@ -62,11 +62,6 @@ def _ignore_root(read: Callable[[Path], Calibration]) -> Callable[[Path, Path], 
     return lambda found, root: read(found)
 
 
-def _find_nothing(folder: Path) -> Path | None:
-    """`find` of a format that must be asked for."""
-    return None
-
-
 def _camera_format(
     name: str,
     title: str,
@@ -107,7 +102,8 @@ FORMATS = (
     _name_format("hci", "HCI 4D benchmark (input_CamNNN, row-major)", find_hci, read_hci, "grid", cameras=True),
     _name_format("stanford", "Stanford archive (out_RR_CC_V_U: row, column)", find_stanford, read_stanford, "grid"),
     _name_format("grid", "grid names (*_RR_CC: row, column)", find_grid_names, read_grid_names, "grid"),
-    _name_format("numbered", "numbered frames with --grid", _find_nothing, read_numbered, "grid", rank=RANK_ON_REQUEST),
+    _name_format("numbered", "numbered frames with --grid", lambda folder: None, read_numbered, "grid",
+                 rank=RANK_ON_REQUEST),  # it must be asked for
     _name_format("video", "one video a camera", find_videos, read_videos, "frame", rank=RANK_ANY),
     _name_format("folder", "plain folder of photographs", find_photographs, read_photographs, rank=RANK_ANY),
 )  # fmt: skip
@@ -159,14 +155,8 @@ def detect_format(folder: Path, formats: tuple[Format, ...], options: OpenOption
     rank = min(claim.format.rank for claim in claims)
     best = [claim for claim in claims if claim.format.rank == rank]
     if len(best) > 1:
-        names = [claim.format.name for claim in best]
         titles = " or ".join(f"{claim.format.name}: {claim.format.title}" for claim in best)
-        raise CaptureError(
-            "format-ambiguous",
-            f"may be read as {titles}",
-            path=folder,
-            remedy="say " + " or ".join(f"--format {name}" for name in names),
-        )
+        raise _ambiguous_error(folder, titles, [claim.format for claim in best])
     also = [claim for claim in claims if rank < claim.format.rank < RANK_NAMES]
     lines = tuple(
         f"{_relative_name(c.found, folder)} is there too, not read; --format {c.format.name} reads it" for c in also
@@ -176,6 +166,11 @@ def detect_format(folder: Path, formats: tuple[Format, ...], options: OpenOption
     return Claim(best[0].format, best[0].found, lines)
 
 
+def _ambiguous_error(path: Path, titles: str, rows: list[Format]) -> CaptureError:
+    remedy = "say " + " or ".join(f"--format {row.name}" for row in rows)
+    return CaptureError("format-ambiguous", f"may be read as {titles}", path=path, remedy=remedy)
+
+
 def _describe_unread(folder: Path) -> list[str]:
     found = [_relative_name(path, folder) for pattern in CALIBRATION_PATTERNS for path in sorted(folder.glob(pattern))]
     return [f"{list_names(found)}: named as a calibration, but damaged or incomplete, and not read"] if found else []
@@ -183,13 +178,11 @@ def _describe_unread(folder: Path) -> list[str]:
 
 def _find_claims(folder: Path, formats: tuple[Format, ...]) -> list[Claim]:
     """Each row's claim; where cameras claim the folder, names are not asked, and where names do, nothing else is."""
-    claims: list[Claim] = []
     for ranks in ((RANK_FIRST, RANK_SECOND, RANK_CAMERAS), (RANK_NAMES,), (RANK_ON_REQUEST,), (RANK_ANY,)):
         found = [(row, row.find(folder)) for row in formats if row.rank in ranks]
-        claims = [Claim(row, place) for row, place in found if place is not None]
-        if claims:
-            break
-    return claims
+        if claims := [Claim(row, place) for row, place in found if place is not None]:
+            return claims
+    return []
 
 
 def _relative_name(found: Path, folder: Path) -> str:
@@ -207,13 +200,7 @@ def claim_of_file(path: Path, formats: tuple[Format, ...]) -> Claim:
     fitting = [row for row in formats if path.name.lower().endswith(row.endings)]
     certain = [row for row in fitting if row.find(path.parent) == path]
     if len(certain or fitting) > 1:
-        names = [row.name for row in certain or fitting]
-        raise CaptureError(
-            "format-ambiguous",
-            f"may be read as {' or '.join(names)}",
-            path=path,
-            remedy="say " + " or ".join(f"--format {name}" for name in names),
-        )
+        raise _ambiguous_error(path, " or ".join(row.name for row in certain or fitting), certain or fitting)
     if not fitting:
         raise CaptureError(
             "calibration-unknown",

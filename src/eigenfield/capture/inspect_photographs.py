@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.arrangement import Arrangement
-from eigenfield.capture.calibration import escape_name
+from eigenfield.capture.calibration import escape_name, or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates, refuse_duplicates
-from eigenfield.capture.locate import refuse_black_masks, with_masks
-from eigenfield.capture.messages import count_phrase, list_names, natural_key
+from eigenfield.capture.locate import with_masks
+from eigenfield.capture.messages import count_phrase, describe, natural_key
 from eigenfield.capture.photographs.exif import read_focal_length
 from eigenfield.capture.photographs.read import read_header
 from eigenfield.capture.photoset import PhotoSet, Shot
@@ -40,8 +40,8 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
         CaptureError: As `open_photographs` does.
     """
     files = arrangement.files
-    order = sorted(range(len(files)), key=lambda i: (natural_key(files[i].name), files[i].name))
-    outcomes = parallel_map(_shot_or_error, [files[i] for i in order])
+    order = sorted(range(len(files)), key=lambda i: natural_key(files[i].name))
+    outcomes = parallel_map(or_error(_make_shot), [files[i] for i in order])
     found = [(i, outcome) for i, outcome in zip(order, outcomes, strict=True) if isinstance(outcome, Shot)]
     errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
     if arrangement.layout is not None:
@@ -53,17 +53,15 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     copies = find_duplicates([shot.path for shot in shots])
     if strict:
         refuse_duplicates(copies, len(shots), PHOTO_SET_MIN_PHOTOGRAPHS, root)
+    others = [path.name for path in arrangement.others]
     problems = [
-        *_describe_left_out(arrangement.others),
+        *describe(others, "photograph is", "photographs are", "not named like the rest and left out"),
         *arrangement.problems,
         *describe_duplicates(copies),
         *map(str, errors),
     ]
-    if masks is not None:
-        shots, missing = with_masks(shots, masks, root)
-        if strict:
-            refuse_black_masks([shot.mask for shot in shots], masks)
-        problems += missing
+    shots, missing = with_masks(shots, masks, root, strict)
+    problems += missing
     if strict and len(shots) < PHOTO_SET_MIN_PHOTOGRAPHS:
         raise CaptureError(
             "too-few",
@@ -80,18 +78,8 @@ def make_photo_set(arrangement: Arrangement, root: Path, *, masks: Path | None, 
     return PhotoSet(root, tuple(shots), layout, tuple(problems), arrangement.format)
 
 
-def _describe_left_out(others: Sequence[Path]) -> list[str]:
-    if not others:
-        return []
-    names = list_names([path.name for path in others])
-    return [f"{count_phrase(others, 'photograph is', 'photographs are')} not named like the rest and left out: {names}"]
-
-
-def _shot_or_error(path: Path) -> Shot | CaptureError:
-    try:
-        header = read_header(path)
-    except CaptureError as error:
-        return error
+def _make_shot(path: Path) -> Shot:
+    header = read_header(path)
     return Shot(escape_name(path.name), path, *header.upright_size, read_focal_length(path, header))
 
 

@@ -38,6 +38,34 @@ class PhotographSource(Protocol):
     def upright(self) -> bool: ...
 
 
+class StillCapture:
+    """What `LightField` and `PhotoSet` share: photographs of one instant, each by a camera of its own."""
+
+    @property
+    def sources(self) -> tuple[PhotographSource, ...]:
+        """What each photograph is read from."""
+        raise NotImplementedError
+
+    def __len__(self) -> int:
+        return len(self.sources)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(source.name for source in self.sources)
+
+    def camera_of(self, index: int) -> int:
+        """Each photograph has a camera of its own."""
+        return index
+
+    def time_of(self, index: int) -> int:
+        """All photographs are of one instant."""
+        return 0
+
+    def bytes(self, index: int) -> int:
+        """The size of the photograph's file on disk."""
+        return size_on_disk(self.sources[index].path)
+
+
 @dataclass(frozen=True, eq=False)
 class View:
     """One photograph and its camera.
@@ -63,7 +91,7 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class LightField:
+class LightField(StillCapture):
     """A capture: photographs with one camera each. Each view is an observation, all of them of one instant.
 
     Attributes:
@@ -80,13 +108,6 @@ class LightField:
     format: str
     layout: GridLayout | None = None
 
-    def __len__(self) -> int:
-        return len(self.views)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(view.name for view in self.views)
-
     @property
     def cameras(self) -> tuple[Camera, ...]:
         return tuple(view.camera for view in self.views)
@@ -98,21 +119,12 @@ class LightField:
 
     @property
     def sources(self) -> tuple[PhotographSource, ...]:
-        """What each photograph is read from."""
         return self.views
 
     @property
     def sizes(self) -> list[tuple[int, int]]:
         """(width, height) of each photograph."""
         return [(camera.width, camera.height) for camera in self.cameras]
-
-    def camera_of(self, index: int) -> int:
-        """Each view has a camera of its own."""
-        return index
-
-    def time_of(self, index: int) -> int:
-        """All views are of one instant."""
-        return 0
 
     @property
     def times(self) -> tuple[float, ...]:
@@ -168,7 +180,3 @@ class LightField:
             for view, camera, lens in zip(self.views, cameras, lenses, strict=True)
         )
         return replace(self, views=views, problems=(*self.problems, *problems))
-
-    def bytes(self, index: int) -> int:
-        """The size of the photograph's file on disk."""
-        return size_on_disk(self.views[index].path)

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from eigenfield.capture.lightfield import View
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS, decode_mask
 from eigenfield.capture.photoset import Shot
 from eigenfield.core.errors import CaptureError
@@ -52,14 +52,10 @@ def is_file(path: Path) -> bool:
     return os.path.isfile(path)  # noqa: PTH113
 
 
-def has_known_extension(name: str) -> bool:
-    return name.lower().endswith(PHOTOGRAPH_EXTENSIONS)
-
-
 def _with_extensions(path: Path) -> Iterator[Path]:
     """The path, and with each extension if it has none: original NeRF sets leave it out."""
     yield path
-    if not has_known_extension(path.name):
+    if not path.name.lower().endswith(PHOTOGRAPH_EXTENSIONS):
         for extension in (*PHOTOGRAPH_EXTENSIONS, *(e.upper() for e in PHOTOGRAPH_EXTENSIONS)):
             yield path.with_name(path.name + extension)
 
@@ -123,12 +119,16 @@ def _candidate_files(root: Path) -> Iterator[Path]:
 
 def photographs_in(folder: Path) -> list[Path]:
     """The files of one folder that are named like photographs, sorted."""
+    return files_named(folder, PHOTOGRAPH_EXTENSIONS)
+
+
+def files_named(folder: Path, endings: tuple[str, ...]) -> list[Path]:
+    """The files of one folder whose names end so, sorted, hidden ones left out; none where it is no folder."""
     if not folder.is_dir():
         return []
     with os.scandir(folder) as entries:
-        return sorted(
-            Path(e.path) for e in entries if has_known_extension(e.name) and not e.name.startswith(".") and e.is_file()
-        )
+        fitting = (e for e in entries if e.name.lower().endswith(endings) and not e.name.startswith("."))
+        return sorted(Path(e.path) for e in fitting if e.is_file())
 
 
 class MaskFinder:
@@ -162,17 +162,20 @@ class MaskFinder:
         return None
 
 
-def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], list[str]]:
+def with_masks(views: Sequence[T], folder: Path | None, root: Path, strict: bool) -> tuple[list[T], list[str]]:
     """Views or shots with the masks of a folder, and a line that names those without one.
 
     Args:
         views: Views or shots.
-        folder: Folder of the masks.
+        folder: Folder of the masks; None for none.
         root: Folder of the photographs, whose subfolders the masks' folder may have too.
+        strict: Refuse masks that hide everything.
 
     Raises:
-        CaptureError: `masks-missing` where no mask fits, `mask-twice`.
+        CaptureError: `masks-missing` where no mask fits, `mask-twice`, `masks-black`.
     """
+    if folder is None:
+        return list(views), []
     finder = MaskFinder(folder)
     masked, missing = [], []
     for view in views:
@@ -187,15 +190,12 @@ def with_masks(views: Sequence[T], folder: Path, root: Path) -> tuple[list[T], l
             path=folder,
             remedy="name masks as their photographs",
         )
-    problems = (
-        [f"{count_phrase(missing, 'photograph has', 'photographs have')} no mask in {folder}: {list_names(missing)}"]
-        if missing
-        else []
-    )
-    return masked, problems
+    if strict:
+        _refuse_black_masks([view.mask for view in masked], folder)
+    return masked, describe(missing, "photograph has", "photographs have", f"no mask in {folder}")
 
 
-def refuse_black_masks(masks: Sequence[Path | None], folder: Path) -> None:
+def _refuse_black_masks(masks: Sequence[Path | None], folder: Path) -> None:
     """Raise CaptureError `masks-black` where every photograph has a mask and all hide everything; the first mask that
     shows something ends the search."""
     paths = [mask for mask in masks if mask is not None]

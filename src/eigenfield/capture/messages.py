@@ -21,6 +21,12 @@ def list_names(names: Sequence[str]) -> str:
     return shown if len(names) <= MESSAGE_MAX_NAMES else f"{shown} and {len(names) - MESSAGE_MAX_NAMES} more"
 
 
-def natural_key(name: str) -> list[tuple[int, str]]:
-    """A key that sorts view_2 before view_10."""
-    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"([0-9]+)", name.casefold())]
+def describe(names: Sequence[str], one: str, many: str, rest: str) -> list[str]:
+    """A line such as "3 photographs have no mask: a, b, c", of `one` or `many`, `rest` and names; none for no names."""
+    return [f"{count_phrase(names, one, many)} {rest}: {list_names(names)}"] if names else []
+
+
+def natural_key(name: str) -> tuple[list[tuple[int, str]], str]:
+    """A key that sorts view_2 before view_10, and the same names with leading zeros as plain text."""
+    parts = re.split(r"([0-9]+)", name.casefold())
+    return [(int(part), "") if part.isdecimal() else (-1, part) for part in parts], name

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import Any
 
 import cv2
 import numpy as np
@@ -23,7 +23,6 @@ OVERLAY_CAPTION_PIXELS = 26  # pixels
 OVERLAY_COLUMNS = 3
 OVERLAY_MIN_JUMP_RATIO = 0.02  # second difference of inverse depth over one pixel to itself that is a depth edge
 OVERLAY_MAX_CREASE_COSINE = 0.6  # cosine of the angle between neighbouring faces' normals below which there is a crease
-T = TypeVar("T", np.bool_, np.float64)
 OVERLAY_OUTLINE_RGB = (1.0, 0.0, 0.75)
 OVERLAY_CREASE_RGB = (0.0, 0.9, 1.0)
 
@@ -53,28 +52,17 @@ def proxy_lines(mesh: Mesh, camera: Camera) -> ProxyLines:
     outline = np.zeros_like(covered)
     crease = np.zeros_like(covered)
     normals = np.vstack([mesh.face_normals(), np.zeros(3)])[raster.face]
-    for axis in (0, 1):
-        here, there = _neighbours(covered, axis)
-        _all_but_last(outline, axis)[...] |= here != there
-        q = raster.inverse_depth
-        before, middle, after = (q.take(range(i, q.shape[axis] - 2 + i), axis) for i in range(3))
+    turns: list[Callable[[NDArray[Any]], NDArray[Any]]] = [lambda a: a, lambda a: a.swapaxes(0, 1)]
+    for turn in turns:  # along columns, then along rows
+        here, there = turn(covered)[:-1], turn(covered)[1:]
+        turn(outline)[:-1] |= here != there
+        q = turn(raster.inverse_depth)
+        before, middle, after = q[:-2], q[1:-1], q[2:]
         inner = np.minimum(np.minimum(before, middle), after) > 0
-        _interior(outline, axis)[...] |= inner & (np.abs(before - 2 * middle + after) > OVERLAY_MIN_JUMP_RATIO * middle)
-        cosine = np.einsum("ijk,ijk->ij", *_neighbours(normals, axis))
-        _all_but_last(crease, axis)[...] |= here & there & (cosine < OVERLAY_MAX_CREASE_COSINE)
+        turn(outline)[1:-1] |= inner & (np.abs(before - 2 * middle + after) > OVERLAY_MIN_JUMP_RATIO * middle)
+        cosine = np.einsum("ijk,ijk->ij", turn(normals)[:-1], turn(normals)[1:])
+        turn(crease)[:-1] |= here & there & (cosine < OVERLAY_MAX_CREASE_COSINE)
     return ProxyLines(outline, crease & ~outline, covered)
-
-
-def _neighbours(a: NDArray[T], axis: int) -> tuple[NDArray[T], NDArray[T]]:
-    return (a[:-1], a[1:]) if axis == 0 else (a[:, :-1], a[:, 1:])
-
-
-def _all_but_last(a: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
-    return a[:-1] if axis == 0 else a[:, :-1]
-
-
-def _interior(a: NDArray[np.bool_], axis: int) -> NDArray[np.bool_]:
-    return a[1:-1] if axis == 0 else a[:, 1:-1]
 
 
 def draw_overlay(light_field: LightField, mesh: Mesh, indices: Sequence[int]) -> tuple[bytes, list[float]]:

@@ -11,12 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
-from eigenfield.capture.calibration import Calibration, Entry, escape_name
+from eigenfield.capture.calibration import Calibration, Entry, escape_name, or_error
 from eigenfield.capture.duplicates import describe_duplicates, find_duplicates
 from eigenfield.capture.lightfield import LightField, View
-from eigenfield.capture.locate import PhotographFinder, photographs_in, refuse_black_masks, with_masks
-from eigenfield.capture.messages import count_phrase, list_names, natural_key
-from eigenfield.capture.photographs.read import Header, read_header
+from eigenfield.capture.locate import PhotographFinder, photographs_in, with_masks
+from eigenfield.capture.messages import describe, natural_key
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
 from eigenfield.runtime.parallel import parallel_map
@@ -47,18 +47,19 @@ def pair_photographs(read: Calibration, root: Path, *, apart: bool, masks: Path 
     errors += twice
     views, bad, problems = _make_views(pairs, finder, read.path)
     errors += bad
-    if masks is not None:
-        views, missing = with_masks(views, masks, root)
-        if strict:
-            refuse_black_masks([view.mask for view in views], masks)
-        problems += missing
+    views, missing = with_masks(views, masks, root, strict)
     if strict and errors:
         raise errors[0]
     copies = find_duplicates([view.path for view in views])
     problems = [
-        *read.problems, *_describe_missing(lost, read.path), *_describe_unused(pairs, views),
-        *describe_duplicates(copies), *problems, *map(str, errors),
-    ]  # fmt: skip
+        *read.problems,
+        *describe(lost, "calibration entry has", "calibration entries have", f"no photograph ({read.path.name})"),
+        *describe(_unused(pairs, views), "photograph has", "photographs have", "no calibration entry"),
+        *describe_duplicates(copies),
+        *problems,
+        *missing,
+        *map(str, errors),
+    ]
     if strict and len(views) < LIGHT_FIELD_MIN_VIEWS:
         raise CaptureError(
             "too-few",
@@ -97,57 +98,34 @@ def _match_entries(
     return pairs, lost, errors
 
 
-def _header_or_error(path: Path) -> Header | CaptureError:
-    try:
-        return read_header(path)
-    except CaptureError as error:
-        return error
-
-
 def _make_views(
     pairs: Sequence[tuple[Entry, Path]], finder: PhotographFinder, calibration: Path
 ) -> tuple[list[View], list[CaptureError], list[str]]:
-    headers = parallel_map(_header_or_error, [path for _, path in pairs])
-    views, errors, rescaled = [], [], []
-    for (entry, path), header in zip(pairs, headers, strict=True):
-        if isinstance(header, CaptureError):
-            errors.append(header)
-            continue
-        try:
-            view, scaled = _make_view(entry, path, header, finder, calibration)
-        except CaptureError as error:
-            errors.append(error)
-            continue
-        views.append(view)
-        if scaled:
-            rescaled.append(path.name)
-    problems = []
-    if rescaled:
-        camera = views[[view.path.name for view in views].index(rescaled[0])].camera
-        problems.append(
-            f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
-            f"(to {camera.width}x{camera.height} for {escape_name(rescaled[0])})"
-        )
-    return views, errors, problems
+    def make(pair: tuple[Entry, Path]) -> tuple[View, bool]:
+        return _make_view(*pair, finder, calibration)
+
+    outcomes = parallel_map(or_error(make), pairs)
+    errors = [outcome for outcome in outcomes if isinstance(outcome, CaptureError)]
+    made = [outcome for outcome in outcomes if not isinstance(outcome, CaptureError)]
+    views, rescaled = [view for view, _ in made], [view for view, scaled in made if scaled]
+    if not rescaled:
+        return views, errors, []
+    camera, name = rescaled[0].camera, escape_name(rescaled[0].path.name)
+    return views, errors, [
+        f"{len(rescaled)} cameras are for another size of the same picture and were scaled to the photographs "
+        f"(to {camera.width}x{camera.height} for {name})"
+    ]  # fmt: skip
 
 
-def _make_view(
-    entry: Entry, path: Path, header: Header, finder: PhotographFinder, calibration: Path
-) -> tuple[View, bool]:
+def _make_view(entry: Entry, path: Path, finder: PhotographFinder, calibration: Path) -> tuple[View, bool]:
     """The view, and whether its camera was scaled to the photograph's size."""
+    header = read_header(path)
     claimed = entry.intrinsics.width, entry.intrinsics.height
-    fitting = [
-        (upright, size)
-        for upright, size in ((True, header.upright_size), (False, header.stored_size))
-        if all(c is None or c == s for c, s in zip(claimed, size, strict=True))
-    ]
+    ways = (True, header.upright_size), (False, header.stored_size)
+    fitting = [way for way in ways if all(c is None or c == s for c, s in zip(claimed, way[1], strict=True))]
     scaled = not fitting
     if scaled and None not in claimed:
-        fitting = [
-            (upright, size)
-            for upright, size in ((True, header.upright_size), (False, header.stored_size))
-            if is_same_picture(claimed[0] or 0, claimed[1] or 0, *size)
-        ]
+        fitting = [way for way in ways if is_same_picture(claimed[0] or 0, claimed[1] or 0, *way[1])]
     if not fitting:
         raise CaptureError(
             "image-size",
@@ -196,21 +174,11 @@ def _find_own_mask(entry: Entry, finder: PhotographFinder, calibration: Path) ->
     return mask
 
 
-def _describe_missing(lost: Sequence[str], calibration: Path) -> list[str]:
-    if not lost:
-        return []
-    number = count_phrase(lost, "calibration entry has", "calibration entries have")
-    return [f"{number} no photograph ({calibration.name}): {list_names(lost)}"]
-
-
-def _describe_unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[str]:
-    """Photographs that lie beside those in use, but that no entry names."""
+def _unused(pairs: Sequence[tuple[Entry, Path]], views: Sequence[View]) -> list[str]:
+    """Names of photographs that lie beside those in use, but that no entry names."""
     used = {path for _, path in pairs} | {view.mask for view in views}
     folders = sorted({path.parent for _, path in pairs})
-    unused = [path.name for folder in folders for path in photographs_in(folder) if path not in used]
-    if not unused:
-        return []
-    return [f"{count_phrase(unused, 'photograph has', 'photographs have')} no calibration entry: {list_names(unused)}"]
+    return [path.name for folder in folders for path in photographs_in(folder) if path not in used]
 
 
 def _with_unique_names(views: Sequence[View]) -> tuple[View, ...]:
@@ -218,13 +186,9 @@ def _with_unique_names(views: Sequence[View]) -> tuple[View, ...]:
     times = Counter(view.path.name for view in views)
     shared = [view.path for view in views if times[view.path.name] > 1]
     common = Path(os.path.commonpath([path.parent for path in shared])) if shared else Path()
-    named = [
-        replace(
-            view,
-            name=escape_name(
-                view.path.name if times[view.path.name] == 1 else view.path.relative_to(common).as_posix()
-            ),
-        )
-        for view in views
-    ]
-    return tuple(sorted(named, key=lambda view: (natural_key(view.name), view.name)))
+
+    def unique_name(path: Path) -> str:
+        return escape_name(path.name if times[path.name] == 1 else path.relative_to(common).as_posix())
+
+    named = [replace(view, name=unique_name(view.path)) for view in views]
+    return tuple(sorted(named, key=lambda view: natural_key(view.name)))

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from eigenfield.capture.layout import GridLayout
-from eigenfield.capture.lightfield import LightField, PhotographSource, View
-from eigenfield.capture.photographs.decoded import decode_with_mask, size_on_disk
+from eigenfield.capture.lightfield import LightField, PhotographSource, StillCapture, View
+from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
@@ -43,7 +43,7 @@ class Shot:
 
 
 @dataclass(frozen=True, eq=False)
-class PhotoSet:
+class PhotoSet(StillCapture):
     """Photographs of one scene without cameras. Each is an observation, all of them of one instant.
 
     Attributes:
@@ -60,13 +60,6 @@ class PhotoSet:
     problems: tuple[str, ...]
     format: str
 
-    def __len__(self) -> int:
-        return len(self.shots)
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        return tuple(shot.name for shot in self.shots)
-
     @property
     def light_field(self) -> None:
         """None: the cameras are not known. A `LightField` has itself here."""
@@ -74,21 +67,12 @@ class PhotoSet:
 
     @property
     def sources(self) -> tuple[PhotographSource, ...]:
-        """What each photograph is read from."""
         return self.shots
 
     @property
     def sizes(self) -> list[tuple[int, int]]:
         """(width, height) of each photograph."""
         return [(shot.width, shot.height) for shot in self.shots]
-
-    def camera_of(self, index: int) -> int:
-        """Each photograph has a camera of its own, though it is not known."""
-        return index
-
-    def time_of(self, index: int) -> int:
-        """All photographs are of one instant."""
-        return 0
 
     def photograph(self, index: int) -> Photograph:
         """Decode one photograph now, its lens as it is; nothing is kept. May be called from any thread.
@@ -97,10 +81,6 @@ class PhotoSet:
         """
         shot = self.shots[index]
         return Photograph.of(*decode_with_mask(shot.path, shot.upright, shot.width, shot.height, shot.mask))
-
-    def bytes(self, index: int) -> int:
-        """The size of the photograph's file on disk."""
-        return size_on_disk(self.shots[index].path)
 
     def subset(self, indices: Iterable[int]) -> PhotoSet:
         """The same set with some of its shots, in the order given."""

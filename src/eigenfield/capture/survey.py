@@ -61,15 +61,8 @@ def measure_array(cameras: Sequence[Camera]) -> CameraArray:
         distance = float(lengths.mean())
         unit = rays / np.maximum(lengths, 1e-300)[:, None]
         cone = float(np.degrees(np.arccos(np.clip(min((unit @ u).min() for u in unit), -1, 1))))
-    return CameraArray(
-        plane,
-        float(np.abs((centres - plane.origin) @ normal).max()),
-        float(np.median(nearest)),
-        grid,
-        focus,
-        distance,
-        cone,
-    )
+    thickness = float(np.abs((centres - plane.origin) @ normal).max())
+    return CameraArray(plane, thickness, float(np.median(nearest)), grid, focus, distance, cone)
 
 
 def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:

@@ -2,28 +2,24 @@
 
 from eigenfield.proxy.atlas.layout import AtlasStatistics, atlas_fault, atlas_statistics, chart_labels
 from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES, simplify_mesh, unwrap_mesh, weld_vertices
-from eigenfield.proxy.background import fill_background
-from eigenfield.proxy.meshes.prepare import check_seen, prepare_proxy
+from eigenfield.proxy.meshes.prepare import prepare_proxy
 from eigenfield.proxy.meshes.read import read_mesh
 from eigenfield.proxy.meshes.write import check_mesh_name, write_mesh, write_ply
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive, parse_primitive
 from eigenfield.proxy.primitives.sphere_fit import find_view, fit_sphere, parse_region
 from eigenfield.proxy.relief.layers import estimate_second_layer
 from eigenfield.proxy.relief.make import relief_mesh
-from eigenfield.proxy.surface.multiview import ReconstructedSurface, surface_from_views
+from eigenfield.proxy.surface.multiview import surface_from_views
 
 __all__ = [
     "PROXY_DEFAULT_TRIANGLES",
     "AtlasStatistics",
     "Primitive",
-    "ReconstructedSurface",
     "atlas_fault",
     "atlas_statistics",
     "chart_labels",
     "check_mesh_name",
-    "check_seen",
     "estimate_second_layer",
-    "fill_background",
     "find_view",
     "fit_sphere",
     "insert_primitive",

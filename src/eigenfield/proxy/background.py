@@ -132,7 +132,7 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
     if len(mesh.faces) == 0:
         raise ProxyError("surface-empty", "the surface is empty", remedy="check the calibration and the depth range")
     samples, _ = surface_samples(mesh, BACKGROUND_TUNING.surface_samples)
-    directions = _sheet_directions(samples, cameras) or _dome_directions(samples, cameras)
+    directions = _sheet_directions(samples, cameras) or _dome_directions(cameras)
     far = _fit_inverse_distance(directions, samples, cameras)
     for _ in range(BACKGROUND_TUNING.push_rounds):
         w, hidden = _push_behind(directions, far, mesh, cameras)
@@ -140,13 +140,28 @@ def fill_background(mesh: Mesh, cameras: Sequence[Camera]) -> Mesh:
             break
         far = w
     background = Mesh((directions.centre + directions.vectors / far[:, None]).astype(np.float32), directions.faces)
-    both = join_meshes(mesh, background)
-    kept = np.append(np.ones(len(mesh.faces), np.bool_), seen_faces(both, cameras)[len(mesh.faces) :])
-    kept[len(mesh.faces) :] = add_face_ring(background.faces, kept[len(mesh.faces) :])
-    log.info(
-        "background: a %s of %d triangles", "dome" if directions.axis is None else "sheet", kept.sum() - len(mesh.faces)
-    )
-    return remove_unused_vertices(Mesh(both.vertices, both.faces[kept]))
+    result, added = add_seen_faces(mesh, background, cameras)
+    log.info("background: a %s of %d triangles", "dome" if directions.axis is None else "sheet", added)
+    return result
+
+
+def add_seen_faces(mesh: Mesh, other: Mesh, cameras: Sequence[Camera]) -> tuple[Mesh, int]:
+    """A mesh with those faces of another that some camera sees in a small picture, and those next to them; how many.
+
+    Args:
+        mesh: The mesh.
+        other: The other mesh.
+        cameras: All cameras.
+    """
+    both = join_meshes(mesh, other)
+    seen = np.zeros(len(both.faces), np.bool_)
+    for faces in parallel_map(lambda camera: np.unique(rasterise_view(both, _small_camera(camera)).face), cameras):
+        seen[faces[faces >= 0]] = True
+    touched = np.zeros(len(other.vertices), np.bool_)
+    touched[other.faces[seen[len(mesh.faces) :]]] = True
+    chosen = touched[other.faces].any(axis=1)
+    kept = np.append(np.ones(len(mesh.faces), np.bool_), chosen)
+    return remove_unused_vertices(Mesh(both.vertices, both.faces[kept])), int(chosen.sum())
 
 
 def join_meshes(*meshes: Mesh) -> Mesh:
@@ -172,34 +187,9 @@ def camera_coverage(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.float64
     return np.array(parallel_map(lambda camera: float((rasterise_view(mesh, camera).face >= 0).mean()), cameras))
 
 
-def seen_faces(mesh: Mesh, cameras: Sequence[Camera]) -> NDArray[np.bool_]:
-    """(m,) faces that are nearest at some pixel of some camera, in small pictures.
-
-    Args:
-        mesh: The mesh.
-        cameras: The cameras.
-    """
-    seen = np.zeros(len(mesh.faces), np.bool_)
-    for faces in parallel_map(lambda camera: np.unique(rasterise_view(mesh, _small_camera(camera)).face), cameras):
-        seen[faces[faces >= 0]] = True
-    return seen
-
-
 def _small_camera(camera: Camera) -> Camera:
     scale = min(1.0, BACKGROUND_TUNING.visibility_pixels / max(camera.width, camera.height))
     return camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
-
-
-def add_face_ring(faces: NDArray[np.int32], chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """(m,) the chosen faces and all faces that share a vertex with them.
-
-    Args:
-        faces: (m, 3).
-        chosen: (m,) mask.
-    """
-    touched = np.zeros(int(faces.max()) + 1, np.bool_)
-    touched[faces[chosen]] = True
-    return np.asarray(touched[faces].any(axis=1))
 
 
 def corner_rays(camera: Camera) -> NDArray[np.float64]:
@@ -243,26 +233,20 @@ def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -
             at = (local[:2] + step * rays[:, :2]) * w
             low, high = np.minimum(low, at.min(axis=0)), np.maximum(high, at.max(axis=0))
     size = high - low
-    low, high = (
-        low - BACKGROUND_TUNING.sheet_border_sizes * size.max(),
-        high + BACKGROUND_TUNING.sheet_border_sizes * size.max(),
-    )
+    border = BACKGROUND_TUNING.sheet_border_sizes * size.max()
+    low, high = low - border, high + border
     cell = float((high - low).max()) / BACKGROUND_TUNING.sheet_cells
     columns, rows = (int(n) for n in np.ceil((high - low) / cell).astype(int) + 1)
     x, y = np.meshgrid(low[0] + cell * np.arange(columns), low[1] + cell * np.arange(rows))
     first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
     # y is down and the sheet faces the camera: counter-clockwise as it sees it
-    faces = np.concatenate(
-        [
-            np.stack([first, first + columns, first + 1], axis=1),
-            np.stack([first + 1, first + columns, first + columns + 1], axis=1),
-        ]
-    )
+    halves = ((first, first + columns, first + 1), (first + 1, first + columns, first + columns + 1))
+    faces = np.concatenate([np.stack(half, axis=1) for half in halves])
     vectors = np.stack([x.ravel(), y.ravel(), np.ones(x.size)], axis=1) @ axis
     return Directions(centre, vectors, faces.astype(np.int32), axis)
 
 
-def _dome_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -> Directions:
+def _dome_directions(cameras: Sequence[Camera]) -> Directions:
     """All directions from the middle of the cameras."""
     import trimesh
 
@@ -298,10 +282,11 @@ def _fit_inverse_distance(
     if not (weight > 0).any():
         target, weight = ceiling * 0.5, np.full(count, 1e-3)
     target = _open_morphologically(directions.faces, target, weight > 0)
-    smooth = np.clip(
-        _fit_thin_plate(directions.faces, target, weight), low, w[outside].max() if outside.any() else None
-    )
-    envelope = np.minimum(_cell_minimum(nearest[outside], w[outside], count), ceiling)
+    highest = w[outside].max() if outside.any() else None
+    smooth = np.clip(_fit_thin_plate(directions.faces, target, weight), low, highest)
+    envelope = np.full(count, np.inf)
+    np.minimum.at(envelope, nearest[outside], w[outside])
+    envelope = np.minimum(envelope, ceiling)
     result = np.minimum(smooth, envelope * (1 - BACKGROUND_TUNING.behind_fraction))
     return _ease_steps(np.clip(result, low, None), directions.faces)
 
@@ -310,17 +295,14 @@ def _fit_thin_plate(
     faces: NDArray[np.int32], target: NDArray[np.float64], weight: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     count = len(target)
-    laplacian = _laplacian(faces, count)
+    neighbours, degree = _adjacency(faces, count)
+    laplacian = diags_array(degree) - neighbours
     ends, number = face_edges(faces)
     inner = np.ones(count)
     inner[ends[np.bincount(number)[number] == 1]] = 0  # the bend is not defined at the border
     bend = diags_array(inner) @ laplacian
-    stiff = (
-        BACKGROUND_TUNING.stiffness * (bend.T @ bend)
-        + BACKGROUND_TUNING.tension * laplacian
-        + diags_array(weight + 1e-9)
-    )
-    return np.asarray(spsolve(stiff.tocsc(), weight * target))
+    stiff = BACKGROUND_TUNING.stiffness * (bend.T @ bend) + BACKGROUND_TUNING.tension * laplacian
+    return np.asarray(spsolve((stiff + diags_array(weight + 1e-9)).tocsc(), weight * target))
 
 
 def _open_morphologically(
@@ -357,40 +339,27 @@ def _quantiles(
     return target, np.minimum(number / typical, 1.0)
 
 
-def _cell_minimum(cell: NDArray[np.int64], w: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-    result = np.full(count, np.inf)
-    np.minimum.at(result, cell, w)
-    return result
-
-
 def _max_inverse_distance(directions: Directions, cameras: Sequence[Camera]) -> NDArray[np.float64]:
     """(n,) the largest w that keeps every camera on the near side."""
-    if directions.axis is not None:
-        return np.full(len(directions.vectors), np.inf)
     farthest = max(float(np.linalg.norm(camera.centre - directions.centre)) for camera in cameras)
-    return np.full(
-        len(directions.vectors), 1 / (BACKGROUND_TUNING.dome_clearance_ratio * farthest) if farthest > 0 else np.inf
-    )
+    if directions.axis is not None or farthest == 0:
+        return np.full(len(directions.vectors), np.inf)
+    return np.full(len(directions.vectors), 1 / (BACKGROUND_TUNING.dome_clearance_ratio * farthest))
 
 
-def _adjacency(faces: NDArray[np.int32], count: int) -> csr_array:
+def _adjacency(faces: NDArray[np.int32], count: int) -> tuple[csr_array, NDArray[np.float64]]:
+    """The (count, count) matrix of neighbours, and (count,) how many each has."""
     a = faces.reshape(-1)
     b = np.roll(faces, -1, axis=1).reshape(-1)
     matrix = coo_array((np.ones(len(a)), (a, b)), shape=(count, count)).tocsr()
     matrix = matrix + matrix.T
     matrix.data[:] = 1
-    return matrix
-
-
-def _laplacian(faces: NDArray[np.int32], count: int) -> csr_array:
-    neighbours = _adjacency(faces, count)
-    return diags_array(np.asarray(neighbours.sum(axis=1)).ravel()) - neighbours
+    return matrix, np.asarray(matrix.sum(axis=1)).ravel()
 
 
 def _ease_steps(w: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.float64]:
     """Round off steps, but nowhere nearer than before: the minimum of each vertex and the mean around it, twice."""
-    neighbours = _adjacency(faces, len(w))
-    degree = np.asarray(neighbours.sum(axis=1)).ravel()
+    neighbours, degree = _adjacency(faces, len(w))
     for _ in range(2):
         w = np.minimum(w, (neighbours @ w) / degree)
     return w

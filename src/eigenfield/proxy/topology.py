@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh
-from eigenfield.imaging.graph import components, edge_components, face_edges
+from eigenfield.imaging.graph import components, edge_components, face_edges, vertex_components
 from eigenfield.proxy.topology_kernels import triangulate_least_area
 
 HOLE_MAX_EDGES = 200  # of a hole that is filled: the triangulation is cubic in it
@@ -37,6 +37,17 @@ def face_patches(faces: NDArray[np.int32], which: NDArray[np.bool_] | None = Non
     chosen = np.arange(len(faces)) if which is None else np.flatnonzero(which)
     label[chosen] = edge_components(faces[chosen])
     return label
+
+
+def face_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int32]:
+    """(m,) index of the vertex-connected component of each triangle.
+
+    Args:
+        faces: (m, 3).
+        vertices: Number of vertices.
+    """
+    label = vertex_components(faces, vertices)
+    return np.unique(label[faces[:, 0]], return_inverse=True)[1].astype(np.int32)
 
 
 def remove_islands(mesh: Mesh, min_fraction: float) -> Mesh:
@@ -132,7 +143,7 @@ def boundary_loops(mesh: Mesh) -> list[NDArray[np.int64]]:
     return loops
 
 
-def fill_holes(mesh: Mesh, max_size: float, *, max_edges: int = HOLE_MAX_EDGES) -> Mesh:
+def fill_holes(mesh: Mesh, max_size: float) -> Mesh:
     """The mesh with its small holes closed by the triangulation of least area.
 
     The outer border of a patch is no hole: what closes it would be larger than half the patch.
@@ -140,7 +151,6 @@ def fill_holes(mesh: Mesh, max_size: float, *, max_edges: int = HOLE_MAX_EDGES) 
     Args:
         mesh: Of `make_manifold`.
         max_size: Largest extent of a hole, world units.
-        max_edges: Most edges of a hole.
     """
     label, area = face_patches(mesh.faces), mesh.face_areas()
     patch_area = np.bincount(label, area) if len(label) else area
@@ -149,7 +159,7 @@ def fill_holes(mesh: Mesh, max_size: float, *, max_edges: int = HOLE_MAX_EDGES) 
     added = [mesh.faces]
     for loop in boundary_loops(mesh):
         corners = mesh.vertices[loop].astype(np.float64)
-        if 3 <= len(loop) <= max_edges and np.linalg.norm(np.ptp(corners, axis=0)) <= max_size:
+        if 3 <= len(loop) <= HOLE_MAX_EDGES and np.linalg.norm(np.ptp(corners, axis=0)) <= max_size:
             fill = loop[triangulate_least_area(corners)].astype(np.int32)
             if 2 * Mesh(mesh.vertices, fill).face_areas().sum() <= patch_area[patch_of[loop[0]]]:
                 added.append(fill)

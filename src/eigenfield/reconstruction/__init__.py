@@ -1,15 +1,6 @@
 """From photographs to cameras and a proxy mesh (section 3.1 of the paper)."""
 
 from eigenfield.reconstruction.array import looks_one_way
-from eigenfield.reconstruction.report import ProxyReport
-from eigenfield.reconstruction.run import SURFACE_KINDS, ReconstructionSettings
 from eigenfield.reconstruction.whole import Reconstruction, reconstruct
 
-__all__ = [
-    "SURFACE_KINDS",
-    "ProxyReport",
-    "Reconstruction",
-    "ReconstructionSettings",
-    "looks_one_way",
-    "reconstruct",
-]
+__all__ = ["Reconstruction", "looks_one_way", "reconstruct"]

@@ -6,34 +6,21 @@ import logging
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import (
-    PlanarArray,
-    PlanarStart,
-    refine_planar,
-    register_views,
-    start_given,
-    start_planar,
-)
+from eigenfield.calibrate import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError, ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.progress import Progress
 from eigenfield.core.viewplane import fit_view_plane
-from eigenfield.proxy import (
-    estimate_second_layer,
-    read_mesh,
-    relief_mesh,
-    write_ply,
-)
+from eigenfield.proxy import estimate_second_layer, read_mesh, relief_mesh, write_ply
+from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
 from eigenfield.reconstruction.run import ReconstructionSettings, StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -118,7 +105,7 @@ def looks_one_way(cameras: Sequence[Camera]) -> bool:
 
 
 def relief_of_array(
-    run: StageRunner, capture: Capture, points: NDArray[np.float64] | None, identity: list[Any]
+    run: StageRunner, capture: Capture, points: NDArray[np.float64] | None
 ) -> tuple[LightField, Mesh, Path | None]:
     """Cameras and depth of an array, then the layered relief.
 
@@ -126,14 +113,13 @@ def relief_of_array(
         run: The stages.
         capture: Photographs with cameras or a layout.
         points: (n, 3) points of structure from motion, if any.
-        identity: What the result depends on.
 
     Returns:
         The light field, the relief with an atlas, and the folder of the calibration.
     """
     refine = _must_refine(capture, run.settings)
     known = np.flatnonzero(~held_out_cameras(run.settings.blind, capture.names, _positions(capture)))
-    inputs = [identity, refine, known.tolist(), None if points is None else len(points)]
+    inputs = [refine, known.tolist(), None if points is None else len(points)]
 
     def build(folder: Path) -> None:
         pictures = read_pictures(capture)
@@ -164,9 +150,7 @@ def relief_of_array(
         closed: list[Camera] = []
         if masks is None if background is None else background:
             closed = resized_cameras(light_field.subset([light_field.names.index(capture.names[i]) for i in keep]))
-        layers = _layered_relief(
-            depth, pictures[keep], shown, depth.matrices[keep], run.settings.triangles, closed, run.progress
-        )
+        layers = _layered_relief(run, depth, pictures[keep], shown, depth.matrices[keep], closed)
         write_ply(layers, place / STAGE_MESH_FILE)
 
     relief = run.stage("relief", [inputs, run.settings.triangles, run.settings.background], mesh)
@@ -174,33 +158,31 @@ def relief_of_array(
 
 
 def _layered_relief(
+    run: StageRunner,
     depth: ArrayDepth,
     pictures: NDArray[np.uint8],
     masks: NDArray[np.uint8] | None,
     matrices: NDArray[np.float64],
-    triangles: int,
-    cameras: Sequence[Camera] = (),
-    progress: Progress | None = None,
+    cameras: Sequence[Camera],
 ) -> Mesh:
     """The layered relief of a depth map, closed for `cameras`.
 
-    If its cuts alone take more than `triangles`, the depth is noisy, and fewer cuts are made.
+    If its cuts alone take more triangles than are allowed, the depth is noisy, and fewer cuts are made.
     """
+    triangles = run.settings.triangles
     valid = cv2.dilate((depth.count > 0).astype(np.uint8), np.ones((9, 9), np.uint8)) > 0
     if masks is not None:
         valid &= _inside_masks(masks, matrices, depth)
     reach = float(np.abs(matrices[:, :2, 2]).max())
     low, high = np.percentile(depth.d[depth.count > 0], [1, 99])
-    cut, speck = (
-        max(ARRAY_TUNING.cut_pixels / reach, ARRAY_TUNING.cut_range_fraction * float(high - low)),
-        ARRAY_TUNING.speckle_fraction,
-    )
+    cut = max(ARRAY_TUNING.cut_pixels / reach, ARRAY_TUNING.cut_range_fraction * float(high - low))
+    speck = ARRAY_TUNING.speckle_fraction
     for _ in range(ARRAY_TUNING.cut_rounds):
         d = remove_speckles(depth.d, find_discontinuities(depth.d, 1 / reach, cut), round(speck * depth.d.size))
-        second = estimate_second_layer(pictures, matrices, d, valid, cut=cut, progress=progress)
+        second = estimate_second_layer(pictures, matrices, d, valid, cut=cut, progress=run.progress)
         mesh = relief_mesh(
             depth.reference, d, valid, second, cut=cut, tolerance=ARRAY_TUNING.tolerance_pixels / reach,
-            triangles=triangles, cameras=cameras, progress=progress,
+            triangles=triangles, cameras=cameras, progress=run.progress,
         )  # fmt: skip
         if len(mesh.faces) <= 1.1 * triangles:
             break
@@ -276,15 +258,13 @@ def _inverse_depths(
     plane = fit_view_plane(cameras)
     middle = cameras[int(np.argmin(np.linalg.norm(plane.coordinates([c.centre for c in cameras]), axis=1)))]
     if points is not None and len(points) >= ARRAY_TUNING.min_points:
-        pixels, depth = middle.project(points)
-        inside = (depth > 0) & (pixels > 0).all(axis=1) & (pixels < (middle.width, middle.height)).all(axis=1)
+        _, depth, inside = project_inside(middle, points)
         if inside.sum() >= ARRAY_TUNING.min_points:
             low, high = np.percentile(1 / depth[inside], [1, 99])
-            return max(float(low - ARRAY_TUNING.range_margin_fraction * (high - low)), 0.3 * float(low)), float(
-                high + ARRAY_TUNING.range_margin_fraction * (high - low)
-            )
+            room = ARRAY_TUNING.range_margin_fraction * (high - low)
+            return max(float(low - room), 0.3 * float(low)), float(high + room)
     # disparities of one step, from infinity to a fifth of the picture
-    provisional = start_given(cameras, *(1e-3, 1.0))
+    provisional = start_given(cameras, 1e-3, 1.0)
     reference = provisional.model.reference_view(0)
     matrices = provisional.model.matrices(reference, np.arange(len(cameras)), provisional.parameters)
     chosen = np.argsort(np.linalg.norm(provisional.places, axis=1), kind="stable")[: ARRAY_TUNING.range_views]

@@ -69,12 +69,14 @@ class StageRunner:
     Attributes:
         stages: Finished stages.
         settings: Of the reconstruction.
+        identity: What every stage depends on.
         progress: Called within stages.
         seconds: Time that each stage took.
     """
 
     stages: Stages
     settings: ReconstructionSettings
+    identity: Sequence[Any]
     progress: Progress | None
     seconds: dict[str, float]
 
@@ -83,11 +85,11 @@ class StageRunner:
 
         Args:
             name: Of the stage.
-            inputs: What its result depends on.
+            inputs: What else its result depends on.
             build: Writes its files into a folder.
         """
         started = time.monotonic()
-        key = stage_key([name, *inputs])
+        key = stage_key([name, self.identity, *inputs])
         ready = self.stages.path(name, key).is_dir()
         folder = self.stages.run(name, key, build)
         self.seconds[name] = 0.0 if ready else time.monotonic() - started

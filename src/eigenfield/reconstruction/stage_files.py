@@ -9,19 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.calibrate import (
-    PlanarArray,
-)
+from eigenfield.calibrate import PlanarArray
 from eigenfield.capture import Capture, Lens, LightField
 from eigenfield.core.camera import Camera
 from eigenfield.stereo import ReferenceView
 
-STAGE_MESH_FILE, STAGE_ERROR_FILE, STAGE_CAMERAS_FILE, STAGE_DEPTH_FILE = (
-    "mesh.ply",
-    "error.json",
-    "cameras.npz",
-    "depth.npz",
-)
+STAGE_MESH_FILE, STAGE_ERROR_FILE = "mesh.ply", "error.json"
+STAGE_CAMERAS_FILE, STAGE_DEPTH_FILE = "cameras.npz", "depth.npz"
 
 
 def write_cameras(path: Path, capture: Capture, light_field: LightField, points: NDArray[np.float64]) -> None:
@@ -76,10 +70,9 @@ def write_planar(path: Path, planar: PlanarArray) -> None:
     reference = planar.reference
     views = np.arange(len(planar.parameters))
     np.savez(
-        path, d=planar.d, confidence=planar.confidence, texture=planar.texture, count=planar.count,
-        K=reference.camera.K, R=reference.camera.R, t=reference.camera.t,
+        path, d=planar.d, count=planar.count, K=reference.camera.K, R=reference.camera.R, t=reference.camera.t,
         reference=[reference.margin, reference.offset, reference.scale],
-        matrices=planar.model.matrices(reference, views, planar.parameters), range=[planar.low, planar.high],
+        matrices=planar.model.matrices(reference, views, planar.parameters),
     )  # fmt: skip
 
 
@@ -90,22 +83,14 @@ class ArrayDepth:
     Attributes:
         reference: The reference view.
         d: (h, w) labels.
-        confidence: (h, w) about 1 / variance of d.
-        texture: (h, w, 3) mean texture, grey levels.
         count: (h, w) number of views that see each point.
         matrices: (n, 3, 4) of the views.
-        low: Lowest label.
-        high: Highest label.
     """
 
     reference: ReferenceView
     d: NDArray[np.float32]
-    confidence: NDArray[np.float32]
-    texture: NDArray[np.float32]
     count: NDArray[np.int32]
     matrices: NDArray[np.float64]
-    low: float
-    high: float
 
 
 def read_planar(path: Path) -> ArrayDepth:
@@ -118,8 +103,4 @@ def read_planar(path: Path) -> ArrayDepth:
         d = data["d"]
         margin, offset, scale = data["reference"].tolist()
         camera = Camera(data["K"], data["R"], data["t"], d.shape[1], d.shape[0])
-        low, high = data["range"].tolist()
-        return ArrayDepth(
-            ReferenceView(camera, int(margin), offset, scale), d, data["confidence"], data["texture"], data["count"],
-            data["matrices"], low, high,
-        )  # fmt: skip
+        return ArrayDepth(ReferenceView(camera, int(margin), offset, scale), d, data["count"], data["matrices"])

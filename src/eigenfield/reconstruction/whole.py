@@ -6,7 +6,7 @@ import hashlib
 import json
 import logging
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -111,13 +111,12 @@ def reconstruct(
     for text in fit_spheres:  # before the long stages
         find_view(parse_region(text), capture.names)
     with Stages(work) as stages:
-        run = StageRunner(stages, settings, progress, {})
-        identity = _identity(capture)
+        run = StageRunner(stages, settings, _identity(capture), progress, {})
         points = calibration = error = None
         if capture.light_field is None and capture.layout is None:  # nothing is known about the cameras
-            capture, points, calibration = _estimate_cameras(run, capture, identity)
+            capture, points, calibration = _estimate_cameras(run, capture)
         if _is_relief(capture, settings) or capture.light_field is None:
-            light_field, mesh, folder = relief_of_array(run, capture, points, identity)
+            light_field, mesh, folder = relief_of_array(run, capture, points)
             calibration = folder or calibration
         else:
             light_field = capture
@@ -126,8 +125,8 @@ def reconstruct(
                     "blind", "only arrays that look one way can be reconstructed blind",
                     remedy="leave out --blind: held-out views then help to find cameras and proxy",
                 )  # fmt: skip
-            mesh, error = _poisson(run, light_field, points, identity)
-        mesh = _add_atlas(run, light_field, mesh, identity)
+            mesh, error = _poisson(run, light_field, points)
+        mesh = _add_atlas(run, light_field, mesh)
         report = measure_proxy(mesh, light_field.cameras, error)
         return Reconstruction(light_field, mesh, calibration if work is not None else None, run.seconds, report)
 
@@ -135,7 +134,8 @@ def reconstruct(
 def _identity(capture: Capture) -> list[Any]:
     """Everything that a result depends on: every file's bytes, cameras, lenses, layout."""
     if capture.light_field is None:
-        own: list[Any] = [] if capture.layout is None else [_as_json(capture.layout)]
+        layout = {} if capture.layout is None else vars(capture.layout)
+        own: list[Any] = [v.tolist() if isinstance(v, np.ndarray) else v for _, v in sorted(layout.items())]
         own += [[shot.focal, shot.width, shot.height] for shot in capture.shots]
     else:
         own = [
@@ -150,15 +150,7 @@ def _identity(capture: Capture) -> list[Any]:
     return [parallel_map(digest, capture.sources), own]
 
 
-def _as_json(value: Any) -> dict[str, Any]:
-    """A dataclass of arrays and numbers, JSON-able."""
-    items = ((field.name, getattr(value, field.name)) for field in fields(value))
-    return {name: item.tolist() if isinstance(item, np.ndarray) else item for name, item in items}
-
-
-def _estimate_cameras(
-    run: StageRunner, photos: PhotoSet, identity: list[Any]
-) -> tuple[LightField, NDArray[np.float64], Path]:
+def _estimate_cameras(run: StageRunner, photos: PhotoSet) -> tuple[LightField, NDArray[np.float64], Path]:
     """Cameras of photographs without any information, by structure from motion."""
 
     def build(folder: Path) -> None:
@@ -166,7 +158,7 @@ def _estimate_cameras(
         save_calibration(motion.light_field, folder / "calibration", motion.points)
         write_cameras(folder / STAGE_CAMERAS_FILE, photos, motion.light_field, motion.points.positions)
 
-    folder = run.stage("motion", [identity], build)
+    folder = run.stage("motion", [], build)
     light_field, points = read_cameras(folder / STAGE_CAMERAS_FILE, photos)
     return light_field, points, folder / "calibration"
 
@@ -186,11 +178,11 @@ def _is_relief(capture: Capture, settings: ReconstructionSettings) -> bool:
 
 
 def _poisson(
-    run: StageRunner, light_field: LightField, points: NDArray[np.float64] | None, identity: list[Any]
+    run: StageRunner, light_field: LightField, points: NDArray[np.float64] | None
 ) -> tuple[Mesh, SurfaceError]:
     settings = run.settings
     by_hand = [settings.primitives, settings.fit_spheres, settings.background]
-    inputs = [identity, None if points is None else len(points), settings.triangles, by_hand]
+    inputs = [None if points is None else len(points), settings.triangles, by_hand]
 
     def build(folder: Path) -> None:
         known = triangulate_points(light_field, progress=run.progress) if points is None else points
@@ -203,19 +195,18 @@ def _poisson(
         (folder / STAGE_ERROR_FILE).write_text(json.dumps(asdict(surface.error)), encoding="utf-8")
 
     folder = run.stage("surface", inputs, build)
-    return read_mesh(folder / STAGE_MESH_FILE), SurfaceError(
-        **json.loads((folder / STAGE_ERROR_FILE).read_text(encoding="utf-8"))
-    )
+    error = json.loads((folder / STAGE_ERROR_FILE).read_text(encoding="utf-8"))
+    return read_mesh(folder / STAGE_MESH_FILE), SurfaceError(**error)
 
 
-def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh, identity: list[Any]) -> Mesh:
+def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh) -> Mesh:
     """The mesh with an atlas; primitives are inserted into a relief first."""
     settings = run.settings
     relief = mesh.uv is not None
     by_hand = [settings.primitives, settings.fit_spheres] if relief else []
     if relief and not any(by_hand):
         return mesh
-    inputs = [identity, mesh_digest(mesh), by_hand]
+    inputs = [hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest(), by_hand]
 
     def build(folder: Path) -> None:
         result = mesh
@@ -225,15 +216,6 @@ def _add_atlas(run: StageRunner, light_field: LightField, mesh: Mesh, identity: 
         write_ply(result, folder / STAGE_MESH_FILE)
 
     return read_mesh(run.stage("proxy", inputs, build) / STAGE_MESH_FILE)
-
-
-def mesh_digest(mesh: Mesh) -> str:
-    """A digest of a mesh's vertices and faces.
-
-    Args:
-        mesh: The mesh.
-    """
-    return hashlib.sha256(mesh.vertices.tobytes() + mesh.faces.tobytes()).hexdigest()
 
 
 def _requested_primitives(run: StageRunner, light_field: LightField) -> list[Primitive]:

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera import Camera
-from eigenfield.core.progress import Progress
 from eigenfield.imaging.sampling import farthest_points
 from eigenfield.stereo.detail import detail_pictures
 from eigenfield.stereo.extend import extend_depth
-from eigenfield.stereo.reference_view import ReferenceView, view_matrices
 from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
@@ -30,8 +26,6 @@ from eigenfield.stereo.views import (
     unpack_pictures,
 )
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
-
-log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True)
@@ -50,8 +44,6 @@ class DepthTuning:
         unseen_cost_levels: Cost in grey levels where too few views look, that of a fair match: smoothness then decides.
         fine_reach_labels: Labels that the fine sweep tries beyond the local range of the coarse map.
         fine_window_pixels: Window of that local range.
-        sgm_p1_levels: Penalty for a step of one label between neighbours.
-        sgm_p2_levels: Penalty for a larger jump.
     """
 
     refinement_step_labels: tuple[float, ...] = (0.08, 0.06, 0.04, 0.03)
@@ -65,40 +57,20 @@ class DepthTuning:
     unseen_cost_levels: float = 9.0
     fine_reach_labels: int = 3
     fine_window_pixels: int = 9
-    sgm_p1_levels: float = 1.0
-    sgm_p2_levels: float = 12.0
 
 
 DEPTH_TUNING = DepthTuning()
 
 
-@dataclass(frozen=True, eq=False)
-class DepthMap:
-    """The depth map of a reference view.
-
-    Attributes:
-        d: (h, w) float32 labels.
-        confidence: (h, w) float32, about 1 / variance of d; 0 where nothing is known.
-        count: (h, w) int32 number of views that see the point.
-        texture: (h, w, 3) float32 mean of these views, grey levels.
-    """
-
-    d: NDArray[np.float32]
-    confidence: NDArray[np.float32]
-    count: NDArray[np.int32]
-    texture: NDArray[np.float32]
-
-
 def estimate_depth(
     pictures: Pictures,
-    cameras: Sequence[Camera] | NDArray[np.float64],
-    reference: ReferenceView | tuple[int, int],
+    matrices: NDArray[np.float64],
+    shape: tuple[int, int],
     d_range: tuple[float, float],
     *,
     rounds: int = len(DEPTH_TUNING.refinement_step_labels),
-    progress: Progress | None = None,
-) -> DepthMap:
-    """The depth map of a reference view from V views.
+) -> NDArray[np.float32]:
+    """The depth map of a reference view from V views, (h, w) labels.
 
     Labels are first compared with the reference camera's own picture, if it is among the views. The first sweep and
     semi-global matching run at half resolution over the whole range, with the best half of the views. The second sweep
@@ -108,34 +80,19 @@ def estimate_depth(
 
     Args:
         pictures: (V, H, W, 3) uint8 or packed.
-        cameras: V cameras, or their (V, 3, 4) matrices on (x, y, d, 1).
-        reference: The reference view. With matrices, its (height, width) is enough.
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
         d_range: Lowest and highest label.
         rounds: Rounds of refinement over all views.
-        progress: Called after each step.
 
     Raises:
-        TypeError: `cameras` are cameras and `reference` is a shape.
         ValueError: The range is empty, or pictures or matrices are malformed.
     """
     packed = pack_pictures(pictures)
-    shape = reference.shape if isinstance(reference, ReferenceView) else reference
-    if isinstance(cameras, np.ndarray):
-        matrices = check_matrices(cameras, len(packed))
-    elif isinstance(reference, ReferenceView):
-        matrices = view_matrices(reference, cameras)
-    else:
-        raise TypeError("cameras need a ReferenceView; a shape goes with matrices")
+    matrices = check_matrices(matrices, len(packed))
     low, high = float(d_range[0]), float(d_range[1])
     if not low < high:
         raise ValueError(f"an empty range of labels: {low} to {high}")
-    total = 2 + rounds + 1
-
-    def report(done: int) -> None:
-        if progress is not None:
-            progress("depth", done, total)
-
-    report(0)
     frame = packed.shape[1:]
     chosen = spread_views(label_parallax(matrices, shape, (low + high) / 2), DEPTH_TUNING.sweep_max_views)
     step = _label_step(matrices, shape, low, high)
@@ -147,11 +104,8 @@ def estimate_depth(
         return extend_depth(d, known | _seen_by_enough(packed[chosen], matrices[chosen], d), low, high)
 
     d = _sweep_coarse(packed, matrices, shape, chosen, low, high, step)
-    report(1)
     d = extend(np.asarray(cv2.resize(d, (shape[1], shape[0]), interpolation=cv2.INTER_NEAREST), np.float32))
     d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
-    report(2)
-    confidence = np.zeros(shape, np.float32)
     steps = DEPTH_TUNING.refinement_step_labels
     buffers = np.empty((len(packed), *frame), np.float32)
     for number in range(rounds):
@@ -164,11 +118,7 @@ def estimate_depth(
         d = extend(np.clip(smooth_depth(d, confidence, guide), low, high).astype(np.float32))
         if number == 0 and rounds > 1:
             d = extend(_sweep_fine(packed, sharp, matrices, shape, chosen, d, low, high, step))
-        report(3 + number)
-    depth_buffers(matrices, d, frame, out=buffers)
-    texture, count = mean_texture(packed, matrices, d, buffers)
-    report(total)
-    return DepthMap(d, confidence, count, texture)
+    return d
 
 
 def warp_reference_picture(
@@ -211,9 +161,7 @@ def _seen_by_enough(
 
 def _label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
     fastest = np.hypot(*label_parallax(matrices, shape, (low + high) / 2).T).max(initial=1e-9)
-    return float(
-        max(DEPTH_TUNING.sweep_stride_pixels / max(fastest, 1e-9), (high - low) / (DEPTH_TUNING.sweep_max_labels - 1))
-    )
+    return float(max(DEPTH_TUNING.sweep_stride_pixels / fastest, (high - low) / (DEPTH_TUNING.sweep_max_labels - 1)))
 
 
 def spaced_labels(low: float, high: float, step: float) -> NDArray[np.float32]:
@@ -248,13 +196,28 @@ def _min_views(views: int) -> int:
     return max(2, round(DEPTH_TUNING.min_view_fraction / 2 * views))
 
 
-def _sweep_references(
-    detail: Pictures, matrices: NDArray[np.float64], shape: tuple[int, int], pictures: Pictures
-) -> tuple[NDArray[np.float32] | None, NDArray[np.bool_], NDArray[np.float32]]:
-    """The detail picture that a sweep compares with, its mask, and the grey picture whose edges allow depth jumps."""
+def sweep_and_match(
+    detail: NDArray[np.uint32],
+    pictures: NDArray[np.uint32],
+    matrices: NDArray[np.float64],
+    shape: tuple[int, int],
+    labels: NDArray[np.float32],
+    **options: Any,
+) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Depth by a plane sweep and semi-global matching, and the costs of the sweep.
+
+    Args:
+        detail: (V, H, W) packed pictures that are compared.
+        pictures: (V, H, W) packed; at edges of the reference camera's own one, depth may jump.
+        matrices: (V, 3, 4) of the views.
+        shape: (h, w) of the reference view.
+        labels: (L,) evenly spaced.
+        options: Of `plane_sweep`.
+    """
     compared, known = warp_reference_picture(detail, matrices, shape)
-    seen, _ = warp_reference_picture(pictures, matrices, shape)
-    return (compared if known.any() else None), known, seen.mean(axis=-1).astype(np.float32)
+    grey = warp_reference_picture(pictures, matrices, shape)[0].mean(axis=-1).astype(np.float32)
+    cost = plane_sweep(detail, matrices, shape, labels, reference=compared, known=known, **options)
+    return semi_global_matching(cost, grey, labels)[0], cost
 
 
 def _sweep_coarse(
@@ -265,20 +228,10 @@ def _sweep_coarse(
     small_shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
     small = halve_pictures(packed[chosen])
     detail = detail_pictures(small, DEPTH_TUNING.sweep_detail_gain, blur_sigma=0)
-    half = halved_matrices(matrices[chosen])
-    compared, known, grey = _sweep_references(detail, half, small_shape, small)
-    labels = spaced_labels(low, high, 2 * step)
-    cost = plane_sweep(
-        detail,
-        half,
-        small_shape,
-        labels,
-        reference=compared,
-        known=known,
-        unseen_cost=DEPTH_TUNING.unseen_cost_levels,
-        min_views=_min_views(len(chosen)),
-    )
-    d, _ = semi_global_matching(cost, grey, labels, DEPTH_TUNING.sgm_p1_levels, DEPTH_TUNING.sgm_p2_levels)
+    d, _ = sweep_and_match(
+        detail, small, halved_matrices(matrices[chosen]), small_shape, spaced_labels(low, high, 2 * step),
+        unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),
+    )  # fmt: skip
     return d
 
 
@@ -297,11 +250,9 @@ def _sweep_fine(
     floor, ceiling = cv2.erode(before, window) - reach, cv2.dilate(before, window) + reach
     chosen_matrices = matrices[chosen]
     buffers = depth_buffers(chosen_matrices, before, packed.shape[1:])
-    compared, known, grey = _sweep_references(sharp, chosen_matrices, shape, packed[chosen])
-    cost = plane_sweep(
-        sharp, chosen_matrices, shape, labels, reference=compared, known=known, floor=floor, ceiling=ceiling,
-        buffers=buffers, unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),
+    d, _ = sweep_and_match(
+        sharp, packed[chosen], chosen_matrices, shape, labels, floor=floor, ceiling=ceiling, buffers=buffers,
+        unseen_cost=DEPTH_TUNING.unseen_cost_levels, min_views=_min_views(len(chosen)),
         bias=DEPTH_TUNING.sweep_bias_labels, half_plane_fraction=1.0,
     )  # fmt: skip
-    d, _ = semi_global_matching(cost, grey, labels, DEPTH_TUNING.sgm_p1_levels, DEPTH_TUNING.sgm_p2_levels)
     return d

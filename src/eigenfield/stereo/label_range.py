@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.stereo.detail import detail_pictures
-from eigenfield.stereo.estimate import DEPTH_TUNING, spaced_labels, spread_views, warp_reference_picture
-from eigenfield.stereo.semiglobal import semi_global_matching
-from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
+from eigenfield.stereo.estimate import spaced_labels, spread_views, sweep_and_match
+from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS
 from eigenfield.stereo.sweep_kernels import SWEEP_COST_UNITS_PER_LEVEL
 from eigenfield.stereo.views import Pictures, halve_pictures, halved_matrices, label_parallax, pack_pictures
 
 LABEL_RANGE_MAX_VIEWS = 25
+LABEL_RANGE_LABELS = 128  # that are tried
 LABEL_RANGE_HALVINGS = 2
 LABEL_RANGE_TRIM_PERCENT = 0.5  # pixels that may lie outside at each end of the range
 LABEL_RANGE_MARGIN_FRACTION = 0.05  # added at both ends
@@ -26,8 +26,6 @@ def depth_range(
     matrices: NDArray[np.float64],
     shape: tuple[int, int],
     search_range: tuple[float, float],
-    *,
-    labels: int = 128,
 ) -> tuple[float, float] | None:
     """The range of labels that holds the scene, from a sweep at a quarter of the resolution.
 
@@ -38,7 +36,6 @@ def depth_range(
         matrices: (V, 3, 4) of the views.
         shape: (h, w) of the reference view.
         search_range: Lowest and highest label tried.
-        labels: How many labels are tried.
 
     Returns:
         (low, high), or None if hardly any pixel matches: nothing in `search_range` is consistent with the photographs.
@@ -49,22 +46,9 @@ def depth_range(
     for _ in range(LABEL_RANGE_HALVINGS):
         small, coarse = halve_pictures(small), halved_matrices(coarse)
         shape = ((shape[0] + 1) // 2, (shape[1] + 1) // 2)
-    tried = spaced_labels(*search_range, (search_range[1] - search_range[0]) / (labels - 1))
+    tried = spaced_labels(*search_range, (search_range[1] - search_range[0]) / (LABEL_RANGE_LABELS - 1))
     detail = detail_pictures(small)
-    compared, known = warp_reference_picture(detail, coarse, shape)
-    seen, _ = warp_reference_picture(small, coarse, shape)
-    cost = plane_sweep(
-        detail,
-        coarse,
-        shape,
-        tried,
-        reference=compared if known.any() else None,
-        known=known,
-        unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
-    )
-    d, _ = semi_global_matching(
-        cost, seen.mean(axis=-1).astype(np.float32), tried, DEPTH_TUNING.sgm_p1_levels, DEPTH_TUNING.sgm_p2_levels
-    )
+    d, cost = sweep_and_match(detail, small, coarse, shape, tried, unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS)
     nearest = np.abs(tried[None, None] - d[..., None]).argmin(axis=-1)
     at_best = np.take_along_axis(cost, nearest[..., None], axis=-1)[..., 0].astype(np.float32)
     usual = np.median(cost, axis=-1)

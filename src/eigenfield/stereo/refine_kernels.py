@@ -12,8 +12,7 @@ from eigenfield.stereo.taps import (
     TAP_FLOAT_SLOTS,
     TAP_INT_SLOTS,
     TAP_RUN,
-    bilinear_channel,
-    bilinear_weights,
+    bilinear_colour,
     fetch_run,
     is_visible,
     project_run,
@@ -30,10 +29,8 @@ _QUARTER = np.float32(0.25)
 def _add_robust(count, floats, ints, centre, scale, sums):
     """sums (6 slots): w, w e (3), w |e|^2, 1 over visible views; e = colour - centre, w = 1 / (1 + |e|^2 scale)."""
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
-        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11) - centre[i]
-        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11) - centre[i + TAP_RUN]
-        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11) - centre[i + 2 * TAP_RUN]
+        r, g, b = bilinear_colour(floats, ints, i)
+        r, g, b = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
         m = is_visible(floats, i)
         e = r * r + g * g + b * b
         w = m / (_ONE + e * scale)

@@ -23,7 +23,6 @@ def semi_global_matching(
     labels: NDArray[np.float32],
     p1: float = 1.0,
     p2: float = 12.0,
-    contrast: float = SGM_HALF_JUMP_LEVELS,
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """The depth map of least matching cost plus smoothness penalty.
 
@@ -33,7 +32,6 @@ def semi_global_matching(
         labels: (L,) evenly spaced.
         p1: Penalty in grey levels for a step of one label.
         p2: Penalty in grey levels for a jump.
-        contrast: Difference of the guide, in grey levels, at which a jump costs half.
 
     Returns:
         (h, w) float32 labels, and (h, w) float32 confidence: curvature of the summed cost at its minimum, in grey
@@ -41,10 +39,8 @@ def semi_global_matching(
     """
     guide = np.ascontiguousarray(guide, np.float32)
     labels = np.ascontiguousarray(labels, np.float32)
-    small, large = (
-        np.int32(round(p1 * float(SWEEP_COST_UNITS_PER_LEVEL))),
-        np.float32(p2 * float(SWEEP_COST_UNITS_PER_LEVEL)),
-    )
+    units = float(SWEEP_COST_UNITS_PER_LEVEL)
+    small, large = np.int32(round(p1 * units)), np.float32(p2 * units)
     d, confidence = np.empty(cost.shape[:2], np.float32), np.empty(cost.shape[:2], np.float32)
     shared = 4 * cost.size > SGM_MAX_PARALLEL_BYTES
     forward = np.zeros(cost.shape, np.uint16)
@@ -52,7 +48,7 @@ def semi_global_matching(
     passes = [(False, forward), (True, backward)]
 
     def run(item: tuple[bool, NDArray[np.uint16]]) -> None:
-        accumulate_path_costs(cost, guide, small, large, np.float32(contrast), item[0], item[1])
+        accumulate_path_costs(cost, guide, small, large, np.float32(SGM_HALF_JUMP_LEVELS), *item)
 
     if shared:
         for item in passes:

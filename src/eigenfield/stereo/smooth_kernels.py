@@ -95,25 +95,14 @@ def _solve_planes(count, sums, plane):
 
 @kernel(fastmath=FASTMATH_ORDERED)
 def fit_planes(
-    first,
-    last,
-    d,
-    sure,
-    guide,
-    radius,
-    spacing,
-    colour_scale,
-    depth_scale,
-    relaxed_colour_scale,
-    relaxed_depth_scale,
-    out,
+    first, last, d, sure, guide, radius, spacing, colour_scale, depth_scale, loose_colour_scale, loose_depth_scale, out
 ):
     """Depth of the plane fitted to the taps around each point of rows [first, last).
 
     A tap at offset r weighs
     q exp(-|colour difference| / c - |r|^2 / radius^2) / (1 + (e / s)^2)^2,
     e its difference from the plane of the previous pass (from d here, in the first). Where the point itself is
-    uncertain the scales are relaxed to c = colour_scale + (1 - q)^2 relaxed_colour_scale, and s likewise. Otherwise
+    uncertain the scales are relaxed to c = colour_scale + (1 - q)^2 loose_colour_scale, and s likewise. Otherwise
     flat paint would be cut off from the lines drawn on it. Wide taps (spacing over 2) move a point by 1 - q of the way.
     Points are processed in runs of TAP_RUN neighbours of a row; the innermost loops over them are vectorised (`taps`).
 
@@ -126,8 +115,8 @@ def fit_planes(
         spacing: Distance of the taps, pixels.
         colour_scale: Grey levels, summed over the channels.
         depth_scale: Labels.
-        relaxed_colour_scale: Added to `colour_scale` for uncertain points.
-        relaxed_depth_scale: Added to `depth_scale` for uncertain points.
+        loose_colour_scale: Added to `colour_scale` for uncertain points.
+        loose_depth_scale: Added to `depth_scale` for uncertain points.
         out: (h, w) smoothed labels, written.
     """
     height, width = d.shape
@@ -142,8 +131,8 @@ def fit_planes(
             count = min(TAP_RUN, width - x)
             for k in range(count):
                 relax = (_ONE - sure[y, x + k]) * (_ONE - sure[y, x + k])
-                per_colour[k] = _ONE / (colour_scale + relax * relaxed_colour_scale)
-                per_depth[k] = _ONE / (depth_scale + relax * relaxed_depth_scale)
+                per_colour[k] = _ONE / (colour_scale + relax * loose_colour_scale)
+                per_depth[k] = _ONE / (depth_scale + relax * loose_depth_scale)
             plane[:] = 0
             for attempt in range(SMOOTH_PASSES):
                 sums[:] = 0

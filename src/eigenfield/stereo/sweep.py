@@ -31,7 +31,6 @@ def plane_sweep(
     max_difference: float = SWEEP_MAX_DIFFERENCE_LEVELS,
     min_views: int = 2,
     unseen_cost: float | None = None,
-    centring: float = 0.0,
 ) -> NDArray[np.uint8]:
     """The matching cost of every label at every pixel.
 
@@ -55,7 +54,6 @@ def plane_sweep(
         max_difference: Grey levels at which differences are cut off.
         min_views: Views that must see a point. Otherwise its cost is `unseen_cost`.
         unseen_cost: Grey levels. Default: 0.7 times `max_difference`.
-        centring: 0 measures the distance from the centre, 1 the spread around the views' own mean.
 
     Returns:
         (h, w, L) costs in eighths of a grey level (0..254); 255 marks labels that were not tried and may not be taken.
@@ -82,10 +80,9 @@ def plane_sweep(
         packed.reshape(count, -1), flatten_buffers(buffers, count), matrices, sector, height, width,
         np.ascontiguousarray(reference, np.float32), np.ascontiguousarray(known), sorted_labels, low, high,
         np.float32(max_difference), np.float32(min_views), np.float32(half_plane_fraction),
-        np.float32(0.7 * max_difference if unseen_cost is None else unseen_cost), np.float32(bias),
-        np.float32(centring),
+        np.float32(0.7 * max_difference if unseen_cost is None else unseen_cost), np.float32(bias), out,
     )  # fmt: skip
-    parallel_map(lambda rows: sweep_rows(rows[0], rows[1], *fixed, out), pieces(shape[0], SWEEP_ROWS_PER_TASK))
+    parallel_map(lambda rows: sweep_rows(*rows, *fixed), pieces(shape[0], SWEEP_ROWS_PER_TASK))
     return out
 
 

@@ -12,8 +12,7 @@ from eigenfield.stereo.taps import (
     TAP_FLOAT_SLOTS,
     TAP_INT_SLOTS,
     TAP_RUN,
-    bilinear_channel,
-    bilinear_weights,
+    bilinear_colour,
     fetch_run,
     is_visible,
     project_run,
@@ -32,10 +31,7 @@ def _add_colours(count, floats, ints, centre, scale_levels, total):
     """
     scale = np.float32(1) / (scale_levels * scale_levels) if scale_levels > _ZERO else _ZERO
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
-        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11)
-        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11)
-        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        r, g, b = bilinear_colour(floats, ints, i)
         er, eg, eb = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
         w = is_visible(floats, i) / (_ONE + (er * er + eg * eg + eb * eb) * scale)
         total[i] += w * r
@@ -46,24 +42,14 @@ def _add_colours(count, floats, ints, centre, scale_levels, total):
 
 @kernel(fastmath=FASTMATH_ORDERED)
 def _add_moments(count, floats, ints, centre, max_difference, moments):
-    """moments (5 slots): counts, sums of e, sum of |e|^2 over visible points, e = colour - centre.
-
-    Where |e|^2 > 3 max_difference^2 the point adds that much to the squares and nothing to the sums of e.
-    """
+    """moments (2 slots): number, and sum of min(|colour - centre|^2, 3 max_difference^2) over visible points."""
     max_square = np.float32(3) * max_difference * max_difference
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
-        r = bilinear_channel(ints, i, 0, w00, w01, w10, w11) - centre[i]
-        g = bilinear_channel(ints, i, 8, w00, w01, w10, w11) - centre[i + TAP_RUN]
-        b = bilinear_channel(ints, i, 16, w00, w01, w10, w11) - centre[i + 2 * TAP_RUN]
+        r, g, b = bilinear_colour(floats, ints, i)
+        r, g, b = r - centre[i], g - centre[i + TAP_RUN], b - centre[i + 2 * TAP_RUN]
         m = is_visible(floats, i)
-        e = r * r + g * g + b * b
-        k = m if e < max_square else _ZERO
         moments[i] += m
-        moments[i + TAP_RUN] += k * r
-        moments[i + 2 * TAP_RUN] += k * g
-        moments[i + 3 * TAP_RUN] += k * b
-        moments[i + 4 * TAP_RUN] += m * min(e, max_square)
+        moments[i + TAP_RUN] += m * min(r * r + g * g + b * b, max_square)
 
 
 @kernel(fastmath=FASTMATH_ORDERED)
@@ -116,30 +102,26 @@ def _half_planes(sector, groups, fraction):
 
 @kernel(fastmath=FASTMATH_ORDERED)
 def _sum_groups(moments, first, size, sums):
-    """sums (5 slots): the moments of the groups first .. first + size - 1."""
+    """sums (2 slots): the moments of the groups first .. first + size - 1."""
     groups = moments.shape[0]
     sums[:] = 0
     for k in range(size):
         part = moments[(first + k) % groups]
-        for i in range(5 * TAP_RUN):
+        for i in range(2 * TAP_RUN):
             sums[i] += part[i]
 
 
 @kernel(fastmath=FASTMATH_ORDERED)
-def _add_spread(count, sums, need, centring, lowest):
-    """lowest = min(lowest, spread of the summed moments), where they hold `need` views.
-
-    The reference counts as one more view, at e = 0: without it a single view would agree with itself.
-    """
+def _add_spread(count, sums, need, lowest):
+    """lowest = min(lowest, mean square of the summed moments), where they hold `need` views."""
     for i in range(count):
-        n, sr, sg, sb = sums[i], sums[i + TAP_RUN], sums[i + 2 * TAP_RUN], sums[i + 3 * TAP_RUN]
-        q = sums[i + 4 * TAP_RUN]
-        v = (q - centring * (sr * sr + sg * sg + sb * sb) / (n + _ONE)) / (np.float32(3) * max(n, _ONE))
+        n, q = sums[i], sums[i + TAP_RUN]
+        v = q / (np.float32(3) * max(n, _ONE))
         lowest[i] = min(lowest[i], v) if n >= need[i] else lowest[i]
 
 
 @kernel(fastmath=FASTMATH_ORDERED)
-def _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_cost, centring, sums, need, cost):
+def _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_cost, sums, need, cost):
     """cost: the least spread over the half-planes of directions that hold enough of the visible views."""
     _sum_groups(moments, 0, moments.shape[0], sums)
     for i in range(count):
@@ -149,7 +131,7 @@ def _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_co
     for k in range(half_planes.shape[0]):
         if half_planes[k, 1] < moments.shape[0]:
             _sum_groups(moments, half_planes[k, 0], half_planes[k, 1], sums)
-        _add_spread(count, sums, need, centring, cost)
+        _add_spread(count, sums, need, cost)
     for i in range(count):
         cost[i] = np.sqrt(max(cost[i], _ZERO)) if need[i + TAP_RUN] >= min_views else unseen_cost
 
@@ -157,15 +139,14 @@ def _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_co
 @kernel(fastmath=FASTMATH_ORDERED)
 def sweep_rows(
     first, last, pictures, buffers, matrices, sector, height, width, reference, known, labels, low, high,
-    max_difference, min_views, fraction, unseen_cost, bias, centring, out,
+    max_difference, min_views, fraction, unseen_cost, bias, out,
 ):  # fmt: skip
     """Matching costs of rows [first, last), for labels [low, high) of each pixel.
 
     A view's colour is compared with the reference picture where that is known, else with the visible views' robust
     mean. The views are grouped by the direction of their parallax. An occluder hides a point from the views on one
     side. The cost is therefore the least, over the eight half-planes of directions that hold at least `fraction` of the
-    visible views (1: all of them together), of the root of the mean of min(3 max_difference^2, |e|^2 - centring |mean
-    e|^2) / 3.
+    visible views (1: all of them together), of the root of the mean of min(3 max_difference^2, |e|^2) / 3.
 
     Args:
         first, last: Range of rows.
@@ -183,7 +164,6 @@ def sweep_rows(
         fraction: See above.
         unseen_cost: Grey levels, where fewer than `min_views` see a point.
         bias: Labels behind the depth buffer at which a point still counts as visible.
-        centring: See above.
         out: (h, w, L) uint8, written for the labels tried.
     """
     columns = known.shape[1]
@@ -192,7 +172,7 @@ def sweep_rows(
     label, limit = np.zeros(TAP_RUN, np.float32), np.zeros(TAP_RUN, np.float32)
     centre, mean = np.zeros(3 * TAP_RUN, np.float32), np.zeros(3 * TAP_RUN, np.float32)
     total = np.zeros(4 * TAP_RUN, np.float32)
-    moments, sums = np.zeros((groups, 5 * TAP_RUN), np.float32), np.zeros(5 * TAP_RUN, np.float32)
+    moments, sums = np.zeros((groups, 2 * TAP_RUN), np.float32), np.zeros(2 * TAP_RUN, np.float32)
     half_planes = _half_planes(sector, groups, fraction)
     need = np.zeros(2 * TAP_RUN, np.float32)
     cost = np.zeros(TAP_RUN, np.float32)
@@ -231,15 +211,9 @@ def sweep_rows(
                     project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
                     fetch_run(pictures[v], buffers[v], width, count, floats, ints)
                     _add_moments(count, floats, ints, centre, max_difference, moments[g])
-                _half_plane_cost(
-                    count, moments, half_planes, min_views, fraction, unseen_cost, centring, sums, need, cost
-                )
+                _half_plane_cost(count, moments, half_planes, min_views, fraction, unseen_cost, sums, need, cost)
                 for i in range(count):
                     at = low[y, x + i] + k
                     if at < high[y, x + i]:
-                        out[y, x + i, at] = np.uint8(
-                            min(
-                                cost[i] * SWEEP_COST_UNITS_PER_LEVEL + np.float32(0.5),
-                                np.float32(SWEEP_EXCLUDED_COST - 1),
-                            )
-                        )
+                        rounded = cost[i] * SWEEP_COST_UNITS_PER_LEVEL + np.float32(0.5)
+                        out[y, x + i, at] = np.uint8(min(rounded, np.float32(SWEEP_EXCLUDED_COST - 1)))

@@ -101,15 +101,7 @@ def fetch_run(picture, buffer, width, count, floats, ints):
 
 
 @kernel(inline=True)
-def bilinear_channel(ints, i, shift, w00, w01, w10, w11):
-    """One colour channel of a point, bilinearly interpolated.
-
-    Args:
-        ints: Scratch of `fetch_run`.
-        i: The point.
-        shift: 0, 8 or 16 bits: red, green or blue.
-        w00, w01, w10, w11: Weights of the corners (`bilinear_weights`).
-    """
+def _bilinear_channel(ints, i, shift, w00, w01, w10, w11):
     s = np.uint32(shift)
     return (
         w00 * np.float32(np.int32((ints[i + TAP_RUN] >> s) & _BYTE))
@@ -120,16 +112,20 @@ def bilinear_channel(ints, i, shift, w00, w01, w10, w11):
 
 
 @kernel(inline=True)
-def bilinear_weights(floats, i):
-    """Bilinear weights of the corners (top left, top right, bottom left, bottom right).
+def bilinear_colour(floats, ints, i):
+    """Red, green and blue of a point, bilinearly interpolated.
 
     Args:
-        floats: Scratch of `project_run`.
+        floats: Scratch of `fetch_run`.
+        ints: Scratch of `fetch_run`.
         i: The point.
     """
     fx, fy = floats[i], floats[i + TAP_RUN]
     w11 = fx * fy
-    return _ONE - fx - fy + w11, fx - w11, fy - w11, w11
+    w00, w01, w10 = _ONE - fx - fy + w11, fx - w11, fy - w11
+    r = _bilinear_channel(ints, i, 0, w00, w01, w10, w11)
+    g = _bilinear_channel(ints, i, 8, w00, w01, w10, w11)
+    return r, g, _bilinear_channel(ints, i, 16, w00, w01, w10, w11)
 
 
 @kernel(inline=True)

@@ -80,14 +80,13 @@ HALF_FROM_FULL_INDEX = np.array([[0.5, 0, -0.25], [0, 0.5, -0.25], [0, 0, 1]])
 FULL_FROM_HALF_POINT = np.array([[2, 0, 0, 0.5], [0, 2, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1.0]])
 
 
-def halved_matrices(matrices: NDArray[np.float64], pictures: bool = True) -> NDArray[np.float64]:
-    """View matrices for a reference view of half the resolution.
+def halved_matrices(matrices: NDArray[np.float64]) -> NDArray[np.float64]:
+    """View matrices for a reference view and pictures of half the resolution.
 
     Args:
         matrices: (V, 3, 4) at full resolution.
-        pictures: Whether the pictures are halved as well.
     """
-    return (HALF_FROM_FULL_INDEX if pictures else np.eye(3)) @ matrices @ FULL_FROM_HALF_POINT
+    return HALF_FROM_FULL_INDEX @ matrices @ FULL_FROM_HALF_POINT
 
 
 def label_parallax(matrices: NDArray[np.float64], shape: tuple[int, int], d: float = 0.0) -> NDArray[np.float64]:

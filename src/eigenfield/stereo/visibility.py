@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.stereo.views import Pictures, check_matrices, pack_pictures
-from eigenfield.stereo.visibility_kernels import cubic_mean_rows, mean_rows, splat_labels
+from eigenfield.stereo.visibility_kernels import mean_rows, splat_labels
 
 VISIBILITY_ROWS_PER_TASK = 8
 VISIBILITY_BIAS_LABELS = 0.12  # a point this far behind the depth buffer still counts as on the surface
@@ -48,8 +48,6 @@ def mean_texture(
     d: NDArray[np.float32],
     buffers: NDArray[np.float32] | None = None,
     bias: float = VISIBILITY_BIAS_LABELS,
-    *,
-    cubic: bool = False,
 ) -> tuple[NDArray[np.float32], NDArray[np.int32]]:
     """The mean colour over the views that see each point (x, y, d).
 
@@ -59,7 +57,6 @@ def mean_texture(
         d: (h, w) labels.
         buffers: (V, H, W) of `depth_buffers`; None: nothing is hidden.
         bias: Labels behind the depth buffer at which a point still counts as visible.
-        cubic: Catmull-Rom instead of bilinear interpolation.
 
     Returns:
         (h, w, 3) float32 texture in grey levels, 0 where no view looks, and (h, w) int32 number of views.
@@ -69,19 +66,9 @@ def mean_texture(
     checked = check_matrices(matrices, count)
     labels = np.ascontiguousarray(d, np.float32)
     texture, seen = np.zeros((*labels.shape, 3), np.float32), np.zeros(labels.shape, np.int32)
-    fixed = (
-        packed.reshape(count, -1),
-        flatten_buffers(buffers, count),
-        checked,
-        height,
-        width,
-        labels,
-        np.float32(bias),
-    )
-    work = cubic_mean_rows if cubic else mean_rows
-    parallel_map(
-        lambda rows: work(rows[0], rows[1], *fixed, texture, seen), pieces(labels.shape[0], VISIBILITY_ROWS_PER_TASK)
-    )
+    views = packed.reshape(count, -1), flatten_buffers(buffers, count), checked, height, width
+    fixed = (*views, labels, np.float32(bias), texture, seen)
+    parallel_map(lambda rows: mean_rows(*rows, *fixed), pieces(labels.shape[0], VISIBILITY_ROWS_PER_TASK))
     return texture, seen
 
 

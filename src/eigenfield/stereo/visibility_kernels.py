@@ -14,14 +14,13 @@ from eigenfield.stereo.taps import (
     TAP_FLOAT_SLOTS,
     TAP_INT_SLOTS,
     TAP_RUN,
-    bilinear_channel,
-    bilinear_weights,
+    bilinear_colour,
     fetch_run,
     is_visible,
     project_run,
 )
 
-_ONE, _ZERO = np.float32(1), np.float32(0)
+_ONE = np.float32(1)
 
 
 @kernel(fastmath=FASTMATH_NAN_SAFE)
@@ -77,11 +76,8 @@ def mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, 
     """
     columns = d.shape[1]
     floats, ints = np.zeros(TAP_FLOAT_SLOTS * TAP_RUN, np.float32), np.zeros(TAP_INT_SLOTS * TAP_RUN, np.uint32)
-    limit, label, total = (
-        np.zeros(TAP_RUN, np.float32),
-        np.zeros(TAP_RUN, np.float32),
-        np.zeros(4 * TAP_RUN, np.float32),
-    )
+    limit, label = np.zeros(TAP_RUN, np.float32), np.zeros(TAP_RUN, np.float32)
+    total = np.zeros(4 * TAP_RUN, np.float32)
     for y in range(first, last):
         for x in range(0, columns, TAP_RUN):
             count = min(TAP_RUN, columns - x)
@@ -104,77 +100,9 @@ def mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, 
 def _add_means(count, floats, ints, total):
     """total += visible (r, g, b, 1)."""
     for i in range(count):
-        w00, w01, w10, w11 = bilinear_weights(floats, i)
         m = is_visible(floats, i)
-        total[i] += m * bilinear_channel(ints, i, 0, w00, w01, w10, w11)
-        total[i + TAP_RUN] += m * bilinear_channel(ints, i, 8, w00, w01, w10, w11)
-        total[i + 2 * TAP_RUN] += m * bilinear_channel(ints, i, 16, w00, w01, w10, w11)
+        r, g, b = bilinear_colour(floats, ints, i)
+        total[i] += m * r
+        total[i + TAP_RUN] += m * g
+        total[i + 2 * TAP_RUN] += m * b
         total[i + 3 * TAP_RUN] += m
-
-
-@kernel(inline=True)
-def _cubic(t):
-    """Catmull-Rom weights of the four samples around a point at fraction t."""
-    w0 = ((-np.float32(0.5) * t + _ONE) * t - np.float32(0.5)) * t
-    w1 = (np.float32(1.5) * t - np.float32(2.5)) * t * t + _ONE
-    w2 = ((-np.float32(1.5) * t + np.float32(2)) * t + np.float32(0.5)) * t
-    return w0, w1, w2, _ONE - w0 - w1 - w2
-
-
-@kernel(fastmath=FASTMATH_ORDERED)
-def cubic_mean_rows(first, last, pictures, buffers, matrices, height, width, d, bias, texture, count_out):
-    """As `mean_rows`, with Catmull-Rom interpolation; samples beyond the picture repeat its border.
-
-    Args:
-        first, last: Range of rows.
-        pictures: (V, H W) packed.
-        buffers: (V, H W) depth buffers, or (V, 0) for none.
-        matrices: (V, 3, 4) of the views.
-        height, width: Size of the views.
-        d: (h, w) labels.
-        bias: Labels behind the depth buffer at which a point still counts as visible.
-        texture: (h, w, 3) mean colour, written.
-        count_out: (h, w) number of views, written.
-    """
-    columns = d.shape[1]
-    floats, ints = np.zeros(TAP_FLOAT_SLOTS * TAP_RUN, np.float32), np.zeros(TAP_INT_SLOTS * TAP_RUN, np.uint32)
-    limit, label, total = (
-        np.zeros(TAP_RUN, np.float32),
-        np.zeros(TAP_RUN, np.float32),
-        np.zeros(4 * TAP_RUN, np.float32),
-    )
-    byte = np.uint32(255)
-    for y in range(first, last):
-        for x in range(0, columns, TAP_RUN):
-            count = min(TAP_RUN, columns - x)
-            for i in range(count):
-                label[i] = d[y, x + i]
-                limit[i] = label[i] + bias
-            total[:] = 0
-            for v in range(matrices.shape[0]):
-                picture = pictures[v]
-                project_run(matrices[v], y, x, count, label, limit, height, width, floats, ints)
-                fetch_run(picture, buffers[v], width, count, floats, ints)
-                for i in range(count):
-                    if is_visible(floats, i) == _ZERO:
-                        continue
-                    row, column = np.int64(ints[i]) // width, np.int64(ints[i]) % width
-                    across, down = _cubic(floats[i]), _cubic(floats[i + TAP_RUN])
-                    r, g, b = _ZERO, _ZERO, _ZERO
-                    for j in range(4):
-                        line = min(max(row + j - 1, 0), height - 1) * width
-                        for k in range(4):
-                            p = picture[line + min(max(column + k - 1, 0), width - 1)]
-                            w = down[j] * across[k]
-                            r += w * np.float32(p & byte)
-                            g += w * np.float32((p >> np.uint32(8)) & byte)
-                            b += w * np.float32((p >> np.uint32(16)) & byte)
-                    total[i] += r
-                    total[i + TAP_RUN] += g
-                    total[i + 2 * TAP_RUN] += b
-                    total[i + 3 * TAP_RUN] += _ONE
-            for i in range(count):
-                inverse = _ONE / max(total[i + 3 * TAP_RUN], _ONE)
-                for c in range(3):
-                    texture[y, x + i, c] = total[i + c * TAP_RUN] * inverse
-                count_out[y, x + i] = np.int32(total[i + 3 * TAP_RUN])

@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array, csc_array
+from scipy.sparse import coo_array, csc_array, diags_array
 from scipy.sparse.linalg import splu
 from scipy.spatial.transform import Rotation
 
@@ -26,6 +26,8 @@ from eigenfield.calibrate.charts.corners import DetectedCorners
 from eigenfield.calibrate.charts.lens_models import project_points, project_points_with_derivatives
 
 log = logging.getLogger("eigenfield.calibrate")
+
+F64 = NDArray[np.float64]
 
 BUNDLE_MAX_STEPS = 60
 BUNDLE_SCALE_ROUNDS = 3  # how often the loss scale is set from the residuals
@@ -62,13 +64,13 @@ class RigEstimate:
         board_shift: (M, 3) board to world; NaN at moments without a board.
     """
 
-    intrinsics: NDArray[np.float64]
-    R: NDArray[np.float64]
-    t: NDArray[np.float64]
-    board_rotation: NDArray[np.float64]
-    board_shift: NDArray[np.float64]
+    intrinsics: F64
+    R: F64
+    t: F64
+    board_rotation: F64
+    board_shift: F64
 
-    def in_camera(self, points: NDArray[np.float64], observation: BoardObservation) -> NDArray[np.float64]:
+    def in_camera(self, points: F64, observation: BoardObservation) -> F64:
         """(k, 3) the observed corners in the axes of the observation's camera.
 
         Args:
@@ -76,32 +78,29 @@ class RigEstimate:
             observation: Whose corners.
         """
         m, c = observation.moment, observation.camera
-        return (points[observation.corners.ids] @ self.board_rotation[m].T + self.board_shift[m]) @ self.R[
-            c
-        ].T + self.t[c]
+        world = points[observation.corners.ids] @ self.board_rotation[m].T + self.board_shift[m]
+        return world @ self.R[c].T + self.t[c]
 
-    def residuals(self, points: NDArray[np.float64], observation: BoardObservation) -> NDArray[np.float64]:
+    def residuals(self, points: F64, observation: BoardObservation) -> F64:
         """(k, 2) pixels, projected minus measured.
 
         Args:
             points: (n, 3) corners on the board.
             observation: Whose corners.
         """
-        return (
-            project_points(self.in_camera(points, observation), self.intrinsics[observation.camera])
-            - observation.corners.pixels
-        )
+        inside = self.in_camera(points, observation)
+        return project_points(inside, self.intrinsics[observation.camera]) - observation.corners.pixels
 
 
 @dataclass(frozen=True, eq=False)
 class _Problem:
     """Measurements as flat arrays, and where each camera's and board's unknowns begin."""
 
-    points: NDArray[np.float64]  # (n, 3) on the board
-    pixels: NDArray[np.float64]  # (n, 2)
+    points: F64  # (n, 3) on the board
+    pixels: F64  # (n, 2)
     camera: NDArray[np.int64]
     moment: NDArray[np.int64]
-    bases: tuple[NDArray[np.float64], ...]  # (9, m) of each camera
+    bases: tuple[F64, ...]  # (9, m) of each camera
     camera_at: NDArray[np.int64]  # first unknown of each camera: intrinsics, then the pose
     pose_is_free: NDArray[np.bool_]  # whether each camera's pose is free
     board_at: NDArray[np.int64]  # first unknown of each moment's board, -1 where there is none
@@ -109,12 +108,8 @@ class _Problem:
 
 
 def adjust_bundle(
-    points: NDArray[np.float64],
-    observations: Sequence[BoardObservation],
-    rig: RigEstimate,
-    bases: Sequence[NDArray[np.float64]],
-    fixed: int,
-) -> tuple[RigEstimate, NDArray[np.float64]]:
+    points: F64, observations: Sequence[BoardObservation], rig: RigEstimate, bases: Sequence[F64], fixed: int
+) -> tuple[RigEstimate, F64]:
     """The rig that fits the observations best.
 
     Args:
@@ -129,19 +124,14 @@ def adjust_bundle(
     """
     problem = _make_problem(points, observations, rig, bases, fixed)
     for _ in range(BUNDLE_SCALE_ROUNDS):
-        scale = max(
-            BUNDLE_LOSS_MEDIANS * float(np.median(_reprojection_distances(problem, rig))), BUNDLE_MIN_LOSS_PIXELS
-        )
+        usual = float(np.median(_reprojection_distances(problem, rig)))
+        scale = max(BUNDLE_LOSS_MEDIANS * usual, BUNDLE_MIN_LOSS_PIXELS)
         rig = _minimise(problem, rig, scale)
     return rig, _focal_deviations(problem, rig, scale)
 
 
 def _make_problem(
-    points: NDArray[np.float64],
-    observations: Sequence[BoardObservation],
-    rig: RigEstimate,
-    bases: Sequence[NDArray[np.float64]],
-    fixed: int,
+    points: F64, observations: Sequence[BoardObservation], rig: RigEstimate, bases: Sequence[F64], fixed: int
 ) -> _Problem:
     counts = [len(s.corners.ids) for s in observations]
     pose_is_free = np.arange(len(bases)) != fixed
@@ -162,16 +152,16 @@ def _make_problem(
     )  # fmt: skip
 
 
-def _in_world(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
+def _in_world(problem: _Problem, rig: RigEstimate) -> F64:
     turned = np.einsum("nij,nj->ni", rig.board_rotation[problem.moment], problem.points)
     return turned + rig.board_shift[problem.moment]
 
 
-def _in_camera(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
+def _in_camera(problem: _Problem, rig: RigEstimate) -> F64:
     return np.einsum("nij,nj->ni", rig.R[problem.camera], _in_world(problem, rig)) + rig.t[problem.camera]
 
 
-def _reprojection_distances(problem: _Problem, rig: RigEstimate) -> NDArray[np.float64]:
+def _reprojection_distances(problem: _Problem, rig: RigEstimate) -> F64:
     """(n,) pixels from each corner to its projection; infinite behind the camera."""
     inside = _in_camera(problem, rig)
     ahead = inside[:, 2] > 0
@@ -192,7 +182,7 @@ def _minimise(problem: _Problem, rig: RigEstimate, scale: float) -> RigEstimate:
         diagonal = np.maximum(H.diagonal(), 1e-12)
         improved = False
         while damping < BUNDLE_MAX_DAMPING and not improved:
-            step = splu(_add_to_diagonal(H, damping * diagonal)).solve(-g)
+            step = splu(csc_array(H + diags_array(damping * diagonal))).solve(-g)
             moved = _apply_step(problem, rig, step)
             after = _cost(problem, moved, scale)
             improved = after < cost
@@ -207,16 +197,7 @@ def _minimise(problem: _Problem, rig: RigEstimate, scale: float) -> RigEstimate:
     return rig
 
 
-def _add_to_diagonal(H: csc_array[np.float64], diagonal: NDArray[np.float64]) -> csc_array[np.float64]:
-    """H with `diagonal` added to its diagonal."""
-    size = len(diagonal)
-    addition: csc_array[np.float64] = csc_array((diagonal, (np.arange(size), np.arange(size))), shape=(size, size))
-    return csc_array(H + addition)
-
-
-def _normal_equations(
-    problem: _Problem, rig: RigEstimate, scale: float
-) -> tuple[csc_array[np.float64], NDArray[np.float64]]:
+def _normal_equations(problem: _Problem, rig: RigEstimate, scale: float) -> tuple[csc_array[np.float64], F64]:
     """Reweighted normal equations: J^T W J and J^T W r, W = 1 / (1 + |r|^2 / f^2)."""
     world = _in_world(problem, rig)
     R = rig.R[problem.camera]
@@ -234,7 +215,7 @@ def _normal_equations(
     return csc_array(J.T @ J), J.T @ (residual * root).ravel()
 
 
-def _cross(v: NDArray[np.float64]) -> NDArray[np.float64]:
+def _cross(v: F64) -> F64:
     """(n, 3, 3) matrices of the cross product v x."""
     out = np.zeros((len(v), 3, 3))
     out[:, 0, 1], out[:, 0, 2], out[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
@@ -242,13 +223,8 @@ def _cross(v: NDArray[np.float64]) -> NDArray[np.float64]:
     return out
 
 
-def _jacobian(
-    problem: _Problem,
-    by_intrinsics: NDArray[np.float64],
-    by_camera: NDArray[np.float64],
-    by_board: NDArray[np.float64],
-) -> csc_array[np.float64]:
-    blocks: list[tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]] = []  # corners, columns, values
+def _jacobian(problem: _Problem, by_intrinsics: F64, by_camera: F64, by_board: F64) -> csc_array[np.float64]:
+    blocks: list[tuple[NDArray[np.int64], NDArray[np.int64], F64]] = []  # corners, columns, values
     everything = np.arange(len(problem.pixels))
     blocks.append((everything, problem.board_at[problem.moment], by_board))
     for c, basis in enumerate(problem.bases):
@@ -265,7 +241,7 @@ def _jacobian(
     return csc_array(coo_array((values, (np.concatenate(rows), np.concatenate(columns))), shape=shape))
 
 
-def _apply_step(problem: _Problem, rig: RigEstimate, step: NDArray[np.float64]) -> RigEstimate:
+def _apply_step(problem: _Problem, rig: RigEstimate, step: F64) -> RigEstimate:
     intrinsics, R, t = rig.intrinsics.copy(), rig.R.copy(), rig.t.copy()
     board_rotation, board_shift = rig.board_rotation.copy(), rig.board_shift.copy()
     for c, basis in enumerate(problem.bases):
@@ -282,17 +258,16 @@ def _apply_step(problem: _Problem, rig: RigEstimate, step: NDArray[np.float64]) 
     return replace(rig, intrinsics=intrinsics, R=R, t=t, board_rotation=board_rotation, board_shift=board_shift)
 
 
-def _focal_deviations(problem: _Problem, rig: RigEstimate, scale: float) -> NDArray[np.float64]:
+def _focal_deviations(problem: _Problem, rig: RigEstimate, scale: float) -> F64:
     """From the inverse of the normal equations, times the residual variance estimated from its median."""
     out = np.full(len(problem.bases), np.nan)
     free = [c for c, basis in enumerate(problem.bases) if basis.shape[1]]
     if not free:
         return out
     H, _ = _normal_equations(problem, rig, scale)
-    solver = splu(_add_to_diagonal(H, 1e-12 * np.maximum(H.diagonal(), 1e-12)))
-    variance = (
-        float(np.median(_reprojection_distances(problem, rig))) / 1.1774
-    ) ** 2  # the median of a Rayleigh distribution
+    solver = splu(csc_array(H + diags_array(1e-12 * np.maximum(H.diagonal(), 1e-12))))
+    # the median of a Rayleigh distribution is 1.1774 of its scale
+    variance = (float(np.median(_reprojection_distances(problem, rig))) / 1.1774) ** 2
     for c in free:
         basis = problem.bases[c]
         direction = np.zeros(problem.unknowns)

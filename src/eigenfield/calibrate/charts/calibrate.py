@@ -11,7 +11,7 @@ import math
 import os
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -30,8 +30,9 @@ from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
-from eigenfield.core.progress import Progress
-from eigenfield.runtime.parallel import parallel_map
+from eigenfield.core.progress import Progress, track
+from eigenfield.imaging.graph import components
+from eigenfield.runtime.parallel import parallel_stream
 
 log = logging.getLogger("eigenfield.calibrate")
 
@@ -138,9 +139,7 @@ class ChartCalibration:
 
 
 def _describe_camera(report: CameraReport) -> dict[str, Any]:
-    entry = {
-        field.name: getattr(report, field.name) for field in fields(report) if field.name not in ("camera", "lens")
-    }
+    entry = {name: value for name, value in vars(report).items() if name not in ("camera", "lens")}
     entry["size"] = list(report.size)
     return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in entry.items()}
 
@@ -243,32 +242,21 @@ def _estimate_all_intrinsics(
     observations: Sequence[BoardObservation],
     progress: Progress | None,
 ) -> list[IntrinsicsEstimate | None]:
-    if progress is not None:
-        progress("lenses", 0, len(cameras))
-    estimates = parallel_map(
-        lambda c: estimate_intrinsics(points, [s.corners for s in observations if s.camera == c], cameras[c].size),
-        range(len(cameras)),
-    )
-    if progress is not None:
-        progress("lenses", len(cameras), len(cameras))
-    return estimates
+    def estimate(c: int) -> IntrinsicsEstimate | None:
+        return estimate_intrinsics(points, [s.corners for s in observations if s.camera == c], cameras[c].size)
+
+    return list(track(parallel_stream(estimate, range(len(cameras))), "lenses", len(cameras), progress))
 
 
 def _rebase_to_first(solution: RigSolution) -> tuple[RigEstimate, tuple[int, ...]]:
     """The rig in the axes of its first camera, and the cameras that the inliers still connect."""
-    parent = {c: c for c in solution.joined}
-
-    def root(camera: int) -> int:
-        while parent[camera] != camera:
-            camera = parent[camera]
-        return camera
-
+    rig = solution.rig
     first: dict[int, int] = {}
-    for observation in solution.inliers:
-        parent[root(observation.camera)] = root(first.setdefault(observation.moment, observation.camera))
-    groups = [tuple(c for c in solution.joined if root(c) == r) for r in sorted({root(c) for c in solution.joined})]
+    links = [(s.camera, first.setdefault(s.moment, s.camera)) for s in solution.inliers]
+    group = components(len(rig.R), *np.array(links, np.int64).reshape(-1, 2).T)
+    groups = [tuple(c for c in solution.joined if group[c] == g) for g in set(group[list(solution.joined)].tolist())]
     joined = max(groups, key=lambda g: (len(g), -g[0]))
-    rig, base = solution.rig, joined[0]
+    base = joined[0]
     R, t = rig.R[base], rig.t[base]
     return RigEstimate(
         rig.intrinsics, rig.R @ R.T, rig.t - rig.R @ R.T @ t, R @ rig.board_rotation, rig.board_shift @ R.T + t
@@ -281,11 +269,8 @@ def _reprojection_distances(solved: _SolvedRig, observations: Sequence[BoardObse
 
 
 def _report_camera(solved: _SolvedRig, index: int) -> CameraReport:
-    chart_camera, estimate, variant = (
-        solved.charts.cameras[index],
-        solved.estimates[index],
-        solved.detections.variants[index],
-    )
+    chart_camera, estimate = solved.charts.cameras[index], solved.estimates[index]
+    variant = solved.detections.variants[index]
     seen = [s for s in solved.detections.observations if s.camera == index]
     known = index in solved.joined
     used = [s for s in solved.solution.inliers if s.camera == index] if known else []
@@ -333,9 +318,7 @@ def _disconnected_error(
     counted = []
     for c, (camera, estimate) in enumerate(zip(charts.cameras, estimates, strict=True)):
         boards = "board" if counts[c] == 1 else "boards"
-        counted.append(
-            f"{camera.name}: {counts[c]} {boards}" + ("" if estimate else ", too few or too alike for a lens")
-        )
+        counted.append(f"{camera.name}: {counts[c]} {boards}{'' if estimate else ', too few or too alike for a lens'}")
     return CaptureError(
         "rig-apart",
         f"no two cameras can be joined ({'; '.join(counted)})",

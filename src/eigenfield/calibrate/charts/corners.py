@@ -94,8 +94,7 @@ def _find_checkerboard(
     picture: NDArray[np.uint8], grey: NDArray[np.uint8], board: Board, patient: bool
 ) -> DetectedCorners | None:
     size = board.corners
-    scale = min(1.0, CORNERS_MAX_SEARCH_PIXELS / max(picture.shape))
-    small = cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) if scale < 1 else picture
+    small, scale = _reduce(picture)
     flags = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE
     found, corners = cv2.findChessboardCorners(small, size, flags=flags | (0 if patient else cv2.CALIB_CB_FAST_CHECK))
     if not found and patient:
@@ -111,6 +110,14 @@ def _find_checkerboard(
     pixels = pixels[_oriented_order(pixels, grey, board)]
     ids = np.arange(len(pixels))
     return DetectedCorners(ids, pixels) if _is_flat(pixels, ids, board) else None
+
+
+def _reduce(picture: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], float]:
+    """The picture at the resolution of the detection, and its scale."""
+    scale = min(1.0, CORNERS_MAX_SEARCH_PIXELS / max(picture.shape))
+    if scale == 1:
+        return picture, scale
+    return np.asarray(cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA), np.uint8), scale
 
 
 def _spacing(pixels: NDArray[np.float64], size: tuple[int, int]) -> float:
@@ -216,8 +223,7 @@ def detect_checkerboard_size(grey: NDArray[np.uint8], inverted: bool) -> tuple[i
     if min(grey.shape) < CORNERS_MIN_PICTURE_PIXELS:
         return None
     picture = 255 - grey if inverted else grey
-    scale = min(1.0, CORNERS_MAX_SEARCH_PIXELS / max(picture.shape))
-    small = cv2.resize(picture, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA) if scale < 1 else picture
+    small, _ = _reduce(picture)
     flags = cv2.CALIB_CB_LARGER | cv2.CALIB_CB_NORMALIZE_IMAGE
     found, _, meta = cv2.findChessboardCornersSBWithMeta(np.ascontiguousarray(small), (3, 3), flags=flags)
     if not found or meta is None:

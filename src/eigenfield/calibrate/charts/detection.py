@@ -35,6 +35,10 @@ DETECTION_HINT_PICTURES = 12  # in which a board of another size is searched
 DETECTION_MARKER_HINT_PICTURES = 4  # in which other markers are searched
 DETECTION_SURE_FRACTION = 0.7  # if so many of a few pictures show one other board, the described board is wrong
 DETECTION_MIN_HINTS = 2  # pictures that must show the same other board
+DETECTION_COUNTING_RULES = {
+    "checkerboard": "inner corners are counted, where four squares meet, not squares",
+    "charuco": "squares are counted, columns first",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,12 +172,9 @@ def _sample_variants(charts: ChartPictures, board: Board, progress: Progress | N
         counts[camera] += count
     if not any(counts):
         _refuse_other_board(charts, board)
-    old = Counter[bool]()
-    for count in counts:
-        for variant, corners in count.items():
-            old[variant.legacy] += corners
-    legacy = old[True] > old[False]
-    fitting = [variant for variant in variants if variant.legacy == legacy] if old.total() else variants
+    seen = sum(counts, Counter[BoardVariant]())
+    legacy = sum(corners if variant.legacy else -corners for variant, corners in seen.items()) > 0
+    fitting = [variant for variant in variants if variant.legacy == legacy] if seen else variants
     return [
         [max(fitting, key=lambda variant: count[variant])] if any(count[variant] for variant in fitting) else fitting
         for count in counts
@@ -197,16 +198,12 @@ def _sample_pictures(charts: ChartPictures, among: set[tuple[int, int]] | None =
 
 def _most_common_size(pictures: Sequence[NDArray[np.uint8]]) -> tuple[tuple[int, int], int] | None:
     """The size of checkerboard that most pictures show, and how many do."""
-    votes: Counter[tuple[int, int]] = Counter()
     for inverted in (False, True):
         sizes = parallel_map(functools.partial(detect_checkerboard_size, inverted=inverted), pictures)
-        votes.update(size for size in sizes if size is not None)
+        votes = Counter(size for size in sizes if size is not None)
         if votes:
-            break
-    if not votes:
-        return None
-    size = max(votes, key=lambda s: (votes[s], s))
-    return size, votes[size]
+            return max(votes.items(), key=lambda vote: (vote[1], vote[0]))
+    return None
 
 
 def _refuse_part_of_larger(charts: ChartPictures, board: Board, observations: Sequence[BoardObservation]) -> None:
@@ -229,11 +226,8 @@ def _refuse_other_board(charts: ChartPictures, board: Board) -> None:
     pictures = _sample_pictures(charts)
     if board.kind == "checkerboard":
         usual = _most_common_size(pictures)
-        if (
-            usual is None
-            or usual[1] < max(DETECTION_MIN_HINTS, DETECTION_SURE_FRACTION * len(pictures))
-            or usual[0] == _longer_first(board)
-        ):
+        enough = max(DETECTION_MIN_HINTS, DETECTION_SURE_FRACTION * len(pictures))
+        if usual is None or usual[1] < enough or usual[0] == _longer_first(board):
             return
         if detect_dictionary(_subsample(pictures)[:2]) is None:  # a ChArUco board contains a checkerboard
             raise _wrong_size_error(charts, board, *usual, len(pictures))
@@ -261,14 +255,11 @@ def _longer_first(board: Board) -> tuple[int, int]:
 def _wrong_size_error(
     charts: ChartPictures, board: Board, size: tuple[int, int], count: int, total: int
 ) -> CaptureError:
-    rule = "inner corners are counted, where four squares meet, not squares"
-    if board.kind == "charuco":
-        rule = "squares are counted, columns first"
     return CaptureError(
         "board-size",
         f"a {board} was named, but {count} of {total} pictures looked at show one of {size[0]}x{size[1]}",
         path=charts.root,
-        remedy=f"say --board {size[0]}x{size[1]} ({rule})",
+        remedy=f"say --board {size[0]}x{size[1]} ({DETECTION_COUNTING_RULES[board.kind]})",
     )
 
 
@@ -289,7 +280,7 @@ def _checkerboard_hint(pictures: Sequence[NDArray[np.uint8]]) -> str:
         (columns, rows), count = usual
         return (
             f"{count} of {len(pictures)} pictures looked at show a checkerboard of {columns}x{rows}: say --board "
-            f"{columns}x{rows} (inner corners are counted, where four squares meet, not squares)"
+            f"{columns}x{rows} ({DETECTION_COUNTING_RULES['checkerboard']})"
         )
     return (
         "count inner corners, where four squares meet, not squares; show the whole board, sharp, with a margin around "
@@ -312,7 +303,7 @@ def _charuco_hint(pictures: Sequence[NDArray[np.uint8]], board: Board) -> str:
         (columns, rows), count = fitting
         return (
             f"{count} of {len(pictures)} pictures looked at fit {columns}x{rows} squares: say --board {columns}x{rows} "
-            "(squares are counted, columns first)"
+            f"({DETECTION_COUNTING_RULES['charuco']})"
         )
     kind = ", inverted," if inverted else ""
     return (

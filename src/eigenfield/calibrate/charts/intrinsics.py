@@ -20,6 +20,8 @@ from eigenfield.imaging.sampling import distances_to, farthest_points
 
 log = logging.getLogger("eigenfield.calibrate")
 
+F64 = NDArray[np.float64]
+
 INTRINSICS_MIN_BOARDS = 3  # fewer do not determine the intrinsics
 INTRINSICS_MAX_BOARDS = 32  # for the fit: OpenCV solves one dense system with 6 unknowns for each
 INTRINSICS_FOLDS = 4
@@ -40,13 +42,13 @@ class IntrinsicsEstimate:
         inliers: Indices of the observations that are no outliers.
     """
 
-    intrinsics: NDArray[np.float64]
+    intrinsics: F64
     model: LensModel
     inliers: tuple[int, ...]
 
 
 def estimate_intrinsics(
-    points: NDArray[np.float64], observations: Sequence[DetectedCorners], size: tuple[int, int]
+    points: F64, observations: Sequence[DetectedCorners], size: tuple[int, int]
 ) -> IntrinsicsEstimate | None:
     """Intrinsics of a camera from its detections; None if they do not determine any.
 
@@ -73,9 +75,7 @@ def estimate_intrinsics(
     return found
 
 
-def board_pose(
-    points: NDArray[np.float64], corners: DetectedCorners, intrinsics: NDArray[np.float64]
-) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+def board_pose(points: F64, corners: DetectedCorners, intrinsics: F64) -> list[tuple[F64, F64]]:
     """Poses (R, t) of the board in camera axes that fit a detection, best first.
 
     A distant plane has two poses that fit almost equally well. The second is returned if its error is less than twice
@@ -89,6 +89,12 @@ def board_pose(
     Returns:
         At most two poses; none if no pose is in front of the camera.
     """
+    found = _scored_poses(points, corners, intrinsics)
+    return [(R, t) for error, R, t in found if error <= max(2 * found[0][0], INTRINSICS_NOISE_PIXELS)]
+
+
+def _scored_poses(points: F64, corners: DetectedCorners, intrinsics: F64) -> list[tuple[float, F64, F64]]:
+    """Poses of the board in camera axes with their root mean square errors in pixels, best first."""
     K, d = camera_matrix(intrinsics), intrinsics[4:]
     plane = points[corners.ids]
     try:
@@ -106,20 +112,13 @@ def board_pose(
         if np.isfinite(inside).all() and (inside[:, 2] > 0).all():
             error = np.sqrt(np.mean(np.sum((project_points(inside, intrinsics) - corners.pixels) ** 2, axis=1)))
             found.append((float(error), R, t))
-    found.sort(key=lambda pose: pose[0])
-    return [(R, t) for error, R, t in found if error <= max(2 * found[0][0], INTRINSICS_NOISE_PIXELS)]
+    return sorted(found, key=lambda pose: pose[0])
 
 
-def _reprojection_error(
-    points: NDArray[np.float64], corners: DetectedCorners, intrinsics: NDArray[np.float64]
-) -> float:
+def _reprojection_error(points: F64, corners: DetectedCorners, intrinsics: F64) -> float:
     """Root mean square error in pixels at the board's best pose."""
-    poses = board_pose(points, corners, intrinsics)
-    if not poses:
-        return np.inf
-    R, t = poses[0]
-    away = project_points(points[corners.ids] @ R.T + t, intrinsics) - corners.pixels
-    return float(np.sqrt(np.mean(np.sum(away**2, axis=1))))
+    poses = _scored_poses(points, corners, intrinsics)
+    return poses[0][0] if poses else np.inf
 
 
 def _spread_observations(observations: Sequence[DetectedCorners], size: tuple[int, int]) -> list[DetectedCorners]:
@@ -132,7 +131,7 @@ def _spread_observations(observations: Sequence[DetectedCorners], size: tuple[in
     return [observations[i] for i in sorted(chosen)]
 
 
-def _pose_features(corners: DetectedCorners, size: tuple[int, int]) -> NDArray[np.float64]:
+def _pose_features(corners: DetectedCorners, size: tuple[int, int]) -> F64:
     """Mean and second moments of the corners in the picture."""
     places = corners.pixels / max(size)
     spread = np.cov(places.T)
@@ -140,8 +139,8 @@ def _pose_features(corners: DetectedCorners, size: tuple[int, int]) -> NDArray[n
 
 
 def _select_model(
-    points: NDArray[np.float64], observations: Sequence[DetectedCorners], size: tuple[int, int]
-) -> tuple[NDArray[np.float64], LensModel] | None:
+    points: F64, observations: Sequence[DetectedCorners], size: tuple[int, int]
+) -> tuple[F64, LensModel] | None:
     """The model with the fewest parameters that predicts held-out observations about as well as any, fitted to all."""
     folds = min(INTRINSICS_FOLDS, len(observations))
     scores: list[tuple[float, LensModel]] = []
@@ -166,8 +165,8 @@ def _select_model(
 
 
 def _fit_model(
-    points: NDArray[np.float64], observations: Sequence[DetectedCorners], size: tuple[int, int], model: LensModel
-) -> NDArray[np.float64] | None:
+    points: F64, observations: Sequence[DetectedCorners], size: tuple[int, int], model: LensModel
+) -> F64 | None:
     """(9,) intrinsics; None if the solver fails or its result is implausible."""
     if len(observations) < 2:
         return None
@@ -201,7 +200,7 @@ def _initial_focal(
     return focal if 0.2 * max(size) < focal < 20 * max(size) else 1.2 * max(size)
 
 
-def _is_monotone(intrinsics: NDArray[np.float64], observations: Sequence[DetectedCorners]) -> bool:
+def _is_monotone(intrinsics: F64, observations: Sequence[DetectedCorners]) -> bool:
     """Whether the distorted radius is monotone as far as there are corners."""
     k1, k2, k3 = intrinsics[4], intrinsics[5], intrinsics[8]
     max_radius = max(

@@ -19,7 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import escape_name
-from eigenfield.capture.locate import photographs_in
+from eigenfield.capture.locate import files_named, photographs_in
+from eigenfield.capture.messages import natural_key
 from eigenfield.capture.photographs.read import decode, read_header
 from eigenfield.core.errors import CaptureError
 
@@ -165,21 +166,12 @@ def _descend_folders(root: Path) -> Path:
 
 
 def _folders(root: Path) -> list[Path]:
-    return sorted(
-        (path for path in root.iterdir() if path.is_dir() and not path.name.startswith(".")),
-        key=lambda path: (_natural_key(path.name), path.name),
-    )
+    folders = (path for path in root.iterdir() if path.is_dir() and not path.name.startswith("."))
+    return sorted(folders, key=lambda path: natural_key(path.name))
 
 
 def _videos_in(folder: Path) -> list[Path]:
-    return sorted(
-        (
-            p
-            for p in folder.iterdir()
-            if p.suffix.lower() in CHART_VIDEO_SUFFIXES and not p.name.startswith(".") and p.is_file()
-        ),
-        key=lambda path: (_natural_key(path.name), path.name),
-    )
+    return sorted(files_named(folder, CHART_VIDEO_SUFFIXES), key=lambda path: natural_key(path.name))
 
 
 def _videos_by_camera(root: Path) -> dict[str, Path]:
@@ -226,18 +218,13 @@ def split_name(stem: str) -> tuple[str, str]:
     return stem, ""
 
 
-def _natural_key(name: str) -> list[tuple[int, str]]:
-    """Sorts cam_2 before cam_10."""
-    return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"([0-9]+)", name.casefold())]
-
-
 def _from_pictures(root: Path, by_camera: dict[str, list[tuple[str, Path]]]) -> ChartPictures:
     problems: list[str] = []
     kept = {name: _usable_pictures(name, pictures, problems) for name, pictures in by_camera.items()}
-    moments = sorted({moment for pictures in kept.values() for moment in pictures}, key=lambda m: (_natural_key(m), m))
+    moments = sorted({moment for pictures in kept.values() for moment in pictures}, key=natural_key)
     index = {moment: i for i, moment in enumerate(moments)}
     cameras = []
-    for name in sorted(kept, key=lambda name: (_natural_key(name), name)):
+    for name in sorted(kept, key=natural_key):
         pictures = sorted(kept[name].items(), key=lambda item: index[item[0]])
         if pictures:
             size = pictures[0][1][1]
@@ -271,9 +258,8 @@ def _usable_pictures(
     if len(sizes) > 1:
         usual = max(sizes, key=lambda size: (sizes[size], size))
         odd = [moment for moment, (_, size) in found.items() if size != usual]
-        shown = ", ".join(escape_name(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES]) + (
-            " .." if len(odd) > CHART_MAX_LISTED_NAMES else ""
-        )
+        shown = ", ".join(escape_name(found[m][0].name) for m in odd[:CHART_MAX_LISTED_NAMES])
+        shown += " .." if len(odd) > CHART_MAX_LISTED_NAMES else ""
         problems.append(f"camera {name}: {len(odd)} pictures are not {usual[0]}x{usual[1]} (left out): {shown}")
         found = {moment: value for moment, value in found.items() if value[1] == usual}
     return found
@@ -299,10 +285,8 @@ def _from_videos(root: Path, videos: dict[str, Path]) -> ChartPictures:
     step = -(-shared // CHART_MAX_VIDEO_FRAMES)
     chosen = tuple(range(0, shared, step))
     moments = tuple(f"frame {frame}" for frame in chosen)
-    cameras = tuple(
-        ChartCamera(name, (videos[name],), tuple(range(len(chosen))), size, chosen)
-        for name, (_, size) in lengths.items()
-    )
+    every = tuple(range(len(chosen)))
+    cameras = tuple(ChartCamera(name, (videos[name],), every, size, chosen) for name, (_, size) in lengths.items())
     return ChartPictures(root, cameras, moments, tuple(problems))
 
 
@@ -324,9 +308,5 @@ def _video_length(path: Path) -> tuple[int, tuple[int, int]]:
 
 def _unreadable_video(path: Path, why: object) -> CaptureError:
     text = getattr(why, "strerror", None) or str(why)
-    return CaptureError(
-        "video-unreadable",
-        f"is damaged or no video ({text.splitlines()[0][:120]})",
-        path=path,
-        remedy="copy it again, or take it out",
-    )
+    message = f"is damaged or no video ({text.splitlines()[0][:120]})"
+    return CaptureError("video-unreadable", message, path=path, remedy="copy it again, or take it out")

@@ -9,6 +9,7 @@ cameras best. Bundle adjustment follows, which drops outliers.
 
 from __future__ import annotations
 
+import itertools
 import logging
 from collections import defaultdict
 from collections.abc import Sequence
@@ -32,7 +33,8 @@ RIG_NOISE_PIXELS = 0.75  # a smaller error is never an outlier
 RIG_MAX_ROUNDS = 8
 RIG_MIN_REFINED_BOARDS = 3  # observations that a camera needs for its intrinsics to be refined
 
-RigPose = tuple[NDArray[np.float64], NDArray[np.float64]]  # R, t
+F64 = NDArray[np.float64]
+RigPose = tuple[F64, F64]  # R, t
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,33 +53,40 @@ class RigSolution:
     joined: tuple[int, ...]
     inliers: tuple[BoardObservation, ...]
     outliers: tuple[BoardObservation, ...]
-    focal_deviations: NDArray[np.float64]
+    focal_deviations: F64
 
 
 @dataclass(frozen=True, eq=False)
-class _Hypothesis:
-    """One interpretation of an observation: its corners labelled so, the board at that pose in camera axes."""
+class _Reading:
+    """One of the labellings of an observation's corners that the board's symmetries allow, and their places on it."""
 
     corners: DetectedCorners
-    R: NDArray[np.float64]
-    t: NDArray[np.float64]
+    plane: F64
 
 
 @dataclass(frozen=True, eq=False)
-class _CameraHypotheses:
-    """A camera while the rig is assembled: its intrinsics, and the hypotheses of every observation by moment."""
+class _ObservingCamera:
+    """A camera while the rig is assembled.
 
-    intrinsics: NDArray[np.float64]
+    Attributes:
+        intrinsics: (9,), see `lens_models`.
+        cap: Largest error that counts, pixels.
+        readings: Of every observation, by moment.
+        poses: The board in camera axes, one for each reading or two, by moment.
+    """
+
+    intrinsics: F64
     cap: float
-    hypotheses: dict[int, list[_Hypothesis]]
+    readings: dict[int, list[_Reading]]
+    poses: dict[int, list[RigPose]]
 
 
 def solve_rig(
-    points: NDArray[np.float64],
+    points: F64,
     symmetries: Sequence[NDArray[np.int64]],
     observations: Sequence[BoardObservation],
-    intrinsics: NDArray[np.float64],
-    bases: Sequence[NDArray[np.float64]],
+    intrinsics: F64,
+    bases: Sequence[F64],
     sizes: Sequence[tuple[int, int]],
     moments: int,
 ) -> RigSolution:
@@ -93,67 +102,55 @@ def solve_rig(
         moments: Number of moments.
     """
     cameras = [
-        _CameraHypotheses(
-            row,
-            RIG_ERROR_CAP_DIAGONALS * float(np.hypot(*size)),
-            _pose_hypotheses(points, symmetries, row, observations, c),
-        )
+        _observing_camera(points, symmetries, row, size, [s for s in observations if s.camera == c])
         for c, (row, size) in enumerate(zip(intrinsics, sizes, strict=True))
     ]
     relative_poses = {
         (a, b): relative_pose
-        for a in range(len(cameras))
-        for b in range(a + 1, len(cameras))
-        if (relative_pose := _relative_pose(points, symmetries, cameras[a], cameras[b])) is not None
+        for a, b in itertools.combinations(range(len(cameras)), 2)
+        if (relative_pose := _relative_pose(cameras[a], cameras[b])) is not None
     }
-    poses = _spanning_tree_poses(relative_poses, [len(camera.hypotheses) for camera in cameras])
-    rig, placed = _place_boards(points, symmetries, cameras, poses, moments)
-    joined = tuple(sorted(poses))
-    return _refine(points, rig, placed, bases, joined)
+    poses = _spanning_tree_poses(relative_poses, [len(camera.poses) for camera in cameras])
+    rig, placed = _place_boards(cameras, poses, moments)
+    return _refine(points, rig, placed, bases, tuple(sorted(poses)))
 
 
-def _pose_hypotheses(
-    points: NDArray[np.float64],
+def _observing_camera(
+    points: F64,
     symmetries: Sequence[NDArray[np.int64]],
-    intrinsics: NDArray[np.float64],
+    intrinsics: F64,
+    size: tuple[int, int],
     observations: Sequence[BoardObservation],
-    camera: int,
-) -> dict[int, list[_Hypothesis]]:
-    found: dict[int, list[_Hypothesis]] = {}
-    for observation in observations:
-        if observation.camera == camera:
-            readings = [
-                replace(observation.corners, ids=permutation[observation.corners.ids]) for permutation in symmetries
-            ]
-            hypotheses = [_Hypothesis(c, R, t) for c in readings for R, t in board_pose(points, c, intrinsics)]
-            if hypotheses:
-                found[observation.moment] = hypotheses
-    return found
+) -> _ObservingCamera:
+    camera = _ObservingCamera(intrinsics, RIG_ERROR_CAP_DIAGONALS * float(np.hypot(*size)), {}, {})
+    for seen in observations:
+        named = [replace(seen.corners, ids=permutation[seen.corners.ids]) for permutation in symmetries]
+        poses = [pose for corners in named for pose in board_pose(points, corners, intrinsics)]
+        if poses:
+            camera.readings[seen.moment] = [_Reading(corners, points[corners.ids]) for corners in named]
+            camera.poses[seen.moment] = poses
+    return camera
 
 
-def _relative_pose(
-    points: NDArray[np.float64], symmetries: Sequence[NDArray[np.int64]], a: _CameraHypotheses, b: _CameraHypotheses
-) -> tuple[int, float, RigPose] | None:
+def _relative_pose(a: _ObservingCamera, b: _ObservingCamera) -> tuple[int, float, RigPose] | None:
     """The pose of b in a's axes (x_a = R x_b + t), the number of agreeing moments, and the mean capped error.
 
     None without a common moment.
     """
-    common = sorted(a.hypotheses.keys() & b.hypotheses.keys())
+    common = sorted(a.poses.keys() & b.poses.keys())
     if not common:
         return None
     tried = [common[i] for i in np.unique(np.linspace(0, len(common) - 1, RIG_MAX_PROPOSALS).round().astype(int))]
-    into_b = _Transfer(points, symmetries, a, b, tried)
-    into_a = _Transfer(points, symmetries, b, a, tried)
+    into_b, into_a = _Transfer(a, b, tried), _Transfer(b, a, tried)
     best: tuple[float, int, RigPose] | None = None
     for moment in tried:
-        for in_a in a.hypotheses[moment]:
-            for in_b in b.hypotheses[moment]:
-                R = in_a.R @ in_b.R.T
-                t = in_a.t - R @ in_b.t
-                errors = np.maximum(into_b.errors(R.T, -R.T @ t), into_a.errors(R, t))
-                error = float(errors.mean())
-                if best is None or error < best[0]:
-                    best = error, int((errors < RIG_AGREEMENT_CAPS).sum()), (R, t)
+        for (R_a, t_a), (R_b, t_b) in itertools.product(a.poses[moment], b.poses[moment]):
+            R = R_a @ R_b.T
+            t = t_a - R @ t_b
+            errors = np.maximum(into_b.errors(R.T, -R.T @ t), into_a.errors(R, t))
+            error = float(errors.mean())
+            if best is None or error < best[0]:
+                best = error, int((errors < RIG_AGREEMENT_CAPS).sum()), (R, t)
     assert best is not None
     agree = round(best[1] * len(common) / len(tried))
     return agree, best[0], best[2]
@@ -162,29 +159,20 @@ def _relative_pose(
 class _Transfer:
     """Boards as one camera sees them, transferred into another camera and compared with what that one saw."""
 
-    def __init__(
-        self,
-        points: NDArray[np.float64],
-        symmetries: Sequence[NDArray[np.int64]],
-        source: _CameraHypotheses,
-        target: _CameraHypotheses,
-        moments: Sequence[int],
-    ) -> None:
+    def __init__(self, source: _ObservingCamera, target: _ObservingCamera, moments: Sequence[int]) -> None:
         boards, pixels, case = [], [], []
         owner: list[int] = []
         for row, moment in enumerate(moments):
-            seen = target.hypotheses[moment][0].corners
-            for hypothesis in source.hypotheses[moment]:
-                for permutation in symmetries:
-                    boards.append(points[permutation[seen.ids]] @ hypothesis.R.T + hypothesis.t)
-                    pixels.append(seen.pixels)
-                    case.append(np.full(len(seen.ids), len(owner)))
-                    owner.append(row)
+            for (R, t), reading in itertools.product(source.poses[moment], target.readings[moment]):
+                boards.append(reading.plane @ R.T + t)
+                pixels.append(reading.corners.pixels)
+                case.append(np.full(len(reading.plane), len(owner)))
+                owner.append(row)
         self._boards, self._pixels = np.concatenate(boards), np.concatenate(pixels)
         self._case, self._owner = np.concatenate(case), np.array(owner)
         self._target, self._moments = target, len(moments)
 
-    def errors(self, R: NDArray[np.float64], t: NDArray[np.float64]) -> NDArray[np.float64]:
+    def errors(self, R: F64, t: F64) -> F64:
         """(moments,) mean distance at each moment in units of the cap, at most 1.
 
         Args:
@@ -199,9 +187,7 @@ class _Transfer:
         return out
 
 
-def _capped_distances(
-    inside: NDArray[np.float64], pixels: NDArray[np.float64], camera: _CameraHypotheses
-) -> NDArray[np.float64]:
+def _capped_distances(inside: F64, pixels: F64, camera: _ObservingCamera) -> F64:
     """(n,) in units of the camera's cap, at most 1."""
     away = np.ones(len(inside))
     ahead = inside[:, 2] > 1e-9
@@ -246,32 +232,21 @@ def _spanning_tree_poses(
 
 
 def _place_boards(
-    points: NDArray[np.float64],
-    symmetries: Sequence[NDArray[np.int64]],
-    cameras: Sequence[_CameraHypotheses],
-    poses: dict[int, RigPose],
-    moments: int,
+    cameras: Sequence[_ObservingCamera], poses: dict[int, RigPose], moments: int
 ) -> tuple[RigEstimate, list[BoardObservation]]:
     """The board of every moment at the pose that fits all cameras best, and the observations labelled accordingly."""
-    rig = RigEstimate(
-        np.array([camera.intrinsics for camera in cameras]),
-        np.array([poses[c][0] if c in poses else np.eye(3) for c in range(len(cameras))]),
-        np.array([poses[c][1] if c in poses else np.zeros(3) for c in range(len(cameras))]),
-        np.full((moments, 3, 3), np.nan),
-        np.full((moments, 3), np.nan),
-    )
+    intrinsics = np.array([camera.intrinsics for camera in cameras])
+    R, t = map(np.array, zip(*(poses.get(c, (np.eye(3), np.zeros(3))) for c in range(len(cameras))), strict=True))
+    rig = RigEstimate(intrinsics, R, t, np.full((moments, 3, 3), np.nan), np.full((moments, 3), np.nan))
     observations: list[BoardObservation] = []
     for moment in range(moments):
-        here = [c for c in sorted(poses) if moment in cameras[c].hypotheses]
+        here = [c for c in sorted(poses) if moment in cameras[c].poses]
         best: tuple[float, RigPose, list[DetectedCorners]] | None = None
         for c in here:
-            for hypothesis in cameras[c].hypotheses[moment]:
-                R = rig.R[c].T @ hypothesis.R
-                t = rig.R[c].T @ (hypothesis.t - rig.t[c])
-                read = [
-                    _best_labelling(points, symmetries, cameras[o], rig.R[o] @ R, rig.R[o] @ t + rig.t[o], moment)
-                    for o in here
-                ]
+            for R_c, t_c in cameras[c].poses[moment]:
+                R = rig.R[c].T @ R_c
+                t = rig.R[c].T @ (t_c - rig.t[c])
+                read = [_best_labelling(cameras[o], rig.R[o] @ R, rig.R[o] @ t + rig.t[o], moment) for o in here]
                 error = sum(e for e, _ in read)
                 if best is None or error < best[0]:
                     best = error, (R, t), [corners for _, corners in read]
@@ -281,28 +256,16 @@ def _place_boards(
     return rig, observations
 
 
-def _best_labelling(
-    points: NDArray[np.float64],
-    symmetries: Sequence[NDArray[np.int64]],
-    camera: _CameraHypotheses,
-    R: NDArray[np.float64],
-    t: NDArray[np.float64],
-    moment: int,
-) -> tuple[float, DetectedCorners]:
+def _best_labelling(camera: _ObservingCamera, R: F64, t: F64, moment: int) -> tuple[float, DetectedCorners]:
     """The labelling of an observation's corners that fits a board at R, t in camera axes, and its mean error."""
-    seen = camera.hypotheses[moment][0].corners
-    named = [replace(seen, ids=permutation[seen.ids]) for permutation in symmetries]
-    errors = [float(_capped_distances(points[c.ids] @ R.T + t, c.pixels, camera).mean()) for c in named]
+    readings = camera.readings[moment]
+    errors = [float(_capped_distances(r.plane @ R.T + t, r.corners.pixels, camera).mean()) for r in readings]
     best = int(np.argmin(errors))
-    return errors[best], named[best]
+    return errors[best], readings[best].corners
 
 
 def _refine(
-    points: NDArray[np.float64],
-    rig: RigEstimate,
-    observations: list[BoardObservation],
-    bases: Sequence[NDArray[np.float64]],
-    joined: tuple[int, ...],
+    points: F64, rig: RigEstimate, observations: list[BoardObservation], bases: Sequence[F64], joined: tuple[int, ...]
 ) -> RigSolution:
     """Bundle adjustment: poses first, then intrinsics too, without outliers."""
     held = [basis[:, :0] for basis in bases]
@@ -322,13 +285,11 @@ def _refine(
     return RigSolution(rig, joined, tuple(inliers), tuple(outliers), deviations)
 
 
-def _is_in_front(points: NDArray[np.float64], rig: RigEstimate, observation: BoardObservation) -> bool:
+def _is_in_front(points: F64, rig: RigEstimate, observation: BoardObservation) -> bool:
     return bool((rig.in_camera(points, observation)[:, 2] > 0).all())
 
 
-def _worst_outliers(
-    points: NDArray[np.float64], rig: RigEstimate, observations: Sequence[BoardObservation]
-) -> list[BoardObservation]:
+def _worst_outliers(points: F64, rig: RigEstimate, observations: Sequence[BoardObservation]) -> list[BoardObservation]:
     """At each moment the worst observation, if it is an outlier.
 
     An outlier spoils the other observations of its moment, so these are judged again without it.

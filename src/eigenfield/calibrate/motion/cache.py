@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from eigenfield.calibrate.lenses import KnownLens
 from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, extract_features_of
 from eigenfield.calibrate.motion.matching import Match, Matching, choose_pairs, match_pairs
+from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
 from eigenfield.core.progress import Progress
@@ -40,13 +42,7 @@ def cached_features(
     def build(folder: Path) -> None:
         for index, features in enumerate(extract_features(photos, None, progress)):
             if isinstance(features, Features):
-                np.savez(
-                    _file(folder, index),
-                    points=features.points,
-                    scales=features.scales,
-                    descriptors=features.descriptors,
-                    colours=features.colours,
-                )
+                np.savez(_file(folder, index), **vars(features))
 
     folder = stages.run("features", key, build)
     return [_load(_file(folder, index), shot) for index, shot in enumerate(photos.shots)], key
@@ -67,12 +63,9 @@ def _file(folder: Path, index: int) -> Path:
 
 def _load(file: Path, shot: Shot) -> Features | CaptureError:
     if not file.is_file():  # it could not be read when the stage was built: repeat the reason
-        try:
-            return extract_features_of(shot, FeatureOptions())
-        except CaptureError as error:
-            return error
+        return or_error(partial(extract_features_of, options=FeatureOptions()))(shot)
     with np.load(file) as stored:
-        return Features(stored["points"], stored["scales"], stored["descriptors"], stored["colours"])
+        return Features(**stored)
 
 
 def cached_matches(
@@ -123,7 +116,7 @@ def _write_matches(path: Path, matches: Sequence[Match]) -> None:
     }
     np.savez(
         path,
-        pairs=np.array([(m.first, m.second, m.putative) for m in matches], np.int64).reshape(-1, 3),
+        pairs=np.array([(m.first, m.second) for m in matches], np.int64).reshape(-1, 2),
         verified=np.array([m.geometry is not None for m in matches], bool),
         config=np.array([int(m.geometry.config) for m in good], np.int64),
         count=np.array([m.inliers for m in good], np.int64),
@@ -141,7 +134,7 @@ def _read_matches(path: Path) -> list[Match]:
         stored = {name: file[name] for name in file.files}
     ends = np.cumsum(stored["count"])
     matches, number = [], 0
-    for (first, second, putative), verified in zip(stored["pairs"].tolist(), stored["verified"], strict=True):
+    for (first, second), verified in zip(stored["pairs"].tolist(), stored["verified"], strict=True):
         geometry = None
         if verified:
             geometry = pycolmap.TwoViewGeometry()
@@ -151,5 +144,5 @@ def _read_matches(path: Path) -> list[Match]:
                 if np.isfinite(stored[name][number]).all():
                     setattr(geometry, name, stored[name][number])
             number += 1
-        matches.append(Match(first, second, putative, geometry))
+        matches.append(Match(first, second, geometry))
     return matches

@@ -10,6 +10,7 @@ import tempfile
 import threading
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import cv2
@@ -17,8 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
+from eigenfield.calibrate.lenses import KnownLens, undistort_pixels
 from eigenfield.calibrate.motion.colmap_core import pycolmap
+from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
@@ -58,34 +60,16 @@ class Features:
 
     Attributes:
         points: (n, 2) float64 pixels of the photograph, centres at +0.5.
-        scales: (n,) float32 pixels.
         descriptors: (n, 128) uint8 of norm 512.
         colours: (n, 3) uint8.
     """
 
     points: NDArray[np.float64]
-    scales: NDArray[np.float32]
     descriptors: NDArray[np.uint8]
     colours: NDArray[np.uint8]
 
     def __len__(self) -> int:
         return len(self.points)
-
-    def subset(self, chosen: NDArray[np.bool_]) -> Features:
-        """Some of the features.
-
-        Args:
-            chosen: (n,) which.
-        """
-        return Features(self.points[chosen], self.scales[chosen], self.descriptors[chosen], self.colours[chosen])
-
-    def with_points(self, points: NDArray[np.float64]) -> Features:
-        """The same features at other places.
-
-        Args:
-            points: (n, 2) pixels.
-        """
-        return replace(self, points=points)
 
 
 def extract_features(
@@ -110,12 +94,7 @@ def extract_features(
 def _extract(
     shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
-    def extract(shot: Shot) -> Features | CaptureError:
-        try:
-            return extract_features_of(shot, options)
-        except CaptureError as error:
-            return error
-
+    extract = or_error(partial(extract_features_of, options=options))
     return list(track(parallel_stream(extract, shots), stage, len(shots), progress))
 
 
@@ -146,7 +125,7 @@ def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:
     order = np.lexsort((points[:, 1], points[:, 0], -scales))
     order = order[counts[order]][: options.max_features]
     colours = np.rint(pixels[row, column] * 255).astype(np.uint8)
-    return Features(points[order], scales[order], np.ascontiguousarray(descriptors[order]), colours[order])
+    return Features(points[order], np.ascontiguousarray(descriptors[order]), colours[order])
 
 
 def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
@@ -165,12 +144,9 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
         Image.fromarray(grey).save(place / "grey.png", compress_level=1)
         with FEATURE_EXTRACTION_SLOTS:
             pycolmap.extract_features(
-                place / "features.db",
-                place,
-                image_names=["grey.png"],
-                extraction_options=settings,
+                place / "features.db", place, image_names=["grey.png"], extraction_options=settings,
                 device=pycolmap.Device.cpu,
-            )
+            )  # fmt: skip
         database = pycolmap.Database.open(place / "features.db")
         try:
             image = database.read_image_with_name("grey.png")
@@ -181,3 +157,16 @@ def _sift(grey: NDArray[np.uint8], options: FeatureOptions) -> tuple[NDArray[np.
         finally:
             database.close()
     return keypoints, descriptors.reshape(-1, 128)
+
+
+def undistort_features(features: Features, lens: KnownLens) -> tuple[Features, Features]:
+    """The features as a pinhole camera sees them, and as the photograph shows them, without those beyond the lens.
+
+    Args:
+        features: Of a photograph.
+        lens: The photograph's.
+    """
+    points = undistort_pixels(features.points, lens)
+    good = np.asarray(np.isfinite(points).all(axis=1))
+    seen = Features(features.points[good], features.descriptors[good], features.colours[good])
+    return replace(seen, points=points[good]), seen

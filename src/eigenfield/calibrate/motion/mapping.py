@@ -55,13 +55,11 @@ class SparseModel:
     Attributes:
         reconstruction: COLMAP's reconstruction; image k + 1 is photograph k.
         registered: Photographs in it, in order.
-        deregistered: Photographs that were removed again because too few of their points held.
         separate: Photographs of smaller models that could not be joined, largest first.
     """
 
     reconstruction: Any
     registered: tuple[int, ...]
-    deregistered: tuple[int, ...]
     separate: tuple[tuple[int, ...], ...]
 
 
@@ -97,10 +95,7 @@ def map_views(
 
 
 def _database(
-    points: Sequence[NDArray[np.float64]],
-    cameras: Sequence[Any],
-    shared: Sequence[int],
-    matches: Sequence[Match],
+    points: Sequence[NDArray[np.float64]], cameras: Sequence[Any], shared: Sequence[int], matches: Sequence[Match]
 ) -> Any:
     database = pycolmap.Database.open(":memory:")
     for number, camera in enumerate(cameras, 1):
@@ -152,18 +147,13 @@ def _map(
     if best.num_reg_images() < count:
         best = _register_leftovers(best, _options(fixed, seed), database, count, check, progress)
     check()
-    before = set(_registered_views(best))
     _adjust_and_filter(best, fixed)
     registered = _registered_views(best)
     if len(registered) < MAPPING_TUNING.min_views:
         return None
     rest = [tuple(sorted(set(other) - set(registered))) for other in others]
-    return SparseModel(
-        best,
-        registered,
-        tuple(sorted(before - set(registered))),
-        tuple(r for r in rest if len(r) >= MAPPING_TUNING.min_views),
-    )
+    separate = tuple(views for views in rest if len(views) >= MAPPING_TUNING.min_views)
+    return SparseModel(best, registered, separate)
 
 
 def _registered_views(model: Any) -> tuple[int, ...]:
@@ -171,32 +161,26 @@ def _registered_views(model: Any) -> tuple[int, ...]:
 
 
 def _run(
-    options: Any,
-    database: Any,
-    manager: Any,
-    count: int,
-    stage: str,
-    check: Callable[[], None],
+    options: Any, database: Any, manager: Any, count: int, stage: str, check: Callable[[], None],
     progress: Progress | None,
-) -> None:
+) -> None:  # fmt: skip
     pipeline = pycolmap.IncrementalPipeline(options, database, manager)
+    report = progress or (lambda stage, done, total: None)
     most = 0
 
     def report_registered() -> None:
         nonlocal most
         check()
         done = max((manager.get(k).num_reg_images() for k in range(manager.size())), default=0)
-        if progress is not None and done > most:
+        if done > most:
             most = done
-            progress(stage, done, count)
+            report(stage, done, count)
 
-    if progress is not None:
-        progress(stage, 0, count)
+    report(stage, 0, count)
     for event in ("INITIAL_IMAGE_PAIR_REG_CALLBACK", "NEXT_IMAGE_REG_CALLBACK"):
         pipeline.add_callback(getattr(pycolmap.IncrementalPipelineCallback, event).value, report_registered)
     pipeline.run()
-    if progress is not None:
-        progress(stage, count, count)
+    report(stage, count, count)
 
 
 def _register_leftovers(

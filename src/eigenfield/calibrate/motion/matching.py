@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.calibrate.motion import colmap_core as _quiet  # noqa: F401  its import silences COLMAP
 from eigenfield.calibrate.motion.colmap_core import pycolmap
 from eigenfield.calibrate.motion.features import Features
 from eigenfield.calibrate.motion.matching_kernels import find_best_two, mask_off_lines
@@ -78,13 +77,11 @@ class Match:
     Attributes:
         first: Index of the first photograph.
         second: Index of the second, larger than `first`.
-        putative: Number of matches before verification.
         geometry: COLMAP's two-view geometry with the verified matches; None if there is none.
     """
 
     first: int
     second: int
-    putative: int
     geometry: Any
 
     @property
@@ -94,10 +91,7 @@ class Match:
 
 
 def choose_pairs(
-    features: Sequence[Features],
-    matching: Matching,
-    layout: GridLayout | None,
-    progress: Progress | None = None,
+    features: Sequence[Features], matching: Matching, layout: GridLayout | None, progress: Progress | None = None
 ) -> list[Pair]:
     """Pairs (i, j), i < j, to compare, in order.
 
@@ -159,9 +153,8 @@ def _grid_neighbours(layout: GridLayout) -> list[Pair]:
         node.setdefault(key, []).append(index)
     near = range(-MATCHING_TUNING.grid_reach_steps, MATCHING_TUNING.grid_reach_steps + 1)
     steps = {(r, c) for r in near for c in near}
-    steps |= {(s * sign, 0) for s in MATCHING_TUNING.grid_long_steps for sign in (-1, 1)} | {
-        (0, s * sign) for s in MATCHING_TUNING.grid_long_steps for sign in (-1, 1)
-    }
+    for s in MATCHING_TUNING.grid_long_steps:
+        steps |= {(s, 0), (-s, 0), (0, s), (0, -s)}
     pairs = {
         (i, j)
         for (row, column), members in node.items()
@@ -189,14 +182,9 @@ def _similar_pairs(features: Sequence[Features], progress: Progress | None) -> l
     sequence.
     """
     count = len(features)
-    every = [(i, j) for i in range(count) for j in range(i + 1, count)]
-    preview = int(
-        np.clip(
-            np.sqrt(MATCHING_TUNING.preview_multiplications / (256 * max(len(every), 1))),
-            MATCHING_TUNING.preview_min_features,
-            MATCHING_TUNING.preview_max_features,
-        )
-    )
+    pairs_in_all = max(count * (count - 1) // 2, 1)
+    wanted = np.sqrt(MATCHING_TUNING.preview_multiplications / (256 * pairs_in_all))
+    preview = int(np.clip(wanted, MATCHING_TUNING.preview_min_features, MATCHING_TUNING.preview_max_features))
     large = [_as_float(f.descriptors[:preview]) for f in features]
 
     def count_shared(i: int) -> list[int]:
@@ -248,17 +236,14 @@ def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j:
     left, right = _as_float(a.descriptors), _as_float(b.descriptors)
     matches = mutual_matches(left, right)
     geometry = _verify(a, b, cameras[i], cameras[j], matches, seed)
-    if (
-        geometry is not None
-        and len(geometry.inlier_matches) < MATCHING_TUNING.guided_max_matches
-        and geometry.F is not None
-    ):
+    few = geometry is not None and len(geometry.inlier_matches) < MATCHING_TUNING.guided_max_matches
+    if few and geometry.F is not None:
         guided = mutual_matches(left, right, (a.points, b.points, np.asarray(geometry.F)))
         both = np.unique(np.concatenate([guided, np.asarray(geometry.inlier_matches)]), axis=0)
         again = _verify(a, b, cameras[i], cameras[j], _one_to_one(both), seed)
         if again is not None and len(again.inlier_matches) > len(geometry.inlier_matches):
             geometry = again
-    return Match(i, j, len(matches), geometry)
+    return Match(i, j, geometry)
 
 
 def _as_float(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:
@@ -317,9 +302,8 @@ def _verify(a: Features, b: Features, first: Any, second: Any, matches: NDArray[
     options = pycolmap.TwoViewGeometryOptions()
     options.min_num_inliers = MATCHING_TUNING.min_inliers
     options.ransac.random_seed = seed
-    options.ransac.max_error = (
-        MATCHING_TUNING.epipolar_error_pixels * max(first.width, first.height, second.width, second.height, 800) / 2000
-    )
+    longer = max(first.width, first.height, second.width, second.height, 800)
+    options.ransac.max_error = MATCHING_TUNING.epipolar_error_pixels * longer / 2000
     options.compute_relative_pose = False
     geometry = pycolmap.estimate_two_view_geometry(
         first, a.points, second, b.points, matches.astype(np.uint32), options

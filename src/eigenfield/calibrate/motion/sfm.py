@@ -11,7 +11,7 @@ from __future__ import annotations
 import logging
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,14 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibrate.align import natural_gauge, transform_camera
-from eigenfield.calibrate.lenses import KnownLens, distort_to_pixels, undistort_pixels
+from eigenfield.calibrate.lenses import KnownLens, distort_to_pixels
 from eigenfield.calibrate.motion.cache import cached_features, cached_matches
 from eigenfield.calibrate.motion.colmap_core import pycolmap
-from eigenfield.calibrate.motion.features import Features
+from eigenfield.calibrate.motion.features import Features, undistort_features
 from eigenfield.calibrate.motion.mapping import MAPPING_TUNING, SparseModel, map_views
 from eigenfield.calibrate.motion.matching import MATCHING_TUNING, Match, Matching, check_matching
 from eigenfield.capture.calibration import escape_name
 from eigenfield.capture.lightfield import LightField
+from eigenfield.capture.messages import count_phrase, list_names
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.capture.points import SparsePoints
@@ -39,10 +40,7 @@ log = logging.getLogger("eigenfield.calibrate")
 
 SFM_MIN_FEATURES = 60  # with fewer, a photograph is called blurred or textureless
 SFM_NOMINAL_FOCAL_SIDES = 1.2  # of the longer side, if no focal length is known
-SFM_MAX_LISTED_NAMES = 5  # in one line
-NO_FEATURES: Features = Features(
-    np.zeros((0, 2)), np.zeros(0, np.float32), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8)
-)
+NO_FEATURES = Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8))
 
 
 @dataclass(frozen=True)
@@ -127,7 +125,7 @@ def structure_from_motion(
     report = _report(photos, found, matches, model)
     if model is None:
         raise _failure_error(photos, report)
-    return _assemble(photos, features, undistorted, known, model, report)
+    return _assemble(photos, features, known, model, report)
 
 
 def _check_intrinsics(intrinsics: KnownLens | Sequence[KnownLens] | None, photos: PhotoSet) -> list[KnownLens] | None:
@@ -145,7 +143,7 @@ def _check_photographs(photos: PhotoSet) -> None:
     if len(photos) < MAPPING_TUNING.min_views:
         raise CaptureError(
             "too-few",
-            f"holds {len(photos)} photograph{'' if len(photos) == 1 else 's'}, {MAPPING_TUNING.min_views} are needed",
+            f"holds {count_phrase(photos.shots, 'photograph', 'photographs')}, {MAPPING_TUNING.min_views} are needed",
             path=photos.root,
             remedy="name a folder with more photographs of the scene",
         )
@@ -164,13 +162,8 @@ def _undistort_features(
     """The features as pinholes see them, and as the photographs show them; those beyond the lens are dropped."""
     if known is None:
         return list(features), list(features)
-    undistorted, seen = [], []
-    for f, lens in zip(features, known, strict=True):
-        points = undistort_pixels(f.points, lens)
-        good = np.asarray(np.isfinite(points).all(axis=1))
-        seen.append(f.subset(good))
-        undistorted.append(f.subset(good).with_points(points[good]))
-    return undistorted, seen
+    both = [undistort_features(f, lens) for f, lens in zip(features, known, strict=True)]
+    return [undistorted for undistorted, _ in both], [seen for _, seen in both]
 
 
 def _cameras(
@@ -196,17 +189,11 @@ def _cameras(
 
 def _camera(shot: Shot, K: NDArray[np.float64] | None) -> Any:
     if K is not None:
-        camera = pycolmap.Camera(
-            model="PINHOLE", width=shot.width, height=shot.height, params=[K[0, 0], K[1, 1], K[0, 2], K[1, 2]]
-        )
+        model, params = "PINHOLE", [K[0, 0], K[1, 1], K[0, 2], K[1, 2]]
     else:
         focal = SFM_NOMINAL_FOCAL_SIDES * max(shot.width, shot.height) if shot.focal is None else shot.focal
-        camera = pycolmap.Camera(
-            model="SIMPLE_RADIAL",
-            width=shot.width,
-            height=shot.height,
-            params=[focal, shot.width / 2, shot.height / 2, 0.0],
-        )
+        model, params = "SIMPLE_RADIAL", [focal, shot.width / 2, shot.height / 2, 0.0]
+    camera = pycolmap.Camera(model=model, width=shot.width, height=shot.height, params=params)
     camera.has_prior_focal_length = K is not None or shot.focal is not None
     return camera
 
@@ -231,18 +218,13 @@ def _report(
         elif isinstance(features, CaptureError):
             code, reason = "unreadable", str(features)
         else:
-            code, reason = _failure_reason(index, count, partners[index], registered, photos.names, model)
+            code, reason = _failure_reason(index, count, partners[index], photos.names, model)
         report.append(ViewReport(shot.name, index in registered, code, reason, count, len(partners[index]), 0, None))
     return report
 
 
 def _failure_reason(
-    index: int,
-    features: int,
-    partners: dict[int, int],
-    registered: set[int],
-    names: Sequence[str],
-    model: SparseModel | None,
+    index: int, features: int, partners: dict[int, int], names: Sequence[str], model: SparseModel | None
 ) -> tuple[str, str]:
     if features < SFM_MIN_FEATURES:
         return "few-features", f"too few features ({features}): blurred, dark, masked or without texture"
@@ -253,23 +235,17 @@ def _failure_reason(
             "photograph; another scene, or taken from too far aside",
         )
     best = max(partners, key=lambda j: (partners[j], -j))
-    matched = _list_names([names[j] for j in sorted(partners)])
-    if not registered & partners.keys():
+    matched = list_names([names[j] for j in sorted(partners)])
+    if model is None or not set(model.registered) & partners.keys():
         company = next((o for o in (() if model is None else model.separate) if index in o), ())
         return "apart", (
             f"no view to register against: it matches only {matched}"
             + (f", a group of {len(company)} apart from the rest" if company else ", which have no camera either")
         )
     return "no-pose", (
-        f"residual too large: it matches {matched} "
-        f"(best {escape_name(names[best])}, {partners[best]} features), but no "
-        "pose explains enough points"
+        f"residual too large: it matches {matched} (best {escape_name(names[best])}, {partners[best]} features), "
+        "but no pose explains enough points"
     )
-
-
-def _list_names(names: Sequence[str]) -> str:
-    shown = ", ".join(escape_name(name) for name in names[:SFM_MAX_LISTED_NAMES])
-    return shown if len(names) <= SFM_MAX_LISTED_NAMES else f"{shown} and {len(names) - SFM_MAX_LISTED_NAMES} more"
 
 
 def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureError:
@@ -281,10 +257,7 @@ def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureErr
             f"{of} have too few features (blurred, dark, masked or without texture)",
             "take sharper photographs of a textured scene",
         ),
-        "few-matches": (
-            f"{of} share too little with any other",
-            "take photographs that overlap, a few degrees apart",
-        ),
+        "few-matches": (f"{of} share too little with any other", "take photographs that overlap, a few degrees apart"),
     }.get(code, (f"{of} match others, but no cameras explain the matches", "give the lens with --intrinsics, or take "
                  "more photographs from places further apart"))  # fmt: skip
     if not code.startswith(("unreadable", "few")) and _may_be_grid(photos):
@@ -299,10 +272,8 @@ def _failure_error(photos: PhotoSet, report: Sequence[ViewReport]) -> CaptureErr
 
 def _may_be_grid(photos: PhotoSet) -> bool:
     """Whether the photographs may be a grid: no layout is known, one size, and a number with two factors."""
-    sizes = {(shot.width, shot.height) for shot in photos.shots}
-    return (
-        photos.layout is None and len(sizes) == 1 and any(len(photos) % k == 0 for k in range(2, 1 + len(photos) // 2))
-    )
+    has_factors = any(len(photos) % k == 0 for k in range(2, 1 + len(photos) // 2))
+    return photos.layout is None and len(set(photos.sizes)) == 1 and has_factors
 
 
 # COLMAP's model as a light field and sparse points
@@ -311,7 +282,6 @@ def _may_be_grid(photos: PhotoSet) -> bool:
 def _assemble(
     photos: PhotoSet,
     features: Sequence[Features],
-    undistorted: Sequence[Features],
     known: Sequence[KnownLens] | None,
     model: SparseModel,
     report: Sequence[ViewReport],
@@ -319,9 +289,8 @@ def _assemble(
     chosen = list(model.registered)
     lenses, cameras = [], []
     for index in chosen:
-        lens, camera = _solved_camera(
-            model.reconstruction.image(index + 1), photos.shots[index], None if known is None else known[index]
-        )
+        image = model.reconstruction.image(index + 1)
+        lens, camera = _solved_camera(image, photos.shots[index], None if known is None else known[index])
         lenses.append(lens)
         cameras.append(camera)
     points = _points(model, chosen, features)
@@ -334,11 +303,8 @@ def _assemble(
     sums = np.bincount(points.view, weights=errors, minlength=len(chosen))
     entries = list(report)
     for place, index in enumerate(chosen):
-        entry = entries[index]
-        entries[index] = ViewReport(
-            entry.name, True, "", "", entry.features, entry.partners, int(by_view[place]),
-            float(sums[place] / max(by_view[place], 1)),
-        )  # fmt: skip
+        error = float(sums[place] / max(by_view[place], 1))
+        entries[index] = replace(entries[index], observations=int(by_view[place]), error=error)
     problems = [f"{escape_name(e.name)} has no camera: {e.reason}" for e in entries if not e.registered]
     log.info("%d of %d photographs have a camera", len(chosen), len(photos))
     light_field = photos.subset(chosen).with_cameras(cameras, [lens.lens for lens in lenses], problems)

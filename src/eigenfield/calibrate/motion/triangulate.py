@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from eigenfield.calibrate.lenses import KnownLens, undistort_pixels
-from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features
+from eigenfield.calibrate.lenses import KnownLens
+from eigenfield.calibrate.motion.features import FeatureOptions, Features, extract_features, undistort_features
 from eigenfield.calibrate.motion.matching import mutual_matches
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet, Shot
@@ -70,26 +70,21 @@ def triangulate_points(light_field: LightField, *, progress: Progress | None = N
     """
     count = min(len(light_field), TRIANGULATION_TUNING.max_views)
     views = np.linspace(0, len(light_field) - 1, count).astype(np.int64).tolist()
-    shots = [_photograph(light_field, index) for index in views]
     cameras = [light_field.views[index].camera for index in views]
+    shots = [
+        Shot(view.name, view.path, view.camera.width, view.camera.height, None, view.mask, view.upright)
+        for view in (light_field.views[index] for index in views)
+    ]
     photos = PhotoSet(light_field.root, tuple(shots), None, (), "folder")
     features = _features(photos, TRIANGULATION_FEATURES, progress)
     if np.median([len(found) for found in features]) < TRIANGULATION_TUNING.min_median_features:
         features = _features(photos, TRIANGULATION_WEAK_FEATURES, progress)
-    undistorted = []
-    for found, camera, index in zip(features, cameras, views, strict=True):
-        points = undistort_pixels(found.points, KnownLens(camera.K, light_field.views[index].lens))
-        good = np.asarray(np.isfinite(points).all(axis=1))
-        undistorted.append(found.subset(good).with_points(points[good]))
+    lenses = [KnownLens(camera.K, light_field.views[index].lens) for camera, index in zip(cameras, views, strict=True)]
+    undistorted = [undistort_features(found, lens)[0] for found, lens in zip(features, lenses, strict=True)]
     matches = _match_views(undistorted, cameras, progress)
     points = _triangulate_tracks(undistorted, cameras, matches)
     log.info("points: %d triangulated from %d views", len(points), len(views))
     return points
-
-
-def _photograph(light_field: LightField, index: int) -> Shot:
-    view = light_field.views[index]
-    return Shot(view.name, view.path, view.camera.width, view.camera.height, None, view.mask, view.upright)
 
 
 def _features(photos: PhotoSet, options: FeatureOptions, progress: Progress | None) -> list[Features]:
@@ -107,9 +102,8 @@ def _pairs(cameras: Sequence[Camera]) -> list[tuple[int, int]]:
     size = float(np.linalg.norm(np.ptp(centres, axis=0))) or 1.0
     apart = np.linalg.norm(centres[:, None] - centres[None], axis=2) / size
     unlike = np.hypot(apart, np.linalg.norm(axes[:, None] - axes[None], axis=2))
-    unlike[
-        (apart < TRIANGULATION_TUNING.min_distance_sizes) | (axes @ axes.T < TRIANGULATION_TUNING.min_axis_cosine)
-    ] = np.inf
+    unlike[apart < TRIANGULATION_TUNING.min_distance_sizes] = np.inf
+    unlike[axes @ axes.T < TRIANGULATION_TUNING.min_axis_cosine] = np.inf
     pairs = set()
     for i, row in enumerate(unlike):
         for j in np.argsort(row, kind="stable")[: TRIANGULATION_TUNING.partners].tolist():
@@ -177,9 +171,8 @@ def _triangulate_tracks(
     np.add.at(normal, number, across)
     np.add.at(side, number, np.einsum("nij,nj->ni", across, origin))
     total = np.bincount(number)
-    sharp = (
-        np.sin(np.radians(TRIANGULATION_TUNING.min_angle_degrees)) ** 2 / 4
-    )  # for two rays at angle a the smallest eigenvalue is 2 sin^2(a / 2)
+    # for two rays at angle a the smallest eigenvalue is 2 sin^2(a / 2)
+    sharp = np.sin(np.radians(TRIANGULATION_TUNING.min_angle_degrees)) ** 2 / 4
     normal[np.linalg.eigvalsh(normal)[:, 0] < sharp * total / 2] = np.nan
     known = np.isfinite(normal).all(axis=(1, 2))
     points = np.full((len(total), 3), np.nan)

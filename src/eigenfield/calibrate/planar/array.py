@@ -14,8 +14,7 @@ move its image. Shift, position and rotation are then almost uncorrelated.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -147,11 +146,3 @@ class ArrayModel:
             plus, minus = (self.matrices(reference, views, parameters + sign * moved) for sign in (1, -1))
             result[:, index] = (plus - minus) / (2 * step)
         return result
-
-    def subset(self, views: Sequence[int]) -> ArrayModel:
-        """The model of some of the views.
-
-        Args:
-            views: Their indices.
-        """
-        return replace(self, bases=tuple(self.bases[view] for view in views))

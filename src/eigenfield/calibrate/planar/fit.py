@@ -13,6 +13,7 @@ from eigenfield.calibrate.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.reference_view import ReferenceView
 
+FIT_MIN_VIEW_FRACTION = 0.15  # of the views, which must see a point that cameras are fitted to
 FIT_MIN_GRADIENT_LEVELS = 2.0  # a pixel: weaker gradients do not constrain a camera
 FIT_MAX_POINTS = 60_000  # of a fit
 FIT_CORRELATED_RESIDUALS = 100  # count as one: neighbouring pixels and channels are not independent
@@ -40,21 +41,22 @@ class PhotometricTarget:
 
 
 def select_textured_points(
-    d: NDArray[np.float32], texture: NDArray[np.float32], seen: NDArray[np.bool_]
+    d: NDArray[np.float32], texture: NDArray[np.float32], count: NDArray[np.int32], views: int
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Points with texture, evenly subsampled to FIT_MAX_POINTS.
+    """Points with texture that enough views see, evenly subsampled to FIT_MAX_POINTS.
 
     Args:
         d: (h, w) labels.
         texture: (h, w, 3) mean texture, grey levels.
-        seen: (h, w) points that may be selected.
+        count: (h, w) number of views that see each point.
+        views: Number of views.
 
     Returns:
         (k, 3) x, y, d, and (k, 3) colours.
     """
     grey = texture.mean(axis=-1)
     slope = np.hypot(cv2.Sobel(grey, cv2.CV_32F, 1, 0), cv2.Sobel(grey, cv2.CV_32F, 0, 1)) / 8
-    good = np.flatnonzero((slope > FIT_MIN_GRADIENT_LEVELS) & seen)
+    good = np.flatnonzero((slope > FIT_MIN_GRADIENT_LEVELS) & (count > max(2, FIT_MIN_VIEW_FRACTION * views)))
     good = good[:: max(1, len(good) // FIT_MAX_POINTS)]
     y, x = np.divmod(good, d.shape[1])
     points = np.stack([x, y, d.ravel()[good]], axis=1).astype(np.float32)

@@ -41,7 +41,6 @@ class PlanarTuning:
     """Constants of `refine_planar`. Pixels are those of the outermost camera unless said otherwise.
 
     Attributes:
-        min_view_fraction: Fraction of the views that must see a point that cameras are fitted to.
         tau_levels: Scale of the Cauchy loss, grey levels.
         visibility_bias_pixels: Distance behind the depth buffer at which a point still counts as visible.
         sweep_step_pixels: Distance between two labels of a sweep.
@@ -60,7 +59,6 @@ class PlanarTuning:
         vote_clear_ratio: Ratio of the votes below which both orders are tried.
     """
 
-    min_view_fraction: float = 0.15
     tau_levels: float = 15.0
     visibility_bias_pixels: float = 0.96
     sweep_step_pixels: float = 1.2
@@ -90,13 +88,10 @@ class PlanarArray:
         parameters: (n, 10) of the cameras.
         reference: The view of the depth map.
         d: (h, w) labels (see `stereo`).
-        confidence: (h, w) about 1 / variance of d.
         texture: (h, w, 3) mean texture, grey levels.
         count: (h, w) number of views that see each point.
         error: (n,) root mean square difference of each photograph from the mean texture at textured points, grey
             levels.
-        low: Lowest label.
-        high: Highest label.
         refined: Whether positions were corrected; False if a regular grid fits as well.
     """
 
@@ -104,12 +99,9 @@ class PlanarArray:
     parameters: NDArray[np.float64]
     reference: ReferenceView
     d: NDArray[np.float32]
-    confidence: NDArray[np.float32]
     texture: NDArray[np.float32]
     count: NDArray[np.int32]
     error: NDArray[np.float64]
-    low: float
-    high: float
     refined: bool
 
 
@@ -124,13 +116,13 @@ class _JointRefinement:
         self.centre = start.centre
         self.low, self.high = start.low, start.high
         self.extent = self.extent_of(np.arange(len(pictures)))
+        self.bias = PLANAR_TUNING.visibility_bias_pixels / self.extent
         side = np.abs(start.places).max()
         margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
         self.reference = self.model.reference_view(margin)
         self.half_size = halve_pictures(pictures)
         shape = self.reference.shape
         self.d = np.zeros(shape, np.float32)
-        self.confidence = np.zeros(shape, np.float32)
         self.texture = np.zeros((*shape, 3), np.float32)
         self.count = np.zeros(shape, np.int32)
         self.error = np.full(len(pictures), np.nan)
@@ -153,10 +145,14 @@ class _JointRefinement:
             self._buffers = None
             self._buffers = np.zeros((len(views), height, width), np.float32)
         buffers = depth_buffers(matrices, self.d, (height, width), out=self._buffers)
-        self.texture, self.count = mean_texture(
-            pictures, matrices, self.d, buffers, PLANAR_TUNING.visibility_bias_pixels / self.extent
-        )
+        self.texture, self.count = mean_texture(pictures, matrices, self.d, buffers, self.bias)
         return matrices, buffers
+
+    def make_target(self, views: NDArray[np.int64], pictures: NDArray[np.uint32]) -> PhotometricTarget:
+        """What the cameras of `views` are fitted to: the mean texture over them."""
+        _, buffers = self.update_texture(views, pictures)
+        points = select_textured_points(self.d, self.texture, self.count, len(views))
+        return PhotometricTarget(self.reference, pictures, buffers, *points, self.bias)
 
     def sweep_depth(self, views: NDArray[np.int64], coarser: float = 1.0) -> None:
         """Plane sweep at half resolution and semi-global matching."""
@@ -166,14 +162,9 @@ class _JointRefinement:
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
         reference, known = _pad_to_reference(unpack_pictures(self.half_size[self.centre]), small.shape)
         cost = plane_sweep(
-            self.half_size[views],
-            matrices,
-            small.shape,
-            labels,
-            reference=reference,
-            known=known,
+            self.half_size[views], matrices, small.shape, labels, reference=reference, known=known,
             unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS,
-        )
+        )  # fmt: skip
         guide = cv2.cvtColor(reference, cv2.COLOR_RGB2GRAY).astype(np.float32)
         d, _ = semi_global_matching(cost, guide, labels)
         self.d = np.asarray(cv2.resize(d, self.reference.shape[::-1], interpolation=cv2.INTER_LINEAR), np.float32)
@@ -195,13 +186,7 @@ class _JointRefinement:
         """Gauss-Newton of the first `count` parameters of each camera against the mean texture."""
         shown = self.subset(views, self.pictures if pictures is None else pictures)
         for _ in range(rounds):
-            _, buffers = self.update_texture(views, shown)
-            points = select_textured_points(
-                self.d, self.texture, self.count > max(2, PLANAR_TUNING.min_view_fraction * len(views))
-            )
-            target = PhotometricTarget(
-                self.reference, shown, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / self.extent
-            )
+            target = self.make_target(views, shown)
             moved, self.error[views] = gauss_newton_step(self.model, views, self.parameters[views], target, count, tau)
             keep = self.parameters[self.centre].copy()
             self.parameters[views] = moved
@@ -213,17 +198,9 @@ class _JointRefinement:
 
     def measure_errors(self, views: NDArray[np.int64]) -> None:
         """The error of each photograph against the mean texture, with unchanged cameras."""
-        pictures = self.subset(views, self.pictures)
-        _, buffers = self.update_texture(views, pictures)
-        points = select_textured_points(
-            self.d, self.texture, self.count > max(2, PLANAR_TUNING.min_view_fraction * len(views))
-        )
-        target = PhotometricTarget(
-            self.reference, pictures, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / self.extent
-        )
-        _, self.error[views] = gauss_newton_step(
-            self.model, views, self.parameters[views], target, 2, PLANAR_TUNING.tau_levels
-        )
+        target = self.make_target(views, self.subset(views, self.pictures))
+        fixed = self.parameters[views]
+        _, self.error[views] = gauss_newton_step(self.model, views, fixed, target, 2, PLANAR_TUNING.tau_levels)
 
     def fix_gauge(self, views: NDArray[np.int64]) -> None:
         """Remove the gauge freedom: shifts in proportion to positions are an offset of depth; the mean step is one."""
@@ -244,18 +221,16 @@ class _JointRefinement:
         apart = smooth / self.extent
         d, confidence = refine_depth(
             pictures, matrices, self.d, step / self.extent, buffers=buffers, texture=self.texture,
-            bias=PLANAR_TUNING.visibility_bias_pixels / self.extent, depth_scale=apart,
+            bias=self.bias, depth_scale=apart,
         )  # fmt: skip
         half = PLANAR_TUNING.half_confidence * self.extent**2
         self.d = smooth_depth(d, confidence, self.texture, half_confidence=half, depth_scale=apart)
-        self.confidence = confidence
         self.extend(len(views))
 
     def extend(self, views: int) -> None:
         """Extrapolate depth outside the photographs' common part, where too few views look."""
-        self.d = extend_depth(
-            self.d, self.count >= max(2, PLANAR_TUNING.min_depth_view_fraction * views), self.low, self.high
-        )
+        known = self.count >= max(2, PLANAR_TUNING.min_depth_view_fraction * views)
+        self.d = extend_depth(self.d, known, self.low, self.high)
 
 
 def refine_planar(
@@ -286,16 +261,14 @@ def refine_planar(
         exact = not _correct_cameras(joint, rings, report, total)
     everything = np.arange(len(pictures))
     if exact:
-        depth = estimate_depth(pictures, joint.matrices(everything), joint.reference.shape, (joint.low, joint.high))
-        joint.d, joint.confidence = depth.d, depth.confidence
+        span = (joint.low, joint.high)
+        joint.d = estimate_depth(pictures, joint.matrices(everything), joint.reference.shape, span)
         joint.update_texture(everything, pictures)
         joint.extend(len(pictures))
     joint.measure_errors(everything)
     report("cameras and depth", total, total)
-    return PlanarArray(
-        joint.model, joint.parameters, joint.reference, joint.d, joint.confidence, joint.texture, joint.count,
-        joint.error, joint.low, joint.high, not exact,
-    )  # fmt: skip
+    depth = joint.d, joint.texture, joint.count
+    return PlanarArray(joint.model, joint.parameters, joint.reference, *depth, joint.error, not exact)
 
 
 def _correct_cameras(joint: _JointRefinement, rings: Sequence[NDArray[np.int64]], report: Progress, total: int) -> bool:
@@ -367,9 +340,8 @@ def register_views(
     sharp = pack_pictures(photographs)
     soft = np.stack(parallel_map(_blur, sharp))
     extent = max(1.0, float(np.linalg.norm(planar.parameters[:, ARRAY_POSITION], axis=1).max()))
-    points = select_textured_points(
-        planar.d, planar.texture, planar.count > max(2, PLANAR_TUNING.min_view_fraction * len(known))
-    )
+    bias = PLANAR_TUNING.visibility_bias_pixels / extent
+    points = select_textured_points(planar.d, planar.texture, planar.count, len(known))
     for pictures, count, tau, rounds in (
         (soft, 4, 2 * PLANAR_TUNING.tau_levels, 3),
         (sharp, 4, PLANAR_TUNING.tau_levels, 2),
@@ -378,9 +350,7 @@ def register_views(
         for _ in range(rounds):
             matrices = model.matrices(planar.reference, new, parameters[new])
             buffers = depth_buffers(matrices, planar.d, pictures.shape[1:3])
-            target = PhotometricTarget(
-                planar.reference, pictures, buffers, *points, PLANAR_TUNING.visibility_bias_pixels / extent
-            )
+            target = PhotometricTarget(planar.reference, pictures, buffers, *points, bias)
             parameters[new], error[new] = gauss_newton_step(model, new, parameters[new], target, count, tau)
     return replace(planar, model=model, parameters=parameters, error=error)
 

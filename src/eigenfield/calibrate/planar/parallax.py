@@ -38,19 +38,15 @@ class Parallax:
 
     Attributes:
         steps: (2, 2) maps nominal positions (relative to the central camera) to positions p in steps, x right, y down.
-        shifts: (2, 2) maps nominal positions to shifts s in pixels; the remainder is jitter.
         disparity: (k,) of the points; NaN where unreliable.
         residual: Median distance of the tracks from the model with regular positions, pixels.
         support: Number of reliable points.
-        agreeing: (v,) fraction of those found in each view that move as the model says; NaN for views with too few.
     """
 
     steps: F64
-    shifts: F64
     disparity: F64
     residual: float
     support: int
-    agreeing: F64
 
 
 def measure_parallax(tracks: Tracks, nominal: F64) -> Parallax | None:
@@ -80,25 +76,20 @@ def measure_parallax(tracks: Tracks, nominal: F64) -> Parallax | None:
         residual = _model_residual(moved, nominal, steps, shifts, d)
         weights = np.where(seen, 1 / (1 + (residual / PARALLAX_NOISE_PIXELS) ** 2), 0.0)
     residual = np.where(seen, residual, np.nan)
-    good = (np.nanmedian(residual, axis=0) < PARALLAX_OUTLIER_PIXELS) & (
-        (residual < PARALLAX_OUTLIER_PIXELS).sum(axis=0) > PARALLAX_MIN_VIEWS
-    )
-    moves = np.where(seen, np.linalg.norm(moved, axis=-1), np.nan)[:, good]
-    if good.sum() >= PARALLAX_MIN_POINTS and np.nanmedian(
-        residual[:, good]
-    ) > PARALLAX_MAX_UNEXPLAINED_FRACTION * np.nanpercentile(moves, 75):
-        return None
+    good = np.nanmedian(residual, axis=0) < PARALLAX_OUTLIER_PIXELS
+    good &= (residual < PARALLAX_OUTLIER_PIXELS).sum(axis=0) > PARALLAX_MIN_VIEWS
     if good.sum() < PARALLAX_MIN_POINTS or not np.isfinite(steps).all() or np.abs(np.diag(steps)[used]).min() < 1e-3:
+        return None
+    moves = np.where(seen, np.linalg.norm(moved, axis=-1), np.nan)[:, good]
+    unexplained = PARALLAX_MAX_UNEXPLAINED_FRACTION * np.nanpercentile(moves, 75)
+    if np.nanmedian(residual[:, good]) > unexplained:
         return None
     # gauge: the mean length of a step is one, the first axis keeps its sign
     first = 0 if used[0] else 1
     scale = steps[first, first]
     disparity = np.full(len(enough), np.nan)
     disparity[np.flatnonzero(enough)[good]] = d[good] * scale
-    found = seen[:, good].sum(axis=1)
-    near = (residual[:, good] < PARALLAX_OUTLIER_PIXELS).sum(axis=1)
-    agreeing = np.where(found >= PARALLAX_MIN_POINTS, near / np.maximum(found, 1), np.nan)
-    return Parallax(steps / scale, shifts, disparity, float(np.nanmedian(residual[:, good])), int(good.sum()), agreeing)
+    return Parallax(steps / scale, disparity, float(np.nanmedian(residual[:, good])), int(good.sum()))
 
 
 def _initial_disparity(moved: F64, weights: F64, nominal: F64) -> F64:

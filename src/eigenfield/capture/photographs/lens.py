@@ -109,7 +109,9 @@ def source_positions(
     elif lens.model == "fisheye":
         x, y = cv2.fisheye.initUndistortRectifyMap(shifted, d, np.eye(3), shifted, size, cv2.CV_32FC1)
     else:
-        x, y = _metashape_positions(shifted, lens, width, height)
+        u, v = metashape_distortion(*_pinhole_coordinates(shifted, width, height), lens)
+        with np.errstate(over="ignore", invalid="ignore"):
+            x, y = shifted[0, 0] * u + shifted[0, 1] * v + shifted[0, 2], shifted[1, 1] * v + shifted[1, 2]
     inside = (x >= -0.5) & (x <= width - 0.5) & (y >= -0.5) & (y <= height - 0.5)
     limit = lens.valid_radius()
     if np.isfinite(limit):
@@ -127,12 +129,17 @@ def _pinhole_coordinates(
     return (np.arange(width) - shifted[0, 2] - shifted[0, 1] * y) / shifted[0, 0], y
 
 
-def _metashape_positions(
-    shifted: NDArray[np.float64], lens: Lens, width: int, height: int
+def metashape_distortion(
+    x: NDArray[np.float64], y: NDArray[np.float64], lens: Lens
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Metashape user manual, appendix "Camera models"."""
+    """Distorted coordinates x', y' of one of Metashape's models (user manual, appendix "Camera models").
+
+    Args:
+        x: X / Z.
+        y: Y / Z.
+        lens: The distortion.
+    """
     k1, k2, k3, k4, p1, p2, p3, p4, skew = lens.coefficients
-    x, y = _pinhole_coordinates(shifted, width, height)
     if lens.model != "metashape":
         radius = np.maximum(np.hypot(x, y), 1e-12)
         theta = np.arctan(radius)
@@ -144,8 +151,7 @@ def _metashape_positions(
         more = 1 + q * (p3 + q * p4)
         u = x * radial + (p1 * (q + 2 * x * x) + 2 * p2 * x * y) * more
         v = y * radial + (p2 * (q + 2 * y * y) + 2 * p1 * x * y) * more
-        u = u + skew * v
-        return shifted[0, 0] * u + shifted[0, 1] * v + shifted[0, 2], shifted[1, 1] * v + shifted[1, 2]
+        return u + skew * v, v
 
 
 def resample(picture: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -153,10 +159,7 @@ def resample(picture: NDArray[np.float32], x: NDArray[np.float32], y: NDArray[np
     outside."""
     out = np.empty((*x.shape, picture.shape[2]), np.float32)
 
-    def draw(band: tuple[int, int]) -> None:
-        sample_cubic(picture, x, y, band[0], band[1], out)
-
-    parallel_map(draw, pieces(len(x), LENS_BAND_ROWS))
+    parallel_map(lambda band: sample_cubic(picture, x, y, *band, out), pieces(len(x), LENS_BAND_ROWS))
     return out
 
 

@@ -306,9 +306,8 @@ def _decode_over_8bit(data: bytes, header: Header, image: Image.Image, path: Pat
         values[..., :3] = values[..., 2::-1]  # OpenCV has blue first
     if tiff is not None and tiff.get(TIFF_PHOTOMETRIC_TAG) == 0:  # white is zero
         values = 1 - values
-    if (
-        tiff is not None and 1 in np.atleast_1d(tiff.get(TIFF_EXTRA_TAG, 0)) and values.shape[2] == 4
-    ):  # colours times alpha
+    is_premultiplied = tiff is not None and 1 in np.atleast_1d(tiff.get(TIFF_EXTRA_TAG, 0))
+    if is_premultiplied and values.shape[2] == 4:
         np.divide(values[..., :3], values[..., 3:], out=values[..., :3], where=values[..., 3:] > 0)
         np.clip(values, 0, 1, out=values)
     return values

@@ -15,15 +15,17 @@ from pathlib import Path
 import numpy as np
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photographs.read import PHOTOGRAPH_EXTENSIONS
 from eigenfield.capture.readers.text import (
+    camera_centre,
     check_finite,
     check_lens,
     damaged_error,
     excerpt,
     parse_numbers,
+    read_head,
     read_text,
     unreadable_error,
 )
@@ -41,17 +43,10 @@ def find_bundler(folder: Path) -> Path | None:
         named = folder / inner / "bundle.out"
         others = sorted((folder / inner).glob("*.out")) if (folder / inner).is_dir() else []
         for path in (named, *others):
-            if path.is_file() and _begins_as_bundle(path) and _find_list(path) is not None:
+            begins_so = path.is_file() and read_head(path, 64).lstrip().lower().startswith(b"# bundle file")
+            if begins_so and _find_list(path) is not None:
                 return path
     return None
-
-
-def _begins_as_bundle(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            return file.read(64).removeprefix(b"\xef\xbb\xbf").lstrip().lower().startswith(b"# bundle file")
-    except OSError:
-        return False
 
 
 def _find_list(path: Path) -> Path | None:
@@ -59,11 +54,8 @@ def _find_list(path: Path) -> Path | None:
     stems = list(dict.fromkeys([path.stem, path.stem.removesuffix(".bundle")]))
     names = [f"{stem}{end}" for stem in stems for end in (".list.txt", "_list.txt", "-list.txt", ".lst")]
     names += ["list.txt", "list_imgs.txt", "list.orig.txt", "imagelist.txt", "list.lst"]
-    for folder in (path.parent, path.parent.parent):
-        for name in names:
-            if (folder / name).is_file():
-                return folder / name
-    return None
+    places = (folder / name for folder in (path.parent, path.parent.parent) for name in names)
+    return next((place for place in places if place.is_file()), None)
 
 
 def read_bundler(path: Path) -> Calibration:
@@ -113,11 +105,7 @@ def read_bundler(path: Path) -> Calibration:
             lost.append(name)
         else:
             entries.append(entry)
-    problems = (
-        [f"{count_phrase(lost, 'camera was', 'cameras were')} not registered by Bundler: {list_names(lost)}"]
-        if lost
-        else []
-    )
+    problems = describe(lost, "camera was", "cameras were", "not registered by Bundler")
     return Calibration(path, "bundler", tuple(entries), tuple(errors), tuple(problems))
 
 
@@ -138,9 +126,8 @@ def _read_lines(path: Path) -> Iterator[tuple[int, str]]:
             while line := file.readline(BUNDLER_MAX_LINE_CHARACTERS):
                 number += 1
                 if len(line) >= BUNDLER_MAX_LINE_CHARACTERS:
-                    raise damaged_error(
-                        path, f"line {number} has {BUNDLER_MAX_LINE_CHARACTERS} characters or more", "name a bundle.out"
-                    )
+                    long = f"line {number} has {BUNDLER_MAX_LINE_CHARACTERS} characters or more"
+                    raise damaged_error(path, long, "name a bundle.out")
                 if stripped := line.strip():
                     yield number, stripped
     except OSError as error:
@@ -150,9 +137,7 @@ def _read_lines(path: Path) -> Iterator[tuple[int, str]]:
 def _parse_entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry | None:
     """The camera of five lines; None where it was not registered."""
     label = f"camera {escape_name(name)}"
-    rows = [
-        parse_numbers(line.split(), 3, f"line {number} of {label} ({excerpt(line)})", path) for number, line in lines
-    ]
+    rows = [parse_numbers(line.split(), 3, f"line {n} of {label} ({excerpt(line)})", path) for n, line in lines]
     (focal, k1, k2), R, t = rows[0], np.stack(rows[1:4]), rows[4]
     if focal == 0:
         return None
@@ -160,7 +145,5 @@ def _parse_entry(lines: list[tuple[int, str]], name: str, path: Path) -> Entry |
     check_lens([k1, k2], label, path)
     lens = Lens("brown", (float(k1), float(k2), 0.0, 0.0, 0.0))
     intrinsics = Intrinsics(None, None, (float(focal), float(focal)), None, (None, None))
-    with np.errstate(over="ignore", invalid="ignore"):
-        centre = -R.T @ t
-    check_finite([centre], label, path)
+    centre = camera_centre(R, t, label, path)
     return Entry(name, label, intrinsics, BUNDLER_TO_OPENCV_AXES @ R, centre, None if lens.is_identity else lens)

@@ -276,20 +276,17 @@ def _read_cameras_text(path: Path) -> dict[int, tuple[Intrinsics, Lens | None]]:
         if not line or line.startswith("#"):
             continue
         words = line.split()
-        if len(words) < 4:
-            raise _line_error(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS")
         try:
-            camera, width, height = int(words[0]), int(words[2]), int(words[3])
+            camera, model, width, height = int(words[0]), words[1], int(words[2]), int(words[3])
             parameters = tuple(float(word) for word in words[4:])
-        except ValueError:
+        except (ValueError, IndexError):
             raise _line_error(path, number, "expected CAMERA_ID MODEL WIDTH HEIGHT PARAMS") from None
-        if words[1] not in COLMAP_MODELS:
-            raise _unread_model_error(words[1], camera, path)
-        if len(parameters) != COLMAP_MODELS[words[1]][1]:
-            raise _line_error(
-                path, number, f"{words[1]} has {COLMAP_MODELS[words[1]][1]} parameters, not {len(parameters)}"
-            )
-        cameras[camera] = _make_intrinsics(words[1], width, height, parameters, path, camera)
+        if model not in COLMAP_MODELS:
+            raise _unread_model_error(model, camera, path)
+        count = COLMAP_MODELS[model][1]
+        if len(parameters) != count:
+            raise _line_error(path, number, f"{model} has {count} parameters, not {len(parameters)}")
+        cameras[camera] = _make_intrinsics(model, width, height, parameters, path, camera)
     return cameras
 
 
@@ -309,6 +306,5 @@ def _read_images_text(path: Path) -> Iterator[_ImageRecord]:
         yield _ImageRecord(values[:4], values[4:], camera, name)
         number, line = next(lines, (number + 1, ""))
         if len(line.split()) % 3:
-            raise _line_error(
-                path, number, "expected POINTS2D of the image above, as X Y POINT3D_ID (an empty line if none)"
-            )
+            expected = "expected POINTS2D of the image above, as X Y POINT3D_ID (an empty line if none)"
+            raise _line_error(path, number, expected)

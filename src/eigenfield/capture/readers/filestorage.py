@@ -18,7 +18,7 @@ import numpy as np
 import yaml
 
 from eigenfield.capture.calibration import escape_name
-from eigenfield.capture.readers.text import damaged_error, excerpt, read_text
+from eigenfield.capture.readers.text import damaged_error, excerpt, read_head, read_text
 from eigenfield.capture.readers.xml_tree import load_xml
 
 Tree = dict[str, Any]
@@ -60,12 +60,8 @@ def load_storage(path: Path) -> Tree:
 
 def is_storage(path: Path) -> bool:
     """Whether a file begins as OpenCV begins its files."""
-    try:
-        with path.open("rb") as file:
-            head = file.read(512)
-    except OSError:
-        return False
-    return head.removeprefix(b"\xef\xbb\xbf").startswith(b"%YAML") or b"<opencv_storage" in head
+    head = read_head(path, 512)
+    return head.startswith(b"%YAML") or b"<opencv_storage" in head
 
 
 def _with_matrices(node: Any, depth: int) -> Any:
@@ -141,9 +137,8 @@ def _parse_words(source: str | None) -> list[Any]:
 
 def _from_yaml(source: str) -> Any:
     """The documents of a stream as one: OpenCV appends another to a file that is there."""
-    source = (
-        STORAGE_YAML_HEAD.sub("", source).encode("utf-8", "surrogateescape").decode("utf-8", "replace").expandtabs(4)
-    )
+    source = STORAGE_YAML_HEAD.sub("", source).encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+    source = source.expandtabs(4)
     try:
         try:
             documents = _parse_documents(STORAGE_FLOW_KEY.sub(r"\1 ", source))

@@ -13,6 +13,7 @@ from __future__ import annotations
 import logging
 import math
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -157,26 +158,20 @@ def read_parameters(path: Path) -> HciParameters:
     """A parameters.cfg; unknown keys are skipped. CaptureError `calibration-damaged` and as `read_text`."""
     values = _parse_values(read_text(path, HCI_MAX_PARAMETERS_BYTES))
 
-    def number(section: str, key: str) -> float:
+    def number(section: str, key: str, fits: Callable[[float], bool] = lambda value: True) -> float:
         try:
             value = float(values[section, key])
         except (KeyError, ValueError):
             raise _damaged_error(path, f"{key} in [{section}] is no number or absent") from None
-        if not abs(value) <= CALIBRATION_MAX_MAGNITUDE:
+        if not (abs(value) <= CALIBRATION_MAX_MAGNITUDE and fits(value)):
             raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
         return value
 
     def positive(section: str, key: str) -> float:
-        value = number(section, key)
-        if not value > 0:
-            raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
-        return value
+        return number(section, key, lambda value: value > 0)
 
     def whole(section: str, key: str, limit: int) -> int:
-        value = number(section, key)
-        if not (1 <= value <= limit and value == round(value)):
-            raise _damaged_error(path, f"{key} in [{section}] is {value:g}")
-        return int(value)
+        return int(number(section, key, lambda value: 1 <= value <= limit and value == round(value)))
 
     width = whole("intrinsics", "image_resolution_x_px", CALIBRATION_MAX_SIDE_PIXELS)
     height = whole("intrinsics", "image_resolution_y_px", CALIBRATION_MAX_SIDE_PIXELS)

@@ -10,19 +10,35 @@ appendix "Camera models": fx = f + b1, fy = f, skew b2; **p1 and p2 are exchange
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from xml.etree.ElementTree import Element
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.capture.calibration import CALIBRATION_MAX_MAGNITUDE, Calibration, Entry, Intrinsics, escape_name
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.calibration import (
+    CALIBRATION_MAX_MAGNITUDE,
+    Calibration,
+    Entry,
+    Intrinsics,
+    escape_name,
+    or_error,
+    read_each,
+)
+from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.skew import SKEW_MAX_RATIO, SKEW_NEGLIGIBLE_RATIO
-from eigenfield.capture.readers.text import check_finite, check_lens, check_size, damaged_error, excerpt, parse_numbers
+from eigenfield.capture.readers.text import (
+    check_finite,
+    check_lens,
+    check_size,
+    damaged_error,
+    excerpt,
+    parse_numbers,
+    read_head,
+)
 from eigenfield.capture.readers.xml_tree import load_xml
 from eigenfield.core.errors import CaptureError
 
@@ -59,18 +75,10 @@ class _Frame:
 def find_metashape(folder: Path) -> Path | None:
     """A Metashape camera file in a folder: `cameras.xml` first, then the first `*.xml` that begins as one."""
     for path in (*(folder / name for name in METASHAPE_FILES), *sorted(folder.glob("*.xml"))):
-        if path.is_file() and _begins_as_document(path):
+        head = read_head(path, METASHAPE_HEAD_BYTES) if path.is_file() else b""
+        if b"<document" in head and b"<chunk" in head:
             return path
     return None
-
-
-def _begins_as_document(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            head = file.read(METASHAPE_HEAD_BYTES)
-    except OSError:
-        return False
-    return b"<document" in head and b"<chunk" in head
 
 
 def read_metashape(path: Path) -> Calibration:
@@ -87,17 +95,16 @@ def read_metashape(path: Path) -> Calibration:
     usable, left_out = _split_usable(cameras, frames)
     sensors = {sensor.get("id", ""): sensor for sensor in chunk.iterfind("sensors/sensor")}
     lenses: dict[str, tuple[Intrinsics, Lens | None] | CaptureError] = {}
-    entries, errors = [], []
-    for camera in usable:
+
+    def make_entry(camera: Element) -> Entry:
         number = camera.get("sensor_id", next(iter(sensors)) if len(sensors) == 1 else "")
         if number not in lenses:
-            lenses[number] = _read_intrinsics(sensors.get(number), number, path)
-        try:
-            entries.append(_make_entry(camera, lenses[number], _frame_of(camera, frames), path))
-        except CaptureError as error:
-            errors.append(error)
+            lenses[number] = or_error(partial(_read_calibration, number=number, path=path))(sensors.get(number))
+        return _make_entry(camera, lenses[number], _frame_of(camera, frames), path)
+
+    entries, errors = read_each(make_entry, usable)
     entries, moved = _shift_to_origin(entries)
-    return Calibration(path, "metashape", tuple(entries), tuple(errors), (*problems, *left_out, *moved))
+    return Calibration(path, "metashape", entries, errors, (*problems, *left_out, *moved))
 
 
 def _find_chunk(root: Element, path: Path) -> tuple[Element, list[str]]:
@@ -124,20 +131,14 @@ def _split_usable(cameras: list[Element], frames: dict[str, _Frame]) -> tuple[li
     if len(components) > 1 and not all(component in frames for component in components):
         largest = max(components, key=lambda component: components[component])
         apart = [c for c in aligned if c.get("component_id", "") != largest]
-        problems += _describe_cameras(
-            apart, f"in another component than the largest ({excerpt(largest)}) without a common frame"
-        )
+        where = f"in another component than the largest ({excerpt(largest)}) without a common frame"
+        problems += _describe_cameras(apart, where)
         aligned = [c for c in aligned if c.get("component_id", "") == largest]
     return aligned, problems
 
 
 def _describe_cameras(cameras: list[Element], what: str) -> list[str]:
-    if not cameras:
-        return []
-    return [
-        f"{count_phrase(cameras, 'camera is', 'cameras are')} {what}: "
-        f"{list_names([_camera_label(camera) for camera in cameras])}"
-    ]
+    return describe([_camera_label(camera) for camera in cameras], "camera is", "cameras are", what)
 
 
 def _read_frames(chunk: Element, path: Path) -> dict[str, _Frame]:
@@ -168,9 +169,8 @@ def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
             scale = float(np.cbrt(np.linalg.det(linear)))
     else:
         parts = {part.tag: (part.text or "").split() for part in transform}
-        linear = parse_numbers(parts.get("rotation", list("100010001")), 9, f"the rotation of {label}", path).reshape(
-            3, 3
-        )
+        words = parts.get("rotation", list("100010001"))
+        linear = parse_numbers(words, 9, f"the rotation of {label}", path).reshape(3, 3)
         shift = parse_numbers(parts.get("translation", list("000")), 3, f"the translation of {label}", path)
         scale = float(parse_numbers(parts.get("scale", ["1"]), 1, f"the scale of {label}", path)[0])
         with np.errstate(all="ignore"):
@@ -182,9 +182,8 @@ def _read_frame(transform: Element, label: str, path: Path) -> _Frame:
             rotation @ rotation.T, np.eye(3), atol=METASHAPE_ROTATION_TOLERANCE
         )
     if not fits:
-        raise damaged_error(
-            path, f"the transform of {label} is not a rotation, a shift and a positive scale", "mend it"
-        )
+        message = f"the transform of {label} is not a rotation, a shift and a positive scale"
+        raise damaged_error(path, message, "mend it")
     return _Frame(rotation, shift, scale)
 
 
@@ -215,7 +214,7 @@ def _make_entry(
     return Entry(name.replace("\\", "/"), label, sensor[0], axes.T, centre, sensor[1])
 
 
-def _shift_to_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
+def _shift_to_origin(entries: tuple[Entry, ...]) -> tuple[tuple[Entry, ...], list[str]]:
     """Shift georeferenced cameras, millions of metres from the origin, to it: there float32 resolves half metres."""
     if len(entries) < 2:
         return entries, []
@@ -225,7 +224,7 @@ def _shift_to_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
     if not 0 < extent * METASHAPE_FAR_EXTENTS < np.abs(middle).max():
         return entries, []
     shift = np.round(middle)
-    moved = [replace(entry, centre=entry.centre - shift) for entry in entries]
+    moved = tuple(replace(entry, centre=entry.centre - shift) for entry in entries)
     where = ", ".join(f"{-v:.0f}" for v in shift)
     return moved, [
         f"the cameras stand {np.linalg.norm(middle):.3g} units from the origin (georeferenced) and were moved by "
@@ -233,30 +232,16 @@ def _shift_to_origin(entries: list[Entry]) -> tuple[list[Entry], list[str]]:
     ]
 
 
-def _read_intrinsics(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None] | CaptureError:
-    """Of one sensor, or why not: an error for each of its cameras."""
+def _read_calibration(sensor: Element | None, number: str, path: Path) -> tuple[Intrinsics, Lens | None]:
     label = f"sensor {excerpt(number)}"
-    try:
-        if sensor is None:
-            raise damaged_error(path, f"{label} is not listed", "export the cameras again")
-        return _read_calibration(sensor, label, path)
-    except CaptureError as error:
-        return error
-
-
-def _adjusted_first(sensor: Element) -> Iterator[Element]:
-    """The adjusted one first."""
+    if sensor is None:
+        raise damaged_error(path, f"{label} is not listed", "export the cameras again")
     calibrations = sensor.findall("calibration")
-    yield from (c for c in calibrations if c.get("class") == "adjusted")
-    yield from (c for c in calibrations if c.get("class") != "adjusted")
-
-
-def _read_calibration(sensor: Element, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
-    calibration = next(_adjusted_first(sensor), None)
-    if calibration is None:
+    if not calibrations:
         raise CaptureError(
             "camera-model", f"{label} has no calibration", path=path, remedy="align the photographs in Metashape first"
         )
+    calibration = next((c for c in calibrations if c.get("class") == "adjusted"), calibrations[0])
     kind = calibration.get("type", sensor.get("type", "frame")).lower()
     if kind not in METASHAPE_LENS_MODELS:
         raise CaptureError(

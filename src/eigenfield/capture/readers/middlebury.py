@@ -9,11 +9,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name, read_each
 from eigenfield.capture.readers.skew import remove_skew
-from eigenfield.capture.readers.text import check_finite, damaged_error, excerpt, parse_numbers, read_text
+from eigenfield.capture.readers.text import (
+    camera_centre,
+    check_finite,
+    damaged_error,
+    excerpt,
+    parse_numbers,
+    read_head,
+    read_text,
+)
 from eigenfield.core.errors import CaptureError
 
 MIDDLEBURY_SUFFIX = "_par.txt"
@@ -23,18 +29,8 @@ MIDDLEBURY_HEAD_BYTES = 32  # in which the count must stand
 
 def find_middlebury(folder: Path) -> Path | None:
     """The first `*_par.txt` of a folder that begins with a count."""
-    for path in sorted(folder.glob(f"*{MIDDLEBURY_SUFFIX}")):
-        if path.is_file() and _begins_with_count(path):
-            return path
-    return None
-
-
-def _begins_with_count(path: Path) -> bool:
-    try:
-        with path.open("rb") as file:
-            return file.read(MIDDLEBURY_HEAD_BYTES).removeprefix(b"\xef\xbb\xbf").split(b"\n")[0].strip().isdigit()
-    except OSError:
-        return False
+    paths = (path for path in sorted(folder.glob(f"*{MIDDLEBURY_SUFFIX}")) if path.is_file())
+    return next((p for p in paths if read_head(p, MIDDLEBURY_HEAD_BYTES).split(b"\n")[0].strip().isdigit()), None)
 
 
 def read_middlebury(path: Path) -> Calibration:
@@ -70,8 +66,5 @@ def _parse_entry(line: str, number: int, path: Path) -> Entry:
     check_finite([values], label, path)
     K, R, t = values[:9].reshape(3, 3), values[9:18].reshape(3, 3), values[18:]
     K, lens = remove_skew(K, label, path)
-    intrinsics = Intrinsics(None, None, (K[0, 0], K[1, 1]), None, (K[0, 2], K[1, 2]))
-    with np.errstate(over="ignore", invalid="ignore"):
-        centre = -R.T @ t
-    check_finite([centre], label, path)
-    return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)
+    centre = camera_centre(R, t, label, path)
+    return Entry(name.replace("\\", "/"), label, Intrinsics.of_matrix(K), R, centre, lens)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +19,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, Entry, Intrinsics, escape_name
-from eigenfield.capture.messages import count_phrase, list_names
+from eigenfield.capture.messages import describe
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.readers.by_order import photographs_in_order
 from eigenfield.capture.readers.filestorage import STORAGE_EXTENSIONS, Tree, is_storage, load_storage
 from eigenfield.capture.readers.skew import remove_skew
-from eigenfield.capture.readers.text import check_finite, check_lens, check_size, damaged_error, excerpt, files_in
+from eigenfield.capture.readers.text import (
+    camera_centre,
+    check_finite,
+    check_lens,
+    check_size,
+    damaged_error,
+    excerpt,
+    files_in,
+)
 from eigenfield.core.errors import CaptureError
 
 OPENCV_FOLDERS = ("", "calibration", "calib", "cameras", "intri_extri")
@@ -60,19 +67,11 @@ OPENCV_POSE_ROLES = ("rotation", "translation", "extrinsic")
 OPENCV_MAX_FILES = 2000
 
 
-@dataclass
-class _CameraValues:
-    """The values of one camera in a file.
+Values = dict[str, Any]  # of one camera in a file, by role, as they stand
 
-    Attributes:
-        values: By role, as they stand.
-    """
 
-    values: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def has_pose(self) -> bool:
-        return "extrinsic" in self.values or {"rotation", "translation"} <= self.values.keys()
+def _has_pose(values: Values) -> bool:
+    return "extrinsic" in values or {"rotation", "translation"} <= values.keys()
 
 
 def find_opencv(folder: Path) -> Path | None:
@@ -85,7 +84,7 @@ def find_opencv(folder: Path) -> Path | None:
                 cameras = _load_cameras(path)
             except CaptureError:
                 continue
-            posed = [key for key, found in cameras.items() if found.has_pose and "matrix" in found.values]
+            posed = [key for key, found in cameras.items() if _has_pose(found) and "matrix" in found]
             if len(posed) > 1 and not _is_stereo(cameras):
                 return path
             if posed == [""] or (posed and len(cameras) == 1):
@@ -124,7 +123,7 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
     for file in files:
         try:
             cameras = _load_cameras(file)
-            posed += sum("views" in found.values or found.has_pose for found in cameras.values())
+            posed += sum("views" in found or _has_pose(found) for found in cameras.values())
             root = photographs or (path if path.is_dir() else path.parent)
             poses = list(_posed_cameras(cameras, file, root))
         except CaptureError as error:
@@ -137,11 +136,9 @@ def read_opencv(path: Path, photographs: Path | None = None) -> Calibration:
                 entries.append(_make_entry(name, found, file))
             except CaptureError as error:
                 errors.append(error)
-        without = [key for key, found in cameras.items() if not found.has_pose and "matrix" in found.values]
-        if poses and without and not _is_stereo(cameras) and not any("views" in f.values for f in cameras.values()):
-            problems.append(
-                f"{count_phrase(without, 'camera has', 'cameras have')} no pose in {file.name}: {list_names(without)}"
-            )
+        without = [key for key, found in cameras.items() if not _has_pose(found) and "matrix" in found]
+        if poses and not _is_stereo(cameras) and not any("views" in found for found in cameras.values()):
+            problems += describe(without, "camera has", "cameras have", f"no pose in {file.name}")
     if not entries and not errors and not posed:
         raise CaptureError(
             "opencv-poses",
@@ -159,7 +156,7 @@ def read_opencv_intrinsics(path: Path) -> dict[str, tuple[Intrinsics, Lens | Non
     it holds no camera matrix, and `camera-...` and `lens` for a camera that cannot be.
     """
     cameras = _load_cameras(path)
-    found = {name: camera for name, camera in cameras.items() if "matrix" in camera.values}
+    found = {name: camera for name, camera in cameras.items() if "matrix" in camera}
     if not found:
         raise CaptureError(
             "calibration-empty",
@@ -185,14 +182,13 @@ def _without_companions(files: list[Path]) -> list[Path]:
     return kept
 
 
-def _load_cameras(path: Path) -> dict[str, _CameraValues]:
+def _load_cameras(path: Path) -> dict[str, Values]:
     """By name, in the file's order; of the file itself and the one that holds the other half (intri and extri)."""
     cameras = _cameras_by_name(load_storage(path))
     other = _find_companion(path)
-    if other is not None and not (cameras and all(c.has_pose and "matrix" in c.values for c in cameras.values())):
+    if other is not None and not (cameras and all(_has_pose(c) and "matrix" in c for c in cameras.values())):
         for name, found in _cameras_by_name(load_storage(other)).items():
-            values = cameras.setdefault(name, _CameraValues()).values
-            cameras[name].values = {**found.values, **values}
+            cameras[name] = {**found, **cameras.get(name, {})}
     return cameras
 
 
@@ -204,24 +200,17 @@ def _find_companion(path: Path) -> Path | None:
     return None
 
 
-def _cameras_by_name(tree: Tree) -> dict[str, _CameraValues]:
-    cameras: dict[str, _CameraValues] = {}
+def _cameras_by_name(tree: Tree) -> dict[str, Values]:
+    cameras: dict[str, Values] = {}
     for name, mapping in _walk_mappings(tree, ""):
         for key, value in mapping.items():
             role, ending = _match_role(key, value)
             if role is not None:
                 place = f"{name}_{ending}" if name and ending else name or ending
-                cameras.setdefault(place, _CameraValues()).values.setdefault(role, value)
-    shared = cameras.get("", _CameraValues()).values
-    for found in cameras.values():
-        for role in ("width", "height", "size", "model"):
-            if role in shared:
-                found.values.setdefault(role, shared[role])
-    return {
-        name: found
-        for name, found in cameras.items()
-        if {"matrix", "rotation", "translation", "extrinsic", "views"} & found.values.keys()
-    }
+                cameras.setdefault(place, {}).setdefault(role, value)
+    shared = {r: v for r, v in cameras.get("", {}).items() if r in ("width", "height", "size", "model")}
+    telling = {"matrix", "rotation", "translation", "extrinsic", "views"}
+    return {name: {**shared, **found} for name, found in cameras.items() if telling & found.keys()}
 
 
 def _walk_mappings(node: Any, name: str, depth: int = 0) -> Iterator[tuple[str, Mapping[str, Any]]]:
@@ -289,72 +278,64 @@ def _has_role_shape(role: str, array: NDArray[np.float64]) -> bool:
     return array.size in (0, 4, 5, 8, 12, 14)
 
 
-def _is_stereo(cameras: Mapping[str, _CameraValues]) -> bool:
+def _is_stereo(cameras: Mapping[str, Values]) -> bool:
     """Two camera matrices and one R, T from the first to the second (whose own R1, R2 are rectifying rotations)."""
-    matrices = {name.lower() for name, found in cameras.items() if "matrix" in found.values}
-    return matrices in OPENCV_STEREO_PAIRS and "" in cameras and cameras[""].has_pose
+    matrices = {name.lower() for name, found in cameras.items() if "matrix" in found}
+    return matrices in OPENCV_STEREO_PAIRS and _has_pose(cameras.get("", {}))
 
 
-def _posed_cameras(cameras: dict[str, _CameraValues], path: Path, root: Path) -> Iterator[tuple[str, _CameraValues]]:
+def _posed_cameras(cameras: dict[str, Values], path: Path, root: Path) -> Iterator[tuple[str, Values]]:
     """The photograph's name and the camera, for each that has a pose."""
     if _is_stereo(cameras):
         pair = sorted((name for name in cameras if name), key=str.lower)
         names = photographs_in_order(root, 2, path)
         still = {"rotation": np.eye(3), "translation": np.zeros(3)}
-        for name, file, pose in zip(pair, names, (still, cameras[""].values), strict=True):
-            intrinsics = {role: value for role, value in cameras[name].values.items() if role not in OPENCV_POSE_ROLES}
-            yield (
-                file,
-                _CameraValues(
-                    {**intrinsics, **{role: value for role, value in pose.items() if role in OPENCV_POSE_ROLES}}
-                ),
-            )
+        for name, file, pose in zip(pair, names, (still, cameras[""]), strict=True):
+            intrinsics = {role: value for role, value in cameras[name].items() if role not in OPENCV_POSE_ROLES}
+            yield file, intrinsics | {role: value for role, value in pose.items() if role in OPENCV_POSE_ROLES}
         return
     for name, found in cameras.items():
-        if "views" in found.values and not found.has_pose and "matrix" in found.values:
-            views = _as_array(found.values["views"])
+        if "views" in found and not _has_pose(found) and "matrix" in found:
+            views = _as_array(found["views"])
             assert views is not None
             for file, row in zip(photographs_in_order(root, len(views), path), views, strict=True):
-                yield file, _CameraValues({**found.values, "rotation": row[:3], "translation": row[3:]})
-        elif found.has_pose and "matrix" in found.values:
+                yield file, {**found, "rotation": row[:3], "translation": row[3:]}
+        elif _has_pose(found) and "matrix" in found:
             yield name or path.stem, found
 
 
 # one camera
 
 
-def _make_entry(name: str, found: _CameraValues, path: Path) -> Entry:
+def _make_entry(name: str, found: Values, path: Path) -> Entry:
     label = f"camera {escape_name(name)}"
     if "\0" in name:
         raise damaged_error(path, f"{label} is no name of a file", "mend or remove it")
     intrinsics, lens = _read_intrinsics(found, label, path)
     R, t = _read_pose(found, label, path)
     check_finite([R, t], label, path)
-    with np.errstate(over="ignore", invalid="ignore"):
-        centre = -R.T @ t
-    check_finite([centre], label, path)
+    centre = camera_centre(R, t, label, path)
     return Entry(name.replace("\\", "/"), label, intrinsics, R, centre, lens)
 
 
-def _read_pose(found: _CameraValues, label: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if {"rotation", "translation"} <= found.values.keys():
-        rotation, translation = _as_array(found.values["rotation"]), _as_array(found.values["translation"])
+def _read_pose(found: Values, label: str, path: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if {"rotation", "translation"} <= found.keys():
+        rotation, translation = _as_array(found["rotation"]), _as_array(found["translation"])
         assert rotation is not None and translation is not None
         check_finite([rotation, translation], label, path)
         if rotation.size == 3:
             rotation = np.asarray(cv2.Rodrigues(rotation.reshape(3))[0], np.float64)
         return rotation.reshape(3, 3), translation.reshape(3)
-    extrinsic = _as_array(found.values["extrinsic"])
+    extrinsic = _as_array(found["extrinsic"])
     assert extrinsic is not None
     if len(extrinsic) == 4 and not np.allclose(extrinsic[3], [0, 0, 0, 1], atol=1e-6):
-        raise damaged_error(
-            path, f"the last row of the extrinsic matrix of {label} is not 0 0 0 1", "mend or remove it"
-        )
+        message = f"the last row of the extrinsic matrix of {label} is not 0 0 0 1"
+        raise damaged_error(path, message, "mend or remove it")
     return extrinsic[:3, :3], extrinsic[:3, 3]
 
 
-def _read_intrinsics(found: _CameraValues, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
-    matrix = _as_array(found.values["matrix"])
+def _read_intrinsics(found: Values, label: str, path: Path) -> tuple[Intrinsics, Lens | None]:
+    matrix = _as_array(found["matrix"])
     assert matrix is not None
     K = matrix.reshape(3, 3)
     check_finite([K], label, path)
@@ -367,14 +348,11 @@ def _read_intrinsics(found: _CameraValues, label: str, path: Path) -> tuple[Intr
             path=path,
             remedy="mend it",
         )
-    principal = (float(K[0, 2]) + 0.5, float(K[1, 2]) + 0.5)
-    focal = (float(K[0, 0]), float(K[1, 1]))
-    width, height = _read_size(found, label, path)
-    return Intrinsics(width, height, focal, None, principal), lens or skewed
+    K[:2, 2] += 0.5
+    return Intrinsics.of_matrix(K, *_read_size(found, label, path)), lens or skewed
 
 
-def _read_size(found: _CameraValues, label: str, path: Path) -> tuple[int | None, int | None]:
-    values = found.values
+def _read_size(values: Values, label: str, path: Path) -> tuple[int | None, int | None]:
     if "width" in values and "height" in values:
         return check_size(values["width"], values["height"], label, path)
     if "size" in values:
@@ -385,11 +363,11 @@ def _read_size(found: _CameraValues, label: str, path: Path) -> tuple[int | None
     return None, None
 
 
-def _make_lens(found: _CameraValues, label: str, path: Path) -> Lens | None:
-    array = _as_array(found.values["distortion"]) if "distortion" in found.values else None
+def _make_lens(found: Values, label: str, path: Path) -> Lens | None:
+    array = _as_array(found["distortion"]) if "distortion" in found else None
     c = () if array is None else tuple(array.reshape(-1).tolist())
     check_lens(c, label, path)
-    if _is_fisheye(found.values.get("model"), label, path):
+    if _is_fisheye(found.get("model"), label, path):
         if len(c) not in (0, 4):
             raise CaptureError("lens", f"{label} is a fisheye with {len(c)} coefficients", path=path, remedy="mend it")
         return Lens("fisheye", c or (0.0,) * 4)

@@ -9,7 +9,6 @@ run to the left (B falls). World: metres, x right, y down, z forward; the origin
 from __future__ import annotations
 
 import re
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,9 +48,7 @@ def read_positions(folder: Path, options: OpenOptions) -> Arrangement:
         files, [int(m[1]) for _, m in fitting], [int(m[2]) for _, m in fitting], options, folder
     )  # fmt: skip
     down, right = values[:, 0] / 1000, values[:, 1] / 1000
-    layout = replace(
-        with_measured_positions(layout, right.tolist(), (-down).tolist()), signs=True, rectified=False, exact=True
-    )
+    layout = with_measured_positions(layout, right, -down, signs=True, rectified=False, exact=True)
     for path, (lens, sensor) in zip(files, values[:, 2:], strict=True):
         if not (lens > 0 and sensor > 0):
             raise CaptureError(

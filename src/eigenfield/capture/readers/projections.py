@@ -54,10 +54,7 @@ def _is_matrix(path: Path) -> bool:
 
 
 def _photograph_name(path: Path) -> str:
-    for suffix in PROJECTION_SUFFIXES:
-        if path.name.endswith(suffix):
-            return path.name.removesuffix(suffix)
-    return path.stem
+    return next((path.name.removesuffix(end) for end in PROJECTION_SUFFIXES if path.name.endswith(end)), path.stem)
 
 
 def read_projections(path: Path) -> Calibration:
@@ -93,10 +90,9 @@ def _read_entry(path: Path) -> Entry:
     K, R, centre = decompose_projection(P, label, path)
     check_finite([K, centre], label, path)
     K, lens = remove_skew(K, label, path)
-    focal, principal = (float(K[0, 0]), float(K[1, 1])), (float(K[0, 2]), float(K[1, 2]))
     visualised = path.parent.name == "txt" and (path.parent.parent / PROJECTION_PMVS_FOLDER).is_dir()
     file = f"{PROJECTION_PMVS_FOLDER}/{name}" if visualised else name
-    return Entry(file, label, Intrinsics(None, None, focal, None, principal), R, centre, lens)
+    return Entry(file, label, Intrinsics.of_matrix(K), R, centre, lens)
 
 
 def decompose_projection(

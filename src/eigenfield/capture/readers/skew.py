@@ -36,12 +36,8 @@ def remove_skew(K: NDArray[np.float64], label: str, path: Path) -> tuple[NDArray
     with np.errstate(all="ignore"):
         K = K / K[2, 2]
     if not np.isfinite(K).all() or not (K[0, 0] > 0 and K[1, 1] > 0):
-        raise CaptureError(
-            "camera-focal",
-            f"{label} has a focal length of {K[0, 0]:g} x {K[1, 1]:g}",
-            path=path,
-            remedy="mend its entry",
-        )
+        message = f"{label} has a focal length of {K[0, 0]:g} x {K[1, 1]:g}"
+        raise CaptureError("camera-focal", message, path=path, remedy="mend its entry")
     if max(abs(K[2, 0]), abs(K[2, 1])) > SKEW_ROW_TOLERANCE or abs(K[1, 0]) > SKEW_ROW_TOLERANCE * K[1, 1]:
         raise damaged_error(path, f"the camera matrix of {label} is not upper triangular with a last row of 0 0 1")
     with np.errstate(all="ignore"):

@@ -59,7 +59,7 @@ def read_stanford(folder: Path, options: OpenOptions) -> Arrangement:
         else:
             v, u = (np.array([float(f[i]) for f in fields]) for i in (2, 3))
             _check_order(layout.rows, layout.columns, v, u, folder)
-            layout = replace(with_measured_positions(layout, u.tolist(), (-v).tolist()), signs=True)
+            layout = with_measured_positions(layout, u, -v, signs=True)
     return Arrangement("stanford", files, layout, tuple(problems), tuple(others))
 
 

@@ -77,6 +77,4 @@ def _read_entry(path: Path) -> Entry:
     width, height = check_size(size[0], size[1], label, path)
     if straight[0, 2] > 10 * width or straight[1, 2] > 10 * height:
         raise damaged_error(path, f"the principal point of {label} is far outside its {width}x{height} pixels")
-    principal = (float(straight[0, 2]), float(straight[1, 2]))
-    intrinsics = Intrinsics(width, height, (float(straight[0, 0]), float(straight[1, 1])), None, principal)
-    return Entry(name, label, intrinsics, R.reshape(3, 3).T, centre, lens)
+    return Entry(name, label, Intrinsics.of_matrix(straight, width, height), R.reshape(3, 3).T, centre, lens)

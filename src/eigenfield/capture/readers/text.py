@@ -45,6 +45,15 @@ def read_text(path: Path, limit: int = CALIBRATION_MAX_BYTES) -> str:
     return decoded.replace("\r\n", "\n").replace("\r", "\n")
 
 
+def read_head(path: Path, size: int) -> bytes:
+    """The first bytes of a file, without a byte order mark; none where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(size).removeprefix(b"\xef\xbb\xbf")
+    except OSError:
+        return b""
+
+
 def files_in(folder: Path) -> list[Path]:
     """The files of one folder in name order, hidden ones left out; none where it is no folder or cannot be read."""
     try:
@@ -98,15 +107,21 @@ def parse_numbers(words: Sequence[str], count: int, what: str, path: Path) -> ND
 
 def check_finite(values: Iterable[ArrayLike], label: str, path: Path) -> None:
     """CaptureError `camera-not-finite` where a camera holds NaN, infinities, or numbers beyond LARGEST."""
-    if not all(
-        np.isfinite(v).all() and (np.abs(v) <= CALIBRATION_MAX_MAGNITUDE).all() for v in map(np.asarray, values)
-    ):
+    if not all((np.abs(np.asarray(v)) <= CALIBRATION_MAX_MAGNITUDE).all() for v in values):  # False for NaN
         raise CaptureError(
             "camera-not-finite",
             f"{label} has NaN, infinite or huge entries",
             path=path,
             remedy="mend or remove its entry",
         )
+
+
+def camera_centre(R: NDArray[np.float64], t: NDArray[np.float64], label: str, path: Path) -> NDArray[np.float64]:
+    """(3,) the centre -R^T t of a world-to-camera pose; CaptureError as `check_finite`."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        centre: NDArray[np.float64] = -R.T @ t
+    check_finite([centre], label, path)
+    return centre
 
 
 def check_lens(coefficients: Iterable[float], label: str, path: Path) -> None:

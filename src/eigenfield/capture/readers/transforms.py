@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -25,12 +26,12 @@ TRANSFORMS_FILE = "transforms.json"
 TRANSFORMS_MAX_BYTES = 256 * 2**20
 TRANSFORMS_PERSPECTIVE_MODELS = ("PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "OPENCV", "PERSPECTIVE")
 TRANSFORMS_FISHEYE_MODELS = ("OPENCV_FISHEYE",)
-TRANSFORMS_OWN_MODEL = (
-    "EIGENFIELD"  # a lens that no other reader of this format knows: they refuse the name, as they should
-)
+# a lens that no other reader of this format knows: they refuse the name, as they should
+TRANSFORMS_OWN_MODEL = "EIGENFIELD"
 TRANSFORMS_OWN_COEFFICIENTS = {
     "rational": (8, 12, 14), "metashape": (9,), "metashape-equidistant": (9,), "metashape-equisolid": (9,)
 }  # fmt: skip
+Similarity = tuple[NDArray[np.float64], NDArray[np.float64], float]  # rotation, shift, scale
 OPENGL_TO_OPENCV_AXES = np.diag([1.0, -1.0, -1.0])  # OpenGL axes to OpenCV axes
 
 
@@ -83,51 +84,57 @@ def _one_line(error: Exception) -> str:
     return str(error).splitlines()[0][:120] if str(error) else type(error).__name__
 
 
-def _make_entry(
-    top: Mapping[str, Any],
-    frame: Any,
-    number: int,
-    path: Path,
-    undo: tuple[NDArray[np.float64], NDArray[np.float64], float],
-) -> Entry:
-    label = f"frame {number}"
-    if not isinstance(frame, dict):
-        raise CaptureError("frame-not-object", f"{label} is not an object", path=path, remedy="mend or remove it")
-    file = frame.get("file_path")
-    if not isinstance(file, str) or not file or "\0" in file:
-        raise CaptureError("frame-file", f"{label} has no usable file_path", path=path, remedy="mend or remove it")
-    label = f"frame {number} ({escape_name(file)})"
-    mask = frame.get("mask_path")
-    if mask is not None and (not isinstance(mask, str) or "\0" in mask):
-        raise CaptureError(
-            "frame-mask", f"{label} has a mask_path that is no text", path=path, remedy="mend or remove it"
-        )
-    pose = _parse_pose(frame.get("transform_matrix"), f"transform_matrix of {label}", path)
-    intrinsics, lens = _read_intrinsics(top, frame, label, path)
-    rotation, shift, scale = undo
-    with np.errstate(invalid="ignore", over="ignore"):
-        axes = OPENGL_TO_OPENCV_AXES @ (rotation.T @ pose[:, :3]).T
-        centre = rotation.T @ (pose[:, 3] / scale - shift)
-    return Entry(file.replace("\\", "/"), label, intrinsics, axes, centre, lens, mask and mask.replace("\\", "/"))
+@dataclass(frozen=True)
+class _Frame:
+    """One frame, with what it inherits from the top of the file.
 
+    Attributes:
+        own: The frame's own values.
+        top: Those of the file, where the frame has none.
+        label: Names the frame in errors.
+        path: The file, named in errors.
+    """
 
-def _parse_pose(value: Any, what: str, path: Path) -> NDArray[np.float64]:
-    """(3, 4) from nested lists of three or four rows."""
-    rows = value if isinstance(value, list) else []
-    numbers = all(isinstance(row, list) and len(row) == 4 and all(map(_is_number, row)) for row in rows)
-    if len(rows) not in (3, 4) or not numbers:
-        raise CaptureError(
-            "frame-pose", f"{what} is not 3 or 4 rows of 4 numbers", path=path, remedy="mend or remove the entry"
-        )
-    matrix = np.array([[_as_float(v) for v in row] for row in rows])
-    if len(rows) == 4 and not np.allclose(matrix[3], [0, 0, 0, 1], atol=1e-6):
-        raise CaptureError(
-            "frame-pose",
-            f"the last row of the {what} is not 0 0 0 1",
-            path=path,
-            remedy="poses are camera-to-world: mend it",
-        )
-    return matrix[:3]
+    own: Mapping[str, Any]
+    top: Mapping[str, Any]
+    label: str
+    path: Path
+
+    def get(self, key: str, default: Any = None) -> Any:
+        return self.own.get(key, self.top.get(key, default))
+
+    def number(self, key: str) -> float | None:
+        value = self.get(key)
+        if value is None:
+            return None
+        if not _is_number(value):
+            raise self.error("frame-number", f"{key} of {self.label} is not a number")
+        return _as_float(value)
+
+    def length(self, key: str) -> int | None:
+        value = self.number(key)
+        if value is None:
+            return None
+        if not (1 <= value <= CALIBRATION_MAX_SIDE_PIXELS and value == round(value)):
+            message = f"{key} of {self.label} is {value:g}"
+            raise self.error("frame-size", message, "a size is a whole number of pixels")
+        return int(value)
+
+    def pose(self, key: str, what: str) -> NDArray[np.float64]:
+        """(3, 4) from nested lists of three or four rows."""
+        value = self.own.get(key)
+        rows = value if isinstance(value, list) else []
+        numbers = all(isinstance(row, list) and len(row) == 4 and all(map(_is_number, row)) for row in rows)
+        if len(rows) not in (3, 4) or not numbers:
+            raise self.error("frame-pose", f"{what} is not 3 or 4 rows of 4 numbers")
+        matrix = np.array([[_as_float(v) for v in row] for row in rows])
+        if len(rows) == 4 and not np.allclose(matrix[3], [0, 0, 0, 1], atol=1e-6):
+            message = f"the last row of the {what} is not 0 0 0 1"
+            raise self.error("frame-pose", message, "poses are camera-to-world: mend it")
+        return matrix[:3]
+
+    def error(self, code: str, message: str, remedy: str = "mend or remove the entry") -> CaptureError:
+        return CaptureError(code, message, path=self.path, remedy=remedy)
 
 
 def _is_number(value: Any) -> bool:
@@ -141,118 +148,95 @@ def _as_float(value: float) -> float:
         return math.inf
 
 
-def _read_applied_transform(
-    top: Mapping[str, Any], path: Path
-) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+def _make_entry(top: Mapping[str, Any], own: Any, number: int, path: Path, undo: Similarity) -> Entry:
+    frame = _Frame(own if isinstance(own, dict) else {}, top, f"frame {number}", path)
+    if not isinstance(own, dict):
+        raise frame.error("frame-not-object", f"{frame.label} is not an object", "mend or remove it")
+    file = own.get("file_path")
+    if not isinstance(file, str) or not file or "\0" in file:
+        raise frame.error("frame-file", f"{frame.label} has no usable file_path", "mend or remove it")
+    frame = replace(frame, label=f"frame {number} ({escape_name(file)})")
+    mask = own.get("mask_path")
+    if mask is not None and (not isinstance(mask, str) or "\0" in mask):
+        raise frame.error("frame-mask", f"{frame.label} has a mask_path that is no text", "mend or remove it")
+    pose = frame.pose("transform_matrix", f"transform_matrix of {frame.label}")
+    intrinsics, lens = _read_intrinsics(frame), _read_lens(frame)
+    rotation, shift, scale = undo
+    with np.errstate(invalid="ignore", over="ignore"):
+        axes = OPENGL_TO_OPENCV_AXES @ (rotation.T @ pose[:, :3]).T
+        centre = rotation.T @ (pose[:, 3] / scale - shift)
+    mask = mask and mask.replace("\\", "/")
+    return Entry(file.replace("\\", "/"), frame.label, intrinsics, axes, centre, lens, mask)
+
+
+def _read_applied_transform(top: Mapping[str, Any], path: Path) -> Similarity:
     """`applied_transform` and `applied_scale` as rotation Q, shift a and scale s: x_file = s (Q x_world + a)."""
-    scale = _read_number(top, {}, "applied_scale", "the file", path)
-    value = top.get("applied_transform")
-    matrix = np.eye(3, 4) if value is None else _parse_pose(value, "applied_transform", path)
+    file = _Frame(top, {}, "the file", path)
+    scale = file.number("applied_scale")
+    is_given = top.get("applied_transform") is not None
+    matrix = file.pose("applied_transform", "applied_transform") if is_given else np.eye(3, 4)
     total = 1.0 if scale is None else scale
     grown = np.cbrt(np.linalg.det(matrix[:, :3])) if np.isfinite(matrix).all() else 0.0
     if not (grown > 0 and math.isfinite(total) and total > 0) or not np.allclose(
         matrix[:, :3] @ matrix[:, :3].T, grown**2 * np.eye(3), atol=1e-4 * grown**2
     ):
-        raise CaptureError(
-            "applied-transform",
-            "applied_transform and applied_scale are not a rotation, a shift and a positive scale",
-            path=path,
-            remedy="mend or remove them",
-        )
+        message = "applied_transform and applied_scale are not a rotation, a shift and a positive scale"
+        raise file.error("applied-transform", message, "mend or remove them")
     return matrix[:, :3] / grown, matrix[:, 3] / grown, total * float(grown)
 
 
-def _read_number(top: Mapping[str, Any], frame: Mapping[str, Any], key: str, label: str, path: Path) -> float | None:
-    value = frame.get(key, top.get(key))
-    if value is None:
-        return None
-    if not _is_number(value):
-        raise CaptureError(
-            "frame-number", f"{key} of {label} is not a number", path=path, remedy="mend or remove the entry"
-        )
-    return _as_float(value)
-
-
-def _read_intrinsics(
-    top: Mapping[str, Any], frame: Mapping[str, Any], label: str, path: Path
-) -> tuple[Intrinsics, Lens | None]:
-    def number(key: str) -> float | None:
-        return _read_number(top, frame, key, label, path)
-
-    def length(key: str) -> int | None:
-        value = number(key)
-        if value is None:
-            return None
-        if not (1 <= value <= CALIBRATION_MAX_SIDE_PIXELS and value == round(value)):
-            raise CaptureError(
-                "frame-size", f"{key} of {label} is {value:g}", path=path, remedy="a size is a whole number of pixels"
-            )
-        return int(value)
-
-    owner: Mapping[str, Any] = frame if {"fl_x", "fl_y", "camera_angle_x"} & frame.keys() else top
-    fx, fy = (_read_number({}, owner, key, label, path) for key in ("fl_x", "fl_y"))
-    angles = tuple(_read_number({}, owner, key, label, path) for key in ("camera_angle_x", "camera_angle_y"))
+def _read_intrinsics(frame: _Frame) -> Intrinsics:
+    # focal length and angle come from the frame if it has any of them, and are not mixed with those of the file
+    own = {"fl_x", "fl_y", "camera_angle_x"} & frame.own.keys()
+    owner = replace(frame, own=frame.own if own else frame.top, top={})
+    fx, fy = owner.number("fl_x"), owner.number("fl_y")
+    angles = owner.number("camera_angle_x"), owner.number("camera_angle_y")
     focal, angle = None, None
     if fx is not None or fy is not None:
         focal = (fx if fx is not None else fy, fy if fy is not None else fx)
     elif angles[0] is not None:
         if not all(0 < a < math.pi for a in angles if a is not None):
-            raise CaptureError(
-                "frame-angle", f"the camera angles of {label} are not between 0 and pi", path=path, remedy="mend them"
-            )
+            message = f"the camera angles of {frame.label} are not between 0 and pi"
+            raise frame.error("frame-angle", message, "mend them")
         angle = (angles[0], angles[1])
     else:
-        raise CaptureError(
-            "frame-focal",
-            f"{label} has neither fl_x nor camera_angle_x",
-            path=path,
-            remedy="add the focal length, in pixels",
-        )
-    size = (length("w"), length("h"))
-    intrinsics = Intrinsics(*size, focal, angle, (number("cx"), number("cy")))  # type: ignore[arg-type]
-    return intrinsics, _read_lens(top, frame, label, path)
+        message = f"{frame.label} has neither fl_x nor camera_angle_x"
+        raise frame.error("frame-focal", message, "add the focal length, in pixels")
+    size, principal = (frame.length("w"), frame.length("h")), (frame.number("cx"), frame.number("cy"))
+    return Intrinsics(*size, focal, angle, principal)  # type: ignore[arg-type]
 
 
-def _read_lens(top: Mapping[str, Any], frame: Mapping[str, Any], label: str, path: Path) -> Lens | None:
-    model = frame.get("camera_model", top.get("camera_model", "OPENCV"))
+def _read_lens(frame: _Frame) -> Lens | None:
+    model = frame.get("camera_model", "OPENCV")
     if model == TRANSFORMS_OWN_MODEL:
-        return _read_own_lens(frame.get("lens", top.get("lens")), label, path)
-    fisheye = model in TRANSFORMS_FISHEYE_MODELS or bool(frame.get("is_fisheye", top.get("is_fisheye", False)))
+        return _read_own_lens(frame)
+    fisheye = model in TRANSFORMS_FISHEYE_MODELS or bool(frame.get("is_fisheye", False))
     if not fisheye and model not in TRANSFORMS_PERSPECTIVE_MODELS:
-        raise CaptureError(
+        raise frame.error(
             "camera-model",
-            f"{label} has the camera model {model!r}, which is not read",
-            path=path,
-            remedy=f"undistort it to {', '.join(TRANSFORMS_PERSPECTIVE_MODELS[:5])} or {TRANSFORMS_FISHEYE_MODELS[0]}",
+            f"{frame.label} has the camera model {model!r}, which is not read",
+            f"undistort it to {', '.join(TRANSFORMS_PERSPECTIVE_MODELS[:5])} or {TRANSFORMS_FISHEYE_MODELS[0]}",
         )
-    k1, k2, k3, k4, p1, p2 = (
-        _read_number(top, frame, key, label, path) or 0.0 for key in ("k1", "k2", "k3", "k4", "p1", "p2")
-    )
+    k1, k2, k3, k4, p1, p2 = (frame.number(key) or 0.0 for key in ("k1", "k2", "k3", "k4", "p1", "p2"))
     if not all(map(math.isfinite, (k1, k2, k3, k4, p1, p2))):
-        raise CaptureError("lens", f"{label} has lens coefficients that are not finite", path=path, remedy="mend them")
+        raise frame.error("lens", f"{frame.label} has lens coefficients that are not finite", "mend them")
     if fisheye:
         return Lens("fisheye", (k1, k2, k3, k4))
     if k4:
-        raise CaptureError(
-            "camera-model",
-            f"{label} has k4 without camera_model OPENCV_FISHEYE",
-            path=path,
-            remedy="name the camera model, or undistort",
-        )
+        message = f"{frame.label} has k4 without camera_model OPENCV_FISHEYE"
+        raise frame.error("camera-model", message, "name the camera model, or undistort")
     lens = Lens("brown", (k1, k2, p1, p2, k3))
     return None if lens.is_identity else lens
 
 
-def _read_own_lens(value: Any, label: str, path: Path) -> Lens:
+def _read_own_lens(frame: _Frame) -> Lens:
     """A lens as `writers.transforms` writes it."""
-    model = value.get("model") if isinstance(value, dict) else None
-    numbers = value.get("coefficients") if isinstance(value, dict) else None
+    value = frame.get("lens")
+    model, numbers = (value.get("model"), value.get("coefficients")) if isinstance(value, dict) else (None, None)
     if model not in TRANSFORMS_OWN_COEFFICIENTS or not isinstance(numbers, list) or not all(map(_is_number, numbers)):
-        raise CaptureError("lens", f"{label} has no lens that is known", path=path, remedy="mend or remove its entry")
+        raise frame.error("lens", f"{frame.label} has no lens that is known", "mend or remove its entry")
     coefficients = tuple(_as_float(number) for number in numbers)
     if len(coefficients) not in TRANSFORMS_OWN_COEFFICIENTS[model] or not all(map(math.isfinite, coefficients)):
-        raise CaptureError(
-            "lens", f"{label} has lens coefficients that are not finite or not as many as needed", path=path,
-            remedy="mend them",
-        )  # fmt: skip
+        message = f"{frame.label} has lens coefficients that are not finite or not as many as needed"
+        raise frame.error("lens", message, "mend them")
     return Lens(model, coefficients)

@@ -7,8 +7,6 @@ interpolating it).
 
 from __future__ import annotations
 
-import logging
-import os
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -22,12 +20,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.capture.arrangement import Arrangement, OpenOptions, require_photographs
+from eigenfield.capture.locate import files_named
 from eigenfield.capture.messages import natural_key
 from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.runtime.stages import Stages, stage_key
-
-log = logging.getLogger(__name__)
 
 VIDEO_EXTENSIONS = (".mp4", ".mov", ".mkv", ".avi", ".webm", ".m4v", ".mpg", ".mpeg", ".mts", ".m2ts")
 VIDEO_FOLDER = "videos"
@@ -43,15 +40,7 @@ _temporary: list[Stages] = []  # frames without a work folder: deleted with the 
 
 def videos_in(folder: Path) -> list[Path]:
     """The files of one folder that are named like videos, in natural order."""
-    if not folder.is_dir():
-        return []
-    with os.scandir(folder) as entries:
-        found = [
-            Path(e.path)
-            for e in entries
-            if e.name.lower().endswith(VIDEO_EXTENSIONS) and not e.name.startswith(".") and e.is_file()
-        ]
-    return sorted(found, key=lambda path: (natural_key(path.name), path.name))
+    return sorted(files_named(folder, VIDEO_EXTENSIONS), key=lambda path: natural_key(path.name))
 
 
 def videos_of(folder: Path) -> list[Path]:
@@ -181,12 +170,9 @@ def _yuv420_to_rgb(frame: av.VideoFrame) -> NDArray[np.uint8]:
     height, width = y.shape
     place = np.array([[0.5, 0, 0], [0, 0.5, -0.25]])  # luma pixel to chroma pixel
     cubic = cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP
-    cb, cr = (
-        np.asarray(
-            cv2.warpAffine(c - 128, place, (width, height), flags=cubic, borderMode=cv2.BORDER_REPLICATE), np.float32
-        )
-        for c in (cb, cr)
-    )
+    edges = cv2.BORDER_REPLICATE
+    warped = (cv2.warpAffine(c - 128, place, (width, height), flags=cubic, borderMode=edges) for c in (cb, cr))
+    cb, cr = (np.asarray(c, np.float32) for c in warped)
     unmarked = 1 if height > VIDEO_MAX_SD_ROWS else 6
     red, blue = VIDEO_LUMA_WEIGHTS.get(int(frame.colorspace), VIDEO_LUMA_WEIGHTS[unmarked])
     if int(frame.color_range) != VIDEO_FULL_RANGE and frame.format.name != "yuvj420p":

@@ -5,17 +5,17 @@ Image names are relative to the light field's root: `colmap gui --image_path ROO
 
 from __future__ import annotations
 
-import os
 import struct
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
-from eigenfield.capture.lightfield import LightField, View
+from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.points import SparsePoints
 from eigenfield.capture.readers.colmap import COLMAP_MODELS
+from eigenfield.capture.writers.transforms import relative_path
 from eigenfield.core.camera import Camera
 
 COLMAP_FULL_COEFFICIENTS = 8  # of OpenCV's rational lens that COLMAP's FULL_OPENCV has
@@ -75,7 +75,7 @@ def _pack_images(light_field: LightField, owner: list[int], points: SparsePoints
             record["x"], record["y"] = points.pixels[here].T
             record["point"] = points.point[here] + 1
         pose = struct.pack("<I7dI", index + 1, *quaternion(view.camera.R), *view.camera.t, camera)
-        name = relative_name(view, light_field.root).encode("utf-8", "surrogateescape") + b"\0"
+        name = relative_path(view.path, light_field.root).encode("utf-8", "surrogateescape") + b"\0"
         records.append(pose + name + struct.pack("<Q", len(record)) + record.tobytes())
     return b"".join(records)
 
@@ -99,23 +99,7 @@ def _pack_points(light_field: LightField, points: SparsePoints | None) -> bytes:
     return b"".join(records)
 
 
-def relative_name(view: View, root: Path) -> str:
-    """A photograph's path relative to `root`, with forward slashes."""
-    return Path(os.path.relpath(view.path.absolute(), root.absolute())).as_posix()
-
-
 def quaternion(R: NDArray[np.float64]) -> tuple[float, float, float, float]:
-    """(w, x, y, z), w >= 0, of a rotation matrix, by the largest of the four (Shepperd 1978)."""
-    squares = 1 + np.array([
-        np.trace(R), R[0, 0] - R[1, 1] - R[2, 2], R[1, 1] - R[0, 0] - R[2, 2], R[2, 2] - R[0, 0] - R[1, 1]
-    ])  # fmt: skip
-    largest = int(np.argmax(squares))
-    products = np.array([
-        [squares[0], R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]],
-        [R[2, 1] - R[1, 2], squares[1], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0]],
-        [R[0, 2] - R[2, 0], R[0, 1] + R[1, 0], squares[2], R[1, 2] + R[2, 1]],
-        [R[1, 0] - R[0, 1], R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], squares[3]],
-    ])[largest]  # fmt: skip
-    q = products / np.linalg.norm(products)
-    w, x, y, z = (float(v) for v in (q if q[0] >= 0 else -q))
+    """(w, x, y, z), w >= 0, of a rotation matrix."""
+    x, y, z, w = Rotation.from_matrix(R).as_quat(canonical=True).tolist()
     return w, x, y, z

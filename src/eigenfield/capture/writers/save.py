@@ -61,8 +61,7 @@ def save_calibration(
                 path=place,
                 remedy="remove it from the photographs",
             )
-    files = _make_files(light_field, place, points)
-    files |= more or {}
+    files = _make_files(light_field, place, points) | dict(more or {})
     with output_errors(place), _temporary_folder(place) as part:
         for name, data in files.items():
             (part / name).parent.mkdir(parents=True, exist_ok=True)
@@ -79,12 +78,8 @@ def refuse_folder(folder: Path, overwrite: bool) -> None:
         raise OutputError("output-is-file", "is a file", path=folder, remedy="name a folder")
     with output_errors(folder):
         if folder.is_dir() and not overwrite and any(folder.iterdir()):
-            raise OutputError(
-                "output-exists",
-                "exists and is not empty",
-                path=folder,
-                remedy="use --overwrite or another name",
-            )
+            remedy = "use --overwrite or another name"
+            raise OutputError("output-exists", "exists and is not empty", path=folder, remedy=remedy)
     parent = folder.absolute().parent
     while not parent.exists():
         parent = parent.parent
@@ -106,11 +101,8 @@ def _make_files(light_field: LightField, place: Path, points: SparsePoints | Non
 
 
 def _pack_ply(points: SparsePoints) -> bytes:
-    record = np.zeros(len(points), [(axis, "<f4") for axis in "xyz"] + [(c, "u1") for c in ("red", "green", "blue")])
-    for axis, values in zip("xyz", points.positions.T, strict=True):
-        record[axis] = values
-    for name, values in zip(("red", "green", "blue"), points.colours.T, strict=True):
-        record[name] = values
+    record = np.zeros(len(points), [("position", "<f4", 3), ("colour", "u1", 3)])
+    record["position"], record["colour"] = points.positions, points.colours
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
     lines += [f"property float {axis}" for axis in "xyz"]
     lines += [f"property uchar {name}" for name in ("red", "green", "blue")]

@@ -71,11 +71,12 @@ def _frame(view: View, folder: Path) -> dict[str, Any]:
     pose = np.eye(4)
     pose[:3, :3] = (OPENGL_TO_OPENCV_AXES @ camera.R).T
     pose[:3, 3] = camera.centre
-    frame: dict[str, Any] = {"file_path": _relative_path(view.path, folder), "transform_matrix": pose.tolist()}
+    frame: dict[str, Any] = {"file_path": relative_path(view.path, folder), "transform_matrix": pose.tolist()}
     if view.mask is not None:
-        frame["mask_path"] = _relative_path(view.mask, folder)
+        frame["mask_path"] = relative_path(view.mask, folder)
     return frame
 
 
-def _relative_path(path: Path, folder: Path) -> str:
+def relative_path(path: Path, folder: Path) -> str:
+    """A path relative to a folder, with forward slashes."""
     return Path(os.path.relpath(path.absolute(), folder.absolute())).as_posix()

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.mesh import Mesh, signed_areas, triangle_areas
-from eigenfield.imaging.graph import vertex_components
 from eigenfield.proxy.atlas.kernels import count_layers
+from eigenfield.proxy.topology import face_components
 
 ATLAS_RASTER_TEXELS = 2048  # side of the raster on which overlap and fill are counted
 ATLAS_MARGIN_TEXELS = 0.05  # of that raster: UVs are often printed with six digits
@@ -66,7 +66,7 @@ def atlas_statistics(mesh: Mesh) -> AtlasStatistics:
     total = max(float(surface.sum()), 1e-300)
     stretch, anisotropy = _stretch(p[laid], q[laid], surface[laid], signed[laid])
     return AtlasStatistics(
-        charts=len(chart_sizes(mesh)),
+        charts=int(chart_labels(mesh).max(initial=-1)) + 1,
         fill=float(np.abs(signed).sum()) * covered / max(int(layers.sum()), 1),
         overlap=doubled / covered if covered else 0.0,
         flat=float(surface[~laid].sum()) / total,
@@ -113,18 +113,7 @@ def chart_labels(mesh: Mesh) -> NDArray[np.int32]:
     Args:
         mesh: The mesh.
     """
-    label = vertex_components(mesh.faces, len(mesh.vertices))
-    _, chart = np.unique(label[mesh.faces[:, 0]], return_inverse=True)
-    return chart.astype(np.int32)
-
-
-def chart_sizes(mesh: Mesh) -> NDArray[np.int64]:
-    """(charts,) number of triangles of each chart.
-
-    Args:
-        mesh: The mesh.
-    """
-    return np.bincount(chart_labels(mesh))
+    return face_components(mesh.faces, len(mesh.vertices))
 
 
 def atlas_fault(mesh: Mesh) -> str | None:

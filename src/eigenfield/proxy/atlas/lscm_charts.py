@@ -114,10 +114,8 @@ def _cut_in_halves(
     middle = middle - middle.mean(axis=0)
     axis = np.linalg.svd(middle, full_matrices=False)[2][0]
     rank = np.argsort(np.argsort(middle @ axis * np.sign(axis[np.argmax(np.abs(axis))]), kind="stable"))
-    result = []
-    for half in (rank < len(faces) // 2, rank >= len(faces) // 2):
-        result += _group_faces(faces[half], edge_components(corners[half]))
-    return result
+    first = rank < len(faces) // 2
+    return [piece for half in (first, ~first) for piece in _group_faces(faces[half], edge_components(corners[half]))]
 
 
 def _group_faces(faces: NDArray[np.int64], label: NDArray[np.int32]) -> list[NDArray[np.int64]]:
@@ -136,10 +134,10 @@ def _lay_out_chart(
         return own, False
     if not _is_valid(uv, vertices, faces):
         return own, False
-    if _is_valid(own, vertices, faces) and l2_stretch(vertices, uv, faces) > CHART_MAX_STRETCH_RATIO * l2_stretch(
-        vertices, own, faces
-    ):
-        return own, False
+    if _is_valid(own, vertices, faces):
+        limit = CHART_MAX_STRETCH_RATIO * l2_stretch(vertices, own, faces)
+        if l2_stretch(vertices, uv, faces) > limit:
+            return own, False
     return uv, True
 
 
@@ -168,11 +166,8 @@ def _is_valid(
     max_stretch: float = CHART_MAX_STRETCH,
 ) -> bool:
     """Whether no triangle is flipped, none overlaps another, and the stretch is small."""
-    return not _folds(uv, faces) and l2_stretch(vertices, uv, faces) < max_stretch and not _overlaps(uv, faces)
-
-
-def _folds(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:
-    return not bool((signed_areas(uv[faces]) > 0).all())  # not finite counts as folded
+    unfolded = bool((signed_areas(uv[faces]) > 0).all())  # not finite counts as folded
+    return unfolded and l2_stretch(vertices, uv, faces) < max_stretch and not _overlaps(uv, faces)
 
 
 def _overlaps(uv: NDArray[np.float64], faces: NDArray[np.int32]) -> bool:

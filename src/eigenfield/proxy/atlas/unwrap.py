@@ -22,6 +22,7 @@ from eigenfield.proxy.atlas.layout import ATLAS_MAX_OVERLAP_FRACTION, atlas_faul
 from eigenfield.proxy.atlas.lscm_charts import chart_scales, conformal_charts
 from eigenfield.proxy.child import run_child
 from eigenfield.proxy.meshes.read import is_sliver
+from eigenfield.proxy.topology import remove_unused_vertices
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -107,7 +108,7 @@ def simplify_mesh(mesh: Mesh, triangles: int) -> Mesh:
         (mesh.vertices.astype(np.float64) - centre) / scale, mesh.faces.astype(np.int64), target_count=triangles
     )
     vertices = (np.asarray(points, np.float64) * scale + centre).astype(np.float32)
-    kept = np.asarray(faces, np.int64)
+    kept = np.asarray(faces, np.int32)
     kept = kept[~is_sliver(vertices, kept)]
     if len(kept) == 0:
         raise ProxyError(
@@ -115,8 +116,7 @@ def simplify_mesh(mesh: Mesh, triangles: int) -> Mesh:
             f"nothing is left of the mesh at {triangles} triangles",
             remedy="ask for more --triangles",
         )
-    used, index = np.unique(kept, return_inverse=True)
-    return Mesh(vertices[used], index.reshape(kept.shape).astype(np.int32))
+    return remove_unused_vertices(Mesh(vertices, kept))
 
 
 def _normalisation(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
@@ -128,30 +128,23 @@ def _normalisation(mesh: Mesh) -> tuple[NDArray[np.float64], float]:
 
 
 def _make_atlas(mesh: Mesh, cameras: Sequence[Camera] | None, progress: Progress | None) -> Mesh:
-    if progress is not None:
-        progress("atlas", 0, 3)
+    report = progress or (lambda stage, done, total: None)
+    report("atlas", 0, 3)
     centre, scale = _normalisation(mesh)
-    cut = _apply_xatlas(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, progress, 0))
-    if progress is not None:
-        progress("atlas", 1, 3)
+    cut = _apply_xatlas(mesh, _run_xatlas((mesh.vertices - centre) / scale, mesh.faces, None, report, 0))
+    report("atlas", 1, 3)
     laid = conformal_charts(cut)
     assert laid.uv is not None
     label = chart_labels(laid)
     uv = laid.uv.astype(np.float64) / scale
     if cameras:
-        uv *= chart_scales(laid, cameras)[_chart_of_vertex(laid, label)][:, None]
-    if progress is not None:
-        progress("atlas", 2, 3)
-    packed = _apply_xatlas(laid, _run_xatlas(uv, laid.faces, label, progress, 2))
-    if progress is not None:
-        progress("atlas", 3, 3)
+        chart = np.zeros(len(uv), np.int32)
+        chart[laid.faces] = label[:, None]
+        uv *= chart_scales(laid, cameras)[chart][:, None]
+    report("atlas", 2, 3)
+    packed = _apply_xatlas(laid, _run_xatlas(uv, laid.faces, label, report, 2))
+    report("atlas", 3, 3)
     return packed
-
-
-def _chart_of_vertex(mesh: Mesh, label: NDArray[np.int32]) -> NDArray[np.int32]:
-    result = np.zeros(len(mesh.vertices), np.int32)
-    result[mesh.faces.reshape(-1)] = np.repeat(label, 3)
-    return result
 
 
 def _apply_xatlas(mesh: Mesh, answer: bytes) -> Mesh:
@@ -171,28 +164,23 @@ def _apply_xatlas(mesh: Mesh, answer: bytes) -> Mesh:
             )
         log.warning("%d of %d triangles could not be laid out: dropped", int((~held).sum()), len(faces))
         faces = faces[held]
-    used, index = np.unique(faces, return_inverse=True)
-    return Mesh(
-        np.ascontiguousarray(mesh.vertices[origin[used]]),
-        index.reshape(faces.shape).astype(np.int32),
-        np.clip(uv[used], 0, 1),
-    )
+    return remove_unused_vertices(Mesh(mesh.vertices[origin], faces, np.clip(uv, 0, 1)))
 
 
 def _run_xatlas(
     points: NDArray[np.float64],
     faces: NDArray[np.int32],
     chart: NDArray[np.int32] | None,
-    progress: Progress | None,
+    report: Progress,
     done: int,
 ) -> bytes:
     """The answer of `xatlas_process.py` to (n, 3) positions or (n, 2) layouts of charts.
 
-    Ctrl-C or an exception from `progress`, which meanwhile reports `done` steps of three, ends the process.
+    Ctrl-C or an exception from `report`, which meanwhile reports `done` steps of three, ends the process.
     """
     labels = np.zeros(len(faces), np.uint32) if chart is None else chart.astype(np.uint32)
     return run_child(
         Path(__file__).with_name("xatlas_process.py"), [points.astype(np.float32), faces.astype(np.uint32), labels],
-        lambda: None if progress is None else progress("atlas", done, 3), "proxy-unwrap", "xatlas",
+        lambda: report("atlas", done, 3), "proxy-unwrap", "xatlas",
         "clean the mesh, ask for fewer --triangles, or give it UVs elsewhere",
     )  # fmt: skip

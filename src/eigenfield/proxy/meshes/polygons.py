@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -74,12 +75,13 @@ def split_seams(
     return kept[:, 0], index.reshape(faces.shape), uv.reshape(-1, 2)[first]
 
 
-def check_range(indices: NDArray[np.int64], count: int) -> None:
+def check_range(indices: NDArray[np.int64], count: int, path: Path | None = None) -> None:
     """Check that all indices are in [0, count).
 
     Args:
         indices: Vertex indices.
         count: Number of vertices.
+        path: Of the file, for the message.
 
     Raises:
         ProxyError: `proxy-index-range`.
@@ -89,5 +91,6 @@ def check_range(indices: NDArray[np.int64], count: int) -> None:
         raise ProxyError(
             "proxy-index-range",
             f"{len(wrong)} face corners name vertices that are not there: {wrong[0]}, of {count}",
+            path=path,
             remedy="export it again",
         )

@@ -16,6 +16,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
 from eigenfield.proxy.meshes.read import RawMesh, check_mesh, read_mesh
+from eigenfield.proxy.surface.neighbours import project_inside
 
 PREPARE_THUMBNAIL_PIXELS = 64  # side of the pictures in which a mesh is searched whose vertices all lie outside
 
@@ -41,7 +42,7 @@ def prepare_proxy(
     """
     path = None if isinstance(path_or_mesh, Mesh) else Path(path_or_mesh)
     mesh = _from_memory(path_or_mesh) if isinstance(path_or_mesh, Mesh) else read_mesh(path_or_mesh)
-    check_seen(mesh, cameras, path)
+    _check_seen(mesh, cameras, path)
     try:
         count = triangles(mesh) if callable(triangles) else triangles
         return unwrap_mesh(mesh, triangles=count, cameras=cameras, progress=progress)
@@ -54,49 +55,31 @@ def _from_memory(mesh: Mesh) -> Mesh:
     return check_mesh(RawMesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64), uv), None)
 
 
-def check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None:
-    """Check that some of the mesh is in some camera's frame.
-
-    Args:
-        mesh: The mesh.
-        cameras: All cameras.
-        path: Of the mesh file, for the message.
-
-    Raises:
-        ProxyError: `proxy-not-seen`.
-    """
+def _check_seen(mesh: Mesh, cameras: Sequence[Camera], path: Path | None) -> None:
+    """Raise ProxyError `proxy-not-seen` where nothing of the mesh is in any camera's frame."""
     behind = 0
     for camera in cameras:
-        pixels, depth = camera.project(mesh.vertices)
-        if _inside_frame(pixels, depth, camera).any():
+        _, depth, inside = project_inside(camera, mesh.vertices)
+        if inside.any():
             return
         behind += not (depth > 0).any()
     if any(_covers_pixels(mesh, camera) for camera in cameras):
         return
-    if behind == len(cameras):
-        where = f"lies behind all {len(cameras)} cameras"
-    else:
-        where = f"lies outside the frame of all {len(cameras)} cameras"
+    where = "lies behind" if behind == len(cameras) else "lies outside the frame of"
     middle = mesh.vertices.astype(np.float64).mean(axis=0)
     array = np.mean([camera.centre for camera in cameras], axis=0)
     raise ProxyError(
         "proxy-not-seen",
-        f"the mesh {where} (its middle is at {_point(middle)}, theirs at {_point(array)})",
+        f"the mesh {where} all {len(cameras)} cameras (its middle is at {_point(middle)}, theirs at {_point(array)})",
         path=path,
         remedy="bring both into one frame: look for flipped axes (y and z between OpenGL and OpenCV), another scale or "
         "another reconstruction's coordinates; eigenfield inspect --overlay shows both",
     )
 
 
-def _inside_frame(pixels: NDArray[np.float64], depth: NDArray[np.float64], camera: Camera) -> NDArray[np.bool_]:
-    x, y = pixels[:, 0], pixels[:, 1]
-    return (depth > 0) & (x > 0) & (x < camera.width) & (y > 0) & (y < camera.height)
-
-
 def _covers_pixels(mesh: Mesh, camera: Camera) -> bool:
-    return bool(
-        (rasterise_view(mesh, camera.resize(PREPARE_THUMBNAIL_PIXELS, PREPARE_THUMBNAIL_PIXELS)).face >= 0).any()
-    )
+    small = camera.resize(PREPARE_THUMBNAIL_PIXELS, PREPARE_THUMBNAIL_PIXELS)
+    return bool((rasterise_view(mesh, small).face >= 0).any())
 
 
 def _point(position: NDArray[np.float64]) -> str:

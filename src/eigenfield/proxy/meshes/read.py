@@ -20,6 +20,7 @@ from eigenfield.core.mesh import Mesh, triangle_areas
 from eigenfield.proxy.meshes.gltf import read_gltf
 from eigenfield.proxy.meshes.obj import read_obj
 from eigenfield.proxy.meshes.polygons import Polygons, check_range, split_seams, triangulate_polygons
+from eigenfield.proxy.topology import remove_unused_vertices
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -195,10 +196,7 @@ def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
             path=path,
             remedy="a proxy is a surface: mesh the point cloud (Poisson or Delaunay) first",
         )
-    try:
-        check_range(faces.reshape(-1), len(vertices))
-    except ProxyError as error:
-        raise ProxyError(error.code, error.message, path=path, remedy=error.remedy) from None
+    check_range(faces.reshape(-1), len(vertices), path)
     with np.errstate(over="ignore"):
         single = vertices.astype(np.float32)
     broken = np.flatnonzero(~np.isfinite(single).all(axis=1))
@@ -219,9 +217,8 @@ def check_mesh(raw: RawMesh, path: Path | None) -> Mesh:
         )
     if len(kept) < len(faces):
         log.warning("%s: %d of %d triangles have no area: dropped", path or "mesh", len(faces) - len(kept), len(faces))
-    used = np.unique(kept)
-    renumbered = np.searchsorted(used, kept).astype(np.int32)
-    return Mesh(single[used], renumbered, None if uv is None else uv[used].astype(np.float32))
+    mesh = Mesh(single, kept.astype(np.int32), None if uv is None else uv.astype(np.float32))
+    return remove_unused_vertices(mesh)
 
 
 def is_sliver(vertices: NDArray[np.float32], faces: NDArray[Any]) -> NDArray[np.bool_]:
@@ -243,8 +240,5 @@ def _warn_of_rounding(vertices: NDArray[np.float32], path: Path | None) -> None:
     if spacing > MESH_MAX_ROUNDING_RATIO * extent > 0:
         log.warning(
             "%s: vertices lie far from the origin for their extent of %g and are rounded to %g; move mesh and cameras "
-            "nearer to it",
-            path or "mesh",
-            extent,
-            spacing,
-        )
+            "nearer to it", path or "mesh", extent, spacing,
+        )  # fmt: skip

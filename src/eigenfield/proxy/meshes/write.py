@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
-import struct
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +10,8 @@ from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.version import __version__
 from eigenfield.runtime.files import write_bytes
+
+GLTF_VERTICES_TARGET, GLTF_INDICES_TARGET = 34962, 34963  # of a buffer view
 
 
 def write_ply(mesh: Mesh, path: Path, *, overwrite: bool = False) -> None:
@@ -79,52 +78,25 @@ def check_mesh_name(path: Path) -> None:
 
 def _glb(mesh: Mesh) -> bytes:
     """glTF 2.0 in one binary chunk, with coordinates in the cameras' world."""
-    parts: list[tuple[str, Any, dict[str, Any]]] = [
-        (
-            "POSITION",
-            mesh.vertices.astype("<f4"),
-            {"type": "VEC3", "min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()},
-        )
-    ]
+    from eigenfield.gltf.buffer import Buffer
+    from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes
+    from eigenfield.gltf.document import FLOAT, UINT32
+
+    buffer = Buffer()
+    bounds = {"min": mesh.vertices.min(axis=0).tolist(), "max": mesh.vertices.max(axis=0).tolist()}
+    attributes = {"POSITION": buffer.accessor(mesh.vertices, FLOAT, "VEC3", GLTF_VERTICES_TARGET, **bounds)}
     if mesh.uv is not None:
-        parts.append(("TEXCOORD_0", mesh.uv.astype("<f4"), {"type": "VEC2"}))
-    parts.append(("indices", mesh.faces.astype("<u4").reshape(-1), {"type": "SCALAR"}))
-    views, accessors, attributes, data = [], [], {}, b""
-    for number, (name, values, about) in enumerate(parts):
-        indices = name == "indices"
-        views.append(
-            {
-                "buffer": 0,
-                "byteOffset": len(data),
-                "byteLength": values.nbytes,
-                "target": 34963 if indices else 34962,
-            }
-        )
-        accessors.append(
-            {"bufferView": number, "componentType": 5125 if indices else 5126, "count": len(values), **about}
-        )
-        if not indices:
-            attributes[name] = number
-        data += values.tobytes()
+        attributes["TEXCOORD_0"] = buffer.accessor(mesh.uv, FLOAT, "VEC2", GLTF_VERTICES_TARGET)
+    indices = buffer.accessor(mesh.faces.reshape(-1), UINT32, "SCALAR", GLTF_INDICES_TARGET)
     document = {
         "asset": {"version": "2.0", "generator": f"eigenfield {__version__}"},
         "scene": 0,
         "scenes": [{"nodes": [0]}],
         "nodes": [{"mesh": 0, "name": "proxy"}],
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": len(parts) - 1}]}],
-        "accessors": accessors,
-        "bufferViews": views,
-        "buffers": [{"byteLength": len(data)}],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": indices}]}],
+        "accessors": buffer.accessors,
+        "bufferViews": buffer.views,
+        "buffers": [{"byteLength": buffer.length}],
     }
-    text = json.dumps(document, separators=(",", ":")).encode()
-    text += b" " * (-len(text) % 4)
-    length = 12 + 8 + len(text) + 8 + len(data)
-    return b"".join(
-        [
-            struct.pack("<4sII", b"glTF", 2, length),
-            struct.pack("<I4s", len(text), b"JSON"),
-            text,
-            struct.pack("<I4s", len(data), b"BIN\0"),
-            data,
-        ]
-    )
+    head = file_head(json_bytes(document), CHUNK.size + buffer.length, None)
+    return b"".join([head, CHUNK.pack(buffer.length, BINARY_CHUNK), *buffer.parts])

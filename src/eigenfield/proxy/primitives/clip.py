@@ -48,14 +48,9 @@ def clip_mesh(mesh: Mesh, distance: DistanceFunction) -> Mesh:
     tip, following, before = mixed[rows, odd], mixed[rows, (odd + 1) % 3], mixed[rows, (odd + 2) % 3]
     after_tip, before_tip = edges[rows, odd], edges[rows, (odd + 2) % 3]
     alone = count == 2  # only the tip remains
-    kept = np.concatenate(
-        [
-            whole,
-            np.stack([tip, after_tip, before_tip], axis=1)[alone],
-            np.stack([after_tip, following, before], axis=1)[~alone],
-            np.stack([after_tip, before, before_tip], axis=1)[~alone],
-        ]
-    )
+    rests = ((after_tip, following, before), (after_tip, before, before_tip))
+    cut_off = np.stack([tip, after_tip, before_tip], axis=1)[alone]
+    kept = np.concatenate([whole, cut_off, *(np.stack(rest, axis=1)[~alone] for rest in rests)])
     return remove_unused_vertices(Mesh(np.concatenate([mesh.vertices, cut.astype(np.float32)]), kept.astype(np.int32)))
 
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError, ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.proxy.background import add_face_ring, join_meshes, seen_faces
+from eigenfield.proxy.background import add_seen_faces
 from eigenfield.proxy.primitives.clip import clip_mesh, split_long_edges
 from eigenfield.proxy.topology import face_patches, remove_unused_vertices
 
@@ -124,12 +124,8 @@ class PlanePrimitive:
         vertices = np.stack([a, b, np.zeros_like(a)], axis=1) @ self.axes() + self.middle
         side = PLANE_SIDE_CELLS + 1
         first = (np.arange(PLANE_SIDE_CELLS)[:, None] * side + np.arange(PLANE_SIDE_CELLS)).ravel()
-        faces = np.concatenate(
-            [
-                np.stack([first, first + 1, first + side], axis=1),
-                np.stack([first + 1, first + side + 1, first + side], axis=1),
-            ]
-        )
+        halves = ((first, first + 1, first + side), (first + 1, first + side + 1, first + side))
+        faces = np.concatenate([np.stack(half, axis=1) for half in halves])
         towards = sum(np.sign((camera.centre - self.middle) @ self.normal) for camera in cameras)
         return Mesh(vertices.astype(np.float32), (faces if towards >= 0 else faces[:, ::-1]).astype(np.int32))
 
@@ -208,19 +204,15 @@ def insert_primitive(mesh: Mesh, primitive: Primitive, cameras: Sequence[Camera]
             )
     fine = split_long_edges(mesh, primitive.distance, primitive.size / PRIMITIVE_EDGES_PER_SIZE)
     outside = _remove_remnants(clip_mesh(fine, primitive.distance), primitive)
-    shape = primitive.mesh(cameras)
-    both = join_meshes(outside, shape)
-    seen = seen_faces(both, cameras)[len(outside.faces) :]
-    if not seen.any():
+    result, put_in = add_seen_faces(outside, primitive.mesh(cameras), cameras)
+    if not put_in:
         raise ProxyError(
             "primitive-not-seen",
             f"{primitive} is seen by none of the {len(cameras)} cameras",
             remedy="it lies outside their frames, behind them, or behind the surface: check its place",
         )
-    kept = np.append(np.ones(len(outside.faces), np.bool_), add_face_ring(shape.faces, seen))
-    gone, put_in = len(fine.faces) - len(outside.faces), int(kept[len(outside.faces) :].sum())
-    log.info("%s: %d triangles of the mesh gave way to %d", primitive, gone, put_in)
-    return remove_unused_vertices(Mesh(both.vertices, both.faces[kept]))
+    log.info("%s: %d triangles of the mesh gave way to %d", primitive, len(fine.faces) - len(outside.faces), put_in)
+    return result
 
 
 def _remove_remnants(mesh: Mesh, primitive: Primitive) -> Mesh:
@@ -231,6 +223,5 @@ def _remove_remnants(mesh: Mesh, primitive: Primitive) -> Mesh:
     farthest = primitive.distance(mesh.vertices.astype(np.float64))[mesh.faces].max(axis=1)
     reach = np.full(int(label.max()) + 1, -np.inf)
     np.maximum.at(reach, label, farthest)
-    return remove_unused_vertices(
-        Mesh(mesh.vertices, mesh.faces[reach[label] > PRIMITIVE_SHELL_SIZES * primitive.size])
-    )
+    kept = reach[label] > PRIMITIVE_SHELL_SIZES * primitive.size
+    return remove_unused_vertices(Mesh(mesh.vertices, mesh.faces[kept]))

@@ -37,7 +37,7 @@ class SphereFitTuning:
         max_step: Sum of three channels' differences that counts as a full step.
         blur_sigma_pixels: Blurs of the pictures, from coarse to fine.
         side_distance_blurs: Distance of the two sides from the outline, in blurs.
-        swept_depths: Depths tried if none is known.
+        swept_depths: Depths tried.
         start_shifts: Shifts of the start's middle, in units of the box's radius.
         start_growths: Factors of its radius.
         start_circles: Best circles of the reference view, each tried at all depths.
@@ -179,7 +179,6 @@ def fit_sphere(
     cameras: Sequence[Camera],
     observations: Observations,
     *,
-    depth: float | None = None,
     progress: Progress | None = None,
 ) -> SphereFit:
     """The sphere whose outline lies in a region of one view, from up to 25 photographs spread over the array.
@@ -189,7 +188,6 @@ def fit_sphere(
         region: The box around the sphere.
         cameras: Of the observations.
         observations: At any times: the sphere does not move.
-        depth: Of the sphere's centre along the view's axis, approximately; without it depths are swept.
         progress: Called for each photograph.
 
     Raises:
@@ -207,20 +205,14 @@ def fit_sphere(
     chosen = _choose_views(view, cameras)
     views = _blur_views(chosen, cameras, observations, progress)
     baseline = float(np.median([np.linalg.norm(cameras[i].centre - camera.centre) for i in chosen[1:]]))
-    frame = _ReferenceFrame(camera, baseline)
-    start = np.array([*middle, (region.width + region.height) / 4])
-    size = np.array([region.width, region.height])
-    box = _SearchBox(start, size)
+    circle = np.array([*middle, (region.width + region.height) / 4])
+    search = _Search(camera, baseline, circle, np.array([region.width, region.height]))
     coarse_views = views.first(SPHERE_FIT_TUNING.coarse_views)
-    starts = _start_candidates(_start_parallaxes(frame, depth), frame, coarse_views, box)
-    coarse = sorted((_minimise(p, frame, coarse_views, 0, box) for p in starts), key=lambda fit: fit[1])
-    fine = [
-        _minimise(p, frame, views, len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1, box)
-        for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]
-    ]
-    best = min(fine, key=lambda fit: fit[1])[0]
-    sphere = frame.sphere(best)
-    contrast = _contrast(sphere, views, len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1)
+    starts = _start_candidates(search, coarse_views)
+    coarse = sorted((search.minimise(p, coarse_views, 0) for p in starts), key=lambda fit: fit[1])
+    fine = [search.minimise(p, views, -1) for p, _ in coarse[: SPHERE_FIT_TUNING.finalists]]
+    sphere = search.sphere(min(fine, key=lambda fit: fit[1])[0])
+    contrast = _contrast(sphere, views, -1)
     if not contrast > SPHERE_FIT_TUNING.min_contrast:
         raise ProxyError(
             "fit-sphere-outline",
@@ -232,25 +224,22 @@ def fit_sphere(
     return fit
 
 
-def sphere_outline(sphere: SpherePrimitive, camera: Camera, grow: float = 0.0) -> NDArray[np.float64]:
-    """(n, 2) pixels of a sphere's outline; NaN if the camera stands in the sphere.
-
-    Args:
-        sphere: The sphere.
-        camera: The camera.
-        grow: Pixels outside the outline.
-    """
-    return _sphere_outlines(sphere, camera.K[None], camera.R[None], camera.t[None], (grow,))[0, 0]
-
-
-def _sphere_outlines(
+def sphere_outlines(
     sphere: SpherePrimitive,
     K: NDArray[np.float64],
     R: NDArray[np.float64],
     t: NDArray[np.float64],
     grows: Sequence[float],
 ) -> NDArray[np.float64]:
-    """(V, G, n, 2) outlines in V cameras, each grown by G numbers of pixels."""
+    """(V, G, n, 2) pixels of a sphere's outline in V cameras; NaN for a camera that stands in the sphere.
+
+    Args:
+        sphere: The sphere.
+        K: (V, 3, 3) of the cameras.
+        R: (V, 3, 3) likewise.
+        t: (V, 3) likewise.
+        grows: G distances outside the outline, pixels.
+    """
     local = R @ np.array(sphere.centre) + t
     n = np.linalg.norm(local, axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -261,33 +250,31 @@ def _sphere_outlines(
         e1 = np.cross(u, level)
         e1 /= np.linalg.norm(e1, axis=1, keepdims=True)
         e2 = np.cross(u, e1)
-        ring = (
-            np.cos(SPHERE_OUTLINE_ANGLES_RADIANS)[:, None] * e1[:, None]
-            + np.sin(SPHERE_OUTLINE_ANGLES_RADIANS)[:, None] * e2[:, None]
-        )
+        around = SPHERE_OUTLINE_ANGLES_RADIANS[:, None]
+        ring = np.cos(around) * e1[:, None] + np.sin(around) * e2[:, None]
         rays = np.cos(rho)[..., None, None] * u[:, None, None] + np.sin(rho)[..., None, None] * ring[:, None]
         pixels = rays @ K.transpose(0, 2, 1)[:, None]
         return np.asarray(np.where(rays[..., 2:] > 0, pixels[..., :2] / pixels[..., 2:], np.nan))
 
 
 @dataclass(frozen=True, eq=False)
-class _SearchBox:
-    """Where the outline is searched: the circle (x, y, radius) inside the box, and the box's width and height."""
-
-    circle: NDArray[np.float64]
-    size: NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class _ReferenceFrame:
-    """Parameters of a sphere, four numbers in pixels.
+class _Search:
+    """The search of a sphere by four parameters in pixels.
 
     They are the outline's middle and radius in the reference view, and the parallax of its depth over the typical
     distance to the other cameras.
+
+    Attributes:
+        camera: Of the reference view.
+        baseline: Typical distance to the other cameras, world units.
+        circle: (3,) x, y and radius of the circle in the box in which the outline is searched.
+        size: (2,) width and height of the box.
     """
 
     camera: Camera
     baseline: float
+    circle: NDArray[np.float64]
+    size: NDArray[np.float64]
 
     def sphere(self, p: NDArray[np.float64]) -> SpherePrimitive:
         focal = self.camera.K[0, 0]
@@ -298,6 +285,15 @@ class _ReferenceFrame:
         x, y, z = (self.camera.R.T @ (local - self.camera.t)).tolist()
         return SpherePrimitive((x, y, z), float(np.sin(angle) * np.linalg.norm(local)))
 
+    def cost(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> float:
+        """The negative mean step, plus the penalty for leaving the box."""
+        off = np.append((p[:2] - self.circle[:2]) / self.size, np.log(max(p[2], 1e-3) / self.circle[2]))
+        return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(self.sphere(p), views, level)
+
+    def minimise(self, p: NDArray[np.float64], views: _BlurredViews, level: int) -> tuple[NDArray[np.float64], float]:
+        step = SPHERE_FIT_TUNING.blur_sigma_pixels[level]
+        return _simplex(lambda q: self.cost(q, views, level), p, step, 250, 1e-5)
+
 
 def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
     """The view and others with a similar direction, each as far as possible from those before."""
@@ -305,9 +301,8 @@ def _choose_views(view: int, cameras: Sequence[Camera]) -> list[int]:
     facing = np.array([camera.R[2] @ axis > 0.3 for camera in cameras])
     centres = np.array([camera.centre for camera in cameras])
     distance = distances_to(centres)
-    chosen = farthest_points(
-        lambda index: np.where(facing, distance(index), -1), view, SPHERE_FIT_TUNING.max_views
-    ).tolist()
+    count = SPHERE_FIT_TUNING.max_views
+    chosen = farthest_points(lambda index: np.where(facing, distance(index), -1), view, count).tolist()
     if len(chosen) < 2:
         raise ProxyError(
             "fit-sphere-outline", "no other camera looks the same way as that view", remedy="fit it in another view"
@@ -327,11 +322,8 @@ def _blur_views(
         if scale < 1:
             size = (small[-1].width, small[-1].height)
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.float32)
-        blurred.append(
-            tuple(
-                np.asarray(cv2.GaussianBlur(pixels, (0, 0), s), np.float32) for s in SPHERE_FIT_TUNING.blur_sigma_pixels
-            )
-        )
+        blurs = (cv2.GaussianBlur(pixels, (0, 0), sigma) for sigma in SPHERE_FIT_TUNING.blur_sigma_pixels)
+        blurred.append(tuple(np.asarray(blur, np.float32) for blur in blurs))
         scales.append(scale)
     K, R, t = (np.stack([getattr(camera, name) for camera in small]) for name in ("K", "R", "t"))
     return _BlurredViews(K, R, t, tuple(blurred), np.array(scales))
@@ -356,18 +348,12 @@ def _colour_steps(
 ) -> NDArray[np.float64]:
     """(V, n) capped colour steps across the outline, `grow` pixels outside it; NaN where it leaves the picture."""
     reach = SPHERE_FIT_TUNING.side_distance_blurs * SPHERE_FIT_TUNING.blur_sigma_pixels[level]
-    sides = _sphere_outlines(sphere, views.K, views.R, views.t, (grow + reach, grow - reach))
+    sides = sphere_outlines(sphere, views.K, views.R, views.t, (grow + reach, grow - reach))
     steps = np.empty((len(views), len(SPHERE_OUTLINE_ANGLES_RADIANS)))
     for row, pictures, at in zip(steps, views.blurred, sides, strict=True):
         outer, inner = _sample_colours(pictures[level], at)
         row[:] = np.abs(outer - inner).sum(axis=1, dtype=np.float64)
     return np.minimum(steps, cap)
-
-
-def _cost(p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox) -> float:
-    """The negative mean step, plus the penalty for leaving the box."""
-    off = np.append((p[:2] - box.circle[:2]) / box.size, np.log(max(p[2], 1e-3) / box.circle[2]))
-    return SPHERE_FIT_TUNING.box_weight * float(off @ off) - _contrast(frame.sphere(p), views, level)
 
 
 def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> float:
@@ -378,14 +364,6 @@ def _contrast(sphere: SpherePrimitive, views: _BlurredViews, level: int) -> floa
     if int(enough.sum()) < min(2, len(views)):
         return 0.0
     return float((np.where(there, steps, 0).sum(axis=1)[enough] / there.sum(axis=1)[enough]).mean())
-
-
-def _minimise(
-    p: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, level: int, box: _SearchBox
-) -> tuple[NDArray[np.float64], float]:
-    return _simplex(
-        lambda q: _cost(q, frame, views, level, box), p, SPHERE_FIT_TUNING.blur_sigma_pixels[level], 250, 1e-5
-    )
 
 
 def _simplex(
@@ -402,38 +380,28 @@ def _simplex(
     return np.asarray(found.x, np.float64), float(found.fun)
 
 
-def _start_parallaxes(frame: _ReferenceFrame, depth: float | None) -> NDArray[np.float64]:
-    """Parallaxes to start from: evenly up to the picture's size, or around a known depth."""
-    if depth is not None:
-        return frame.camera.K[0, 0] * frame.baseline / depth * np.linspace(0.85, 1.15, 13)
-    nearest = 0.6 * max(frame.camera.width, frame.camera.height)
-    return nearest * (np.arange(SPHERE_FIT_TUNING.swept_depths) + 0.5) / SPHERE_FIT_TUNING.swept_depths
+def _start_candidates(search: _Search, views: _BlurredViews) -> list[NDArray[np.float64]]:
+    """The best circles of the reference view near the box, each at its best depths; the best of all these.
 
-
-def _start_candidates(
-    depths: NDArray[np.float64], frame: _ReferenceFrame, views: _BlurredViews, box: _SearchBox
-) -> list[NDArray[np.float64]]:
-    """The best circles of the reference view near the box, each at its best depths; the best of all these."""
-    x, y, r = box.circle
+    Depths are parallaxes, evenly up to the picture's size.
+    """
+    nearest = 0.6 * max(search.camera.width, search.camera.height)
+    depths = nearest * (np.arange(SPHERE_FIT_TUNING.swept_depths) + 0.5) / SPHERE_FIT_TUNING.swept_depths
+    x, y, r = search.circle
     typical = float(np.median(depths))
     alone = views.first(1)
 
     def outline(p: NDArray[np.float64]) -> float:
-        return _cost(np.append(p, typical), frame, alone, 0, box)
+        return search.cost(np.append(p, typical), alone, 0)
 
-    grid = [
-        np.array([x + dx * r, y + dy * r, g * r])
-        for dx in SPHERE_FIT_TUNING.start_shifts
-        for dy in SPHERE_FIT_TUNING.start_shifts
-        for g in SPHERE_FIT_TUNING.start_growths
-    ]
+    shifts, growths = SPHERE_FIT_TUNING.start_shifts, SPHERE_FIT_TUNING.start_growths
+    grid = [np.array([x + dx * r, y + dy * r, g * r]) for dx in shifts for dy in shifts for g in growths]
     fits = [_simplex(outline, p, SPHERE_FIT_TUNING.blur_sigma_pixels[0], 60, 1e-4) for p in grid]
     near = np.full(3, 0.03 * r)
-    circles = _best_distinct(
-        np.array([cost for _, cost in fits]), np.array([fit for fit, _ in fits]), near, SPHERE_FIT_TUNING.start_circles
-    )
+    found, costs = (np.array(part) for part in zip(*fits, strict=True))
+    circles = _best_distinct(costs, found, near, SPHERE_FIT_TUNING.start_circles)
     solid = np.array([[*circle, w] for circle in circles for w in depths])
-    costs = np.array([_cost(p, frame, views, 0, box) for p in solid])
+    costs = np.array([search.cost(p, views, 0) for p in solid])
     step = 1.5 * float(np.diff(depths).max())
     return _best_distinct(costs, solid, np.append(near, step), SPHERE_FIT_TUNING.starts)
 
@@ -452,9 +420,8 @@ def _best_distinct(
 
 
 def _outline_residual(sphere: SpherePrimitive, views: _BlurredViews) -> float:
-    level = len(SPHERE_FIT_TUNING.blur_sigma_pixels) - 1
     offsets = np.arange(-SPHERE_FIT_TUNING.search_pixels, SPHERE_FIT_TUNING.search_pixels + 0.25, 0.25)
-    steps = np.array([_colour_steps(views, level, sphere, float(offset), 3.0) for offset in offsets])
+    steps = np.array([_colour_steps(views, -1, sphere, float(offset), 3.0) for offset in offsets])
     there = ~np.isnan(steps).any(axis=0)
     off = np.abs(offsets[np.where(np.isnan(steps), -1, steps).argmax(axis=0)]) / views.scale[:, None]
     return float(np.median(off[there])) if there.any() else float("nan")

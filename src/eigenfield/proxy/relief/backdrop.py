@@ -63,14 +63,12 @@ def make_backdrop(
     views = [*cameras, *(_cameras_between(cameras) if len(cameras) < BACKDROP_SPARSE_CAMERAS else [])]
     meshes = [height_field_to_world(reference, layer) for layer in layers]
     mesh = height_field_to_world(reference, join_height_fields(layers))
-    open_views: list[tuple[Camera, NDArray[np.bool_]]] = []
 
     def find_open(camera: Camera) -> tuple[Camera, NDArray[np.bool_]]:
         return camera, rasterise_view(mesh, camera).face < 0
 
-    for camera, free in track(parallel_stream(find_open, views), "what lies open", len(views), progress):
-        if free.any():
-            open_views.append((camera, free))
+    found = track(parallel_stream(find_open, views), "what lies open", len(views), progress)
+    open_views = [(camera, free) for camera, free in found if free.any()]
     if not open_views:
         return None
     wide = _widen_reference(reference, layers, cameras)
@@ -123,10 +121,8 @@ def _widen_reference(
             pixels = (points @ reference.camera.K.T)[:, :2] * inverse
             beyond = max(beyond, float(-pixels.min()), float((pixels - (width, height)).max()))
     pad = int(np.ceil(min(beyond, BACKDROP_MAX_BORDER_SIDES * max(reference.shape)))) + 2
-    inner = reference.camera.K.copy()
-    inner[:2, 2] += pad
-    camera = replace(reference.camera, K=inner, width=width + 2 * pad, height=height + 2 * pad)
-    return replace(reference, camera=camera, margin=reference.margin + pad)
+    wide = ReferenceView.with_margin(reference.camera, pad, reference.offset, reference.scale)
+    return replace(wide, margin=reference.margin + pad)
 
 
 def _farthest_labels(reference: ReferenceView, layers: Sequence[Mesh]) -> NDArray[np.float32]:
@@ -152,6 +148,5 @@ def _grid_mesh(farthest: NDArray[np.float32], cell: int, gap: float) -> HeightFi
     a = (np.arange(len(rows) - 1)[:, None] * len(columns) + np.arange(len(columns) - 1)).reshape(-1)
     b, c, d = a + 1, a + len(columns) + 1, a + len(columns)
     faces = np.stack([a, b, c, a, c, d], axis=1).reshape(-1, 3).astype(np.int32)
-    return HeightFieldMesh(
-        x.reshape(-1), y.reshape(-1), behind[np.ix_(rows, columns)].reshape(-1).astype(np.float64), faces
-    )
+    depth = behind[np.ix_(rows, columns)].reshape(-1).astype(np.float64)
+    return HeightFieldMesh(x.reshape(-1), y.reshape(-1), depth, faces)

@@ -32,11 +32,12 @@ def find_cut_edges(
     Returns:
         (h, w - 1) between horizontal neighbours, and (h - 1, w) between vertical ones.
     """
-    beside = (valid[:, 1:] != valid[:, :-1]) | (
-        valid[:, 1:] & valid[:, :-1] & (np.abs(d[:, 1:] - d[:, :-1]) > np.float32(cut))
-    )
-    below = (valid[1:] != valid[:-1]) | (valid[1:] & valid[:-1] & (np.abs(d[1:] - d[:-1]) > np.float32(cut)))
-    return beside, below
+
+    def between_rows(d: NDArray[np.float32], valid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        steps = np.abs(d[1:] - d[:-1]) > np.float32(cut)
+        return (valid[1:] != valid[:-1]) | (valid[1:] & valid[:-1] & steps)
+
+    return between_rows(d.T, valid.T).T, between_rows(d, valid)
 
 
 def trace_contours(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> list[NDArray[np.float64]]:
@@ -88,15 +89,8 @@ def _node_links(beside: NDArray[np.bool_], below: NDArray[np.bool_]) -> NDArray[
     first_below, first_cell = h * (w - 1), h * (w - 1) + (h - 1) * w
     row, column = np.mgrid[: h - 1, : w - 1]
     cell = first_cell + row * (w - 1) + column
-    ids = np.stack(
-        [
-            row * (w - 1) + column,
-            (row + 1) * (w - 1) + column,
-            first_below + row * w + column,
-            first_below + row * w + column + 1,
-        ],
-        axis=-1,
-    )
+    upper, left = row * (w - 1) + column, first_below + row * w + column
+    ids = np.stack([upper, upper + w - 1, left, left + 1], axis=-1)
     on = np.stack([beside[:-1], beside[1:], below[:, :-1], below[:, 1:]], axis=-1)
     count = on.sum(axis=-1)
     through = ids[count == 2][on[count == 2]].reshape(-1, 2)
@@ -116,8 +110,7 @@ def straighten_chain(chain: NDArray[np.float64], tolerance: float) -> NDArray[np
         return chain
     kept = np.zeros(len(chain), np.bool_)
     split_chain(chain, tolerance, CONTOUR_CORNER_WINDOW_POINTS, kept)
-    knots = np.flatnonzero(kept)
-    return _fit_knots(chain, knots)
+    return _fit_knots(chain, np.flatnonzero(kept))
 
 
 def _fit_knots(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -133,10 +126,8 @@ def _fit_knots(chain: NDArray[np.float64], knots: NDArray[np.int64]) -> NDArray[
     n = len(knots)
     diagonal = np.bincount(part, (1 - t) ** 2, n) + np.bincount(part + 1, t**2, n) + CONTOUR_ANCHOR_WEIGHT
     beside = np.bincount(part, t * (1 - t), n)[:-1]
-    right = (
-        np.stack([np.bincount(part, (1 - t) * c, n) + np.bincount(part + 1, t * c, n) for c in chain.T], axis=1)
-        + CONTOUR_ANCHOR_WEIGHT * chain[knots]
-    )
+    sums = [np.bincount(part, (1 - t) * c, n) + np.bincount(part + 1, t * c, n) for c in chain.T]
+    right = np.stack(sums, axis=1) + CONTOUR_ANCHOR_WEIGHT * chain[knots]
     right[1] -= beside[0] * found[0]
     right[-2] -= beside[-1] * found[-1]
     bands = np.zeros((2, inner))

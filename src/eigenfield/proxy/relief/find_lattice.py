@@ -87,7 +87,8 @@ def relief_lattice(mesh: Mesh, cameras: Sequence[Camera], depth_error: float) ->
     place, uv = mesh.vertices[chart].astype(np.float64), mesh.uv[chart].astype(np.float64)
     matrix = _camera_from_columns(place, uv)
     if matrix is None:
-        matrix = next((m for m in map(_projection_matrix, cameras) if _is_camera_of(m, place, uv)), None)
+        matrices = (camera.matrix for camera in cameras)
+        matrix = next((m for m in matrices if _is_camera_of(m, place, uv)), None)
     if matrix is None:
         return None
     found = mesh.vertices.astype(np.float64) @ matrix[:, :3].T + matrix[:, 3]
@@ -134,11 +135,6 @@ def _camera_from_columns(place: NDArray[np.float64], uv: NDArray[np.float64]) ->
     return matrix if _whole_fraction(drawn - _phase(drawn)) > LATTICE_TUNING.min_whole_fraction else None
 
 
-def _projection_matrix(camera: Camera) -> NDArray[np.float64]:
-    matrix: NDArray[np.float64] = camera.K @ np.hstack([camera.R, camera.t[:, None]])
-    return matrix
-
-
 def _is_camera_of(matrix: NDArray[np.float64], place: NDArray[np.float64], uv: NDArray[np.float64]) -> bool:
     """Whether texture coordinates are an affine map of a camera's pixels."""
     found = place @ matrix[:, :3].T + matrix[:, 3]
@@ -178,24 +174,15 @@ def _column_spacing(values: NDArray[np.float64]) -> float:
     low, high = float(values.min()), float(values.max())
     if len(values) < 16 or not high - low > 0:
         return 0.0
-    bins = np.bincount(
-        ((values - low) / (high - low) * (LATTICE_TUNING.spectrum_bins - 1)).round().astype(np.int64),
-        minlength=LATTICE_TUNING.spectrum_bins,
-    )
-    length = np.abs(np.fft.rfft(bins, LATTICE_TUNING.spectrum_oversampling * LATTICE_TUNING.spectrum_bins))[
-        : LATTICE_TUNING.spectrum_oversampling * LATTICE_TUNING.max_columns
-    ] / len(values)
-    length[: LATTICE_TUNING.spectrum_oversampling * LATTICE_TUNING.min_columns] = 0
+    bins, finer = LATTICE_TUNING.spectrum_bins, LATTICE_TUNING.spectrum_oversampling
+    counts = np.bincount(((values - low) / (high - low) * (bins - 1)).round().astype(np.int64), minlength=bins)
+    length = np.abs(np.fft.rfft(counts, finer * bins))[: finer * LATTICE_TUNING.max_columns] / len(values)
+    length[: finer * LATTICE_TUNING.min_columns] = 0
     first = int(np.argmax(length > LATTICE_TUNING.min_peak_fraction * length.max()))
     if not length[first] > LATTICE_TUNING.min_peak_noise_ratio / np.sqrt(len(values)):
         return 0.0
-    near = first + int(np.argmax(length[first : first + LATTICE_TUNING.spectrum_oversampling]))
-    columns = (
-        near
-        * (LATTICE_TUNING.spectrum_bins - 1)
-        / (LATTICE_TUNING.spectrum_oversampling * LATTICE_TUNING.spectrum_bins)
-        / (high - low)
-    )
+    near = first + int(np.argmax(length[first : first + finer]))
+    columns = near * (bins - 1) / (finer * bins) / (high - low)
     for step in (0.1, 0.01, 0.001):  # of a column, over the whole extent
         tried = columns + np.arange(-10, 11) * step / (high - low)
         columns = float(tried[np.argmax(np.abs(np.exp(2j * np.pi * np.outer(tried, values)).mean(axis=1)))])

@@ -18,7 +18,7 @@ from scipy.sparse import coo_array, diags_array
 from scipy.sparse.linalg import cg
 
 from eigenfield.core.mesh import Mesh, barycentric_coordinates
-from eigenfield.imaging.graph import components, vertex_components
+from eigenfield.imaging.graph import components
 from eigenfield.proxy.relief.contours import find_cut_edges, straighten_chain, trace_contours
 from eigenfield.proxy.relief.kernels import label_pixels, refine_greedily, wedge_moments
 from eigenfield.proxy.relief.triangulation import (
@@ -108,15 +108,11 @@ def triangulate_height_field(
     """
     d, valid, ground = _pad_depth(d, valid)
     beside, below = find_cut_edges(d, ground, cut)
-    triangulation = _triangulate_contours(
-        trace_contours(beside, below),
-        d.shape,
-        None if limit is None else int(HEIGHT_FIELD_TUNING.max_contour_fraction * limit),
-    )
+    at_contours = None if limit is None else int(HEIGHT_FIELD_TUNING.max_contour_fraction * limit)
+    triangulation = _triangulate_contours(trace_contours(beside, below), d.shape, at_contours)
     mesh = _refine(_cut_open(triangulation, ground), d, valid, _cut_pixels(beside, below, valid), tolerance, limit)
-    return HeightFieldMesh(
-        mesh.x - HEIGHT_FIELD_TUNING.padding_pixels, mesh.y - HEIGHT_FIELD_TUNING.padding_pixels, mesh.d, mesh.faces
-    )
+    pad = HEIGHT_FIELD_TUNING.padding_pixels
+    return HeightFieldMesh(mesh.x - pad, mesh.y - pad, mesh.d, mesh.faces)
 
 
 def _pad_depth(
@@ -140,11 +136,8 @@ def _triangulate_contours(
     straight = HEIGHT_FIELD_TUNING.contour_tolerance_pixels
     while True:
         lines = [straighten_chain(chain, straight) for chain in chains]
-        if (
-            limit is None
-            or straight >= HEIGHT_FIELD_TUNING.max_contour_tolerance_pixels
-            or sum(map(len, lines)) * 2 <= limit
-        ):
+        few = limit is None or sum(map(len, lines)) * 2 <= limit
+        if few or straight >= HEIGHT_FIELD_TUNING.max_contour_tolerance_pixels:
             break
         straight *= 1.4
     if straight > HEIGHT_FIELD_TUNING.contour_tolerance_pixels:
@@ -161,13 +154,9 @@ def _constrained_delaunay(
     lines: list[NDArray[np.float64]], shape: tuple[int, int]
 ) -> tuple[_Triangulation, NDArray[np.bool_]]:
     """The triangulation that contains every line, and which lines cross another."""
-    h, w = shape
-    frame = [
-        (-HEIGHT_FIELD_TUNING.frame_pixels, -HEIGHT_FIELD_TUNING.frame_pixels),
-        (w + HEIGHT_FIELD_TUNING.frame_pixels, -HEIGHT_FIELD_TUNING.frame_pixels),
-        (w + HEIGHT_FIELD_TUNING.frame_pixels, h + HEIGHT_FIELD_TUNING.frame_pixels),
-        (-HEIGHT_FIELD_TUNING.frame_pixels, h + HEIGHT_FIELD_TUNING.frame_pixels),
-    ]
+    low = -HEIGHT_FIELD_TUNING.frame_pixels
+    bottom, right = (side + HEIGHT_FIELD_TUNING.frame_pixels for side in shape)
+    frame = [(low, low), (right, low), (right, bottom), (low, bottom)]
     points = np.rint(np.concatenate([np.array(frame, np.float64), *lines]) * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
     sizes = np.array([len(each) for each in lines], np.int64)
     last = 4 + np.cumsum(sizes) - 1
@@ -177,9 +166,8 @@ def _constrained_delaunay(
     tri, adjacent, constrained = (np.full((2 * n, 3), value, np.int64) for value in (-1, -1, 0))
     incident, alias, clash = np.zeros(n, np.int64), np.zeros(n, np.int64), np.zeros(len(lines), np.bool_)
     count = delaunay_triangulate(points, tri, adjacent, constrained, incident, alias)
-    insert_segments(
-        points, tri, adjacent, constrained, incident, np.stack([first, first + 1], axis=1), line, alias, clash
-    )
+    segments = np.stack([first, first + 1], axis=1)
+    insert_segments(points, tri, adjacent, constrained, incident, segments, line, alias, clash)
     if not clash.any():
         restore_delaunay(points, tri, adjacent, constrained, incident, count)
     return _Triangulation(points, tri[:count], adjacent[:count], constrained[:count]), clash
@@ -226,10 +214,8 @@ def _close_gaps(
         t, k, mine, other = (each[mine != other] for each in (t, k, mine, other))
         if not len(t):
             return constrained, ground
-        sides = (
-            triangulation.points[triangulation.tri[t, (k + 1) % 3]]
-            - triangulation.points[triangulation.tri[t, (k + 2) % 3]]
-        )
+        ends = triangulation.points[triangulation.tri]
+        sides = ends[t, (k + 1) % 3] - ends[t, (k + 2) % 3]
         pairs, pair = np.unique(np.stack([mine, other], axis=1), axis=0, return_inverse=True)
         pair = pair.reshape(-1)
         order = np.lexsort((-np.bincount(pair, np.hypot(*sides.T)), pairs[:, 0]))
@@ -339,20 +325,14 @@ def _fit_depths(
     corners = tri[owner[y, x]]
     weights = barycentric_coordinates(points[corners], np.stack([x, y], axis=1) * DELAUNAY_STEPS_PER_PIXEL)
     off = d[y, x] - (weights * height[corners]).sum(axis=1)
-    used = np.abs(off) <= HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance
+    most = HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance
+    used = np.abs(off) <= most
     corners, weights, off = corners[used], weights[used], off[used]
     rows = np.repeat(np.arange(len(off)), 3)
     A = coo_array((weights.reshape(-1), (rows, corners.reshape(-1))), shape=(len(off), len(height))).tocsr()
     normal = A.T @ A + HEIGHT_FIELD_TUNING.depth_weight * diags_array(np.ones(len(height)))
     change, _ = cg(normal, A.T @ off, rtol=1e-4, maxiter=200, M=diags_array(1 / normal.diagonal()))
-    return np.asarray(
-        height
-        + np.clip(
-            change,
-            -HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance,
-            HEIGHT_FIELD_TUNING.outlier_tolerances * tolerance,
-        )
-    )
+    return np.asarray(height + np.clip(change, -most, most))
 
 
 def join_height_fields(meshes: Sequence[HeightFieldMesh]) -> HeightFieldMesh:
@@ -380,18 +360,6 @@ def height_field_to_world(reference: ReferenceView, mesh: HeightFieldMesh) -> Me
     d = np.maximum(mesh.d, (HEIGHT_FIELD_TUNING.min_inverse_ratio * nearest - reference.offset) / reference.scale)
     faces = np.ascontiguousarray(mesh.faces[:, ::-1])  # y is down: positive area is clockwise for the camera
     return Mesh(reference.points(mesh.x, mesh.y, d).astype(np.float32), faces)
-
-
-def face_components(faces: NDArray[np.int32], vertices: int) -> NDArray[np.int64]:
-    """(m,) index of the vertex-connected component of each triangle, in order of their first triangles.
-
-    Args:
-        faces: (m, 3).
-        vertices: Number of vertices.
-    """
-    label = vertex_components(faces, vertices)[faces[:, 0]]
-    _, first, index = np.unique(label, return_index=True, return_inverse=True)
-    return np.asarray(np.argsort(np.argsort(first))[index], np.int64)
 
 
 def extract_faces(mesh: HeightFieldMesh, faces: NDArray[np.int64] | None = None) -> HeightFieldMesh:

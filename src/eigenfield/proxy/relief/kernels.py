@@ -9,7 +9,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL, insert_point, twice_signed_area
+from eigenfield.proxy.relief.triangulation import (
+    DELAUNAY_STEPS_PER_PIXEL,
+    insert_point,
+    twice_area_to,
+    twice_signed_area,
+)
 from eigenfield.runtime.jit import kernel
 
 
@@ -125,20 +130,7 @@ def worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
             if not valid[y, x]:
                 continue
             X, Y = x * DELAUNAY_STEPS_PER_PIXEL, y * DELAUNAY_STEPS_PER_PIXEL
-            wa = (
-                float(
-                    (points[c, 0] - points[b, 0]) * (Y - points[b, 1])
-                    - (points[c, 1] - points[b, 1]) * (X - points[b, 0])
-                )
-                / area
-            )
-            wb = (
-                float(
-                    (points[a, 0] - points[c, 0]) * (Y - points[c, 1])
-                    - (points[a, 1] - points[c, 1]) * (X - points[c, 0])
-                )
-                / area
-            )
+            wa, wb = float(twice_area_to(points, b, c, X, Y)) / area, float(twice_area_to(points, c, a, X, Y)) / area
             z = wa * height[a] + wb * height[b] + (1 - wa - wb) * height[c]
             error, found = depth_error(d, valid, at_cut, y, x, z)
             if error > worst[t] and not is_corner(points, a, b, c, X, Y):
@@ -203,10 +195,8 @@ def refine_greedily(
                 continue
             if count + 2 > limit or vertices >= points.shape[0]:
                 break
-            points[vertices, 0], points[vertices, 1] = (
-                place[t, 1] * DELAUNAY_STEPS_PER_PIXEL,
-                place[t, 0] * DELAUNAY_STEPS_PER_PIXEL,
-            )
+            points[vertices, 0] = place[t, 1] * DELAUNAY_STEPS_PER_PIXEL
+            points[vertices, 1] = place[t, 0] * DELAUNAY_STEPS_PER_PIXEL
             height[vertices] = value[t]
             insert_point(points, vertices, t, tri, adjacent, constrained, incident, count, changed, stamp, stack)
             vertices += 1
@@ -328,13 +318,8 @@ def wedge_moments(points, tri, d, valid, at_cut, reach, clear, near):
                 for column in range(max(0, int(middle_x) - reach), min(d.shape[1], int(middle_x) + reach + 2)):
                     if not valid[row, column]:
                         continue
-                    X, Y = (
-                        column * DELAUNAY_STEPS_PER_PIXEL - points[p, 0],
-                        row * DELAUNAY_STEPS_PER_PIXEL - points[p, 1],
-                    )
-                    if (points[q, 0] - points[p, 0]) * Y < (points[q, 1] - points[p, 1]) * X:
-                        continue
-                    if (points[r, 0] - points[p, 0]) * Y > (points[r, 1] - points[p, 1]) * X:
+                    X, Y = column * DELAUNAY_STEPS_PER_PIXEL, row * DELAUNAY_STEPS_PER_PIXEL
+                    if twice_area_to(points, p, q, X, Y) < 0 or twice_area_to(points, p, r, X, Y) > 0:
                         continue
                     x, y, z = column - middle_x, row - middle_y, d[row, column]
                     w = 1 / (1 + x * x + y * y)

@@ -119,19 +119,14 @@ def estimate_second_layer(
     guess, trust = _sweep_behind(pictures, matrices, d, valid, want, floor, ceiling, cut, parallax)
     report(SECOND_LAYER_STAGE, 3, 4)
     inside = want | far
-    plate = _fit_thin_plate(
-        np.where(want, guess, d), np.where(want, trust, SECOND_LAYER_TUNING.far_side_weight), inside
-    )
+    weight = np.where(want, trust, SECOND_LAYER_TUNING.far_side_weight)
+    plate = _fit_thin_plate(np.where(want, guess, d), weight, inside)
     report(SECOND_LAYER_STAGE, 4, 4)
-    below = np.where(
-        want,
-        d - np.float32(SECOND_LAYER_TUNING.behind_cuts * cut),
-        d - np.float32(0.1 * SECOND_LAYER_TUNING.behind_cuts * cut),
-    )
+    behind = SECOND_LAYER_TUNING.behind_cuts
+    below = d - np.where(want, np.float32(behind * cut), np.float32(0.1 * behind * cut))
     result = np.where(want, np.minimum(np.maximum(plate, floor), np.minimum(ceiling, below)), below)
-    return result.astype(np.float32), want | (
-        far & binary_dilation(want, iterations=SECOND_LAYER_TUNING.overlap_pixels)
-    )
+    overlap = far & binary_dilation(want, iterations=SECOND_LAYER_TUNING.overlap_pixels)
+    return result.astype(np.float32), want | overlap
 
 
 def _find_revealed(
@@ -178,10 +173,9 @@ def _sweep_behind(
     chosen = np.arange(0, len(matrices), -(-len(matrices) // SECOND_LAYER_TUNING.sweep_max_views))
     packed, matrices = pack_pictures(pictures[chosen]), matrices[chosen]
     low, high = float(floor[want].min()), float(ceiling[want].max())
-    step = max(
-        SECOND_LAYER_TUNING.sweep_step_pixels / max(float(np.abs(parallax).max()), 1e-9),
-        (high - low) / (SECOND_LAYER_TUNING.sweep_max_labels - 4),
-    )
+    fastest = max(float(np.abs(parallax).max()), 1e-9)
+    fewest = (high - low) / (SECOND_LAYER_TUNING.sweep_max_labels - 4)
+    step = max(SECOND_LAYER_TUNING.sweep_step_pixels / fastest, fewest)
     labels = (low - step + step * np.arange(int(np.ceil((high - low) / step)) + 3)).astype(np.float32)
     buffers = depth_buffers(matrices, d, packed.shape[1:], valid)
     cost = plane_sweep(
@@ -189,37 +183,21 @@ def _sweep_behind(
         bias=SECOND_LAYER_TUNING.visibility_bias_cuts * cut, max_difference=SECOND_LAYER_TUNING.max_difference_levels,
         min_views=SECOND_LAYER_TUNING.min_views, unseen_cost=SECOND_LAYER_TUNING.unseen_cost_levels,
     )  # fmt: skip
-    window = np.maximum(
-        uniform_filter(want.astype(np.float32), SECOND_LAYER_TUNING.cost_window_pixels),
-        np.float32(1 / SECOND_LAYER_TUNING.cost_window_pixels**2),
-    )
+    side, most = SECOND_LAYER_TUNING.cost_window_pixels, np.float32(SECOND_LAYER_TUNING.max_difference_levels)
+    window = np.maximum(uniform_filter(want.astype(np.float32), side), np.float32(1 / side**2))
     best = np.full(d.shape, np.inf, np.float32)
     for index, label in enumerate(labels):
         tried = want & (cost[..., index] < 255)
-        level = (
-            np.where(tried, cost[..., index] / np.float32(8), np.float32(SECOND_LAYER_TUNING.max_difference_levels))
-            * want
-        )
-        level = uniform_filter(level, SECOND_LAYER_TUNING.cost_window_pixels) / window
+        level = np.where(tried, cost[..., index] / np.float32(8), most) * want
+        level = uniform_filter(level, side) / window
         best = np.where(tried, np.minimum(best, level), best)
-        anchored = np.minimum(
-            np.float32(SECOND_LAYER_TUNING.max_difference_levels),
-            np.abs(label - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label),
-        )
-        layer = np.where(want, np.where(tried, level, np.float32(SECOND_LAYER_TUNING.max_difference_levels)), anchored)
+        anchored = np.abs(label - d) * np.float32(SECOND_LAYER_TUNING.anchor_levels_per_label)
+        layer = np.where(want, np.where(tried, level, most), np.minimum(most, anchored))
         cost[..., index] = np.rint(np.clip(layer * 8, 0, 240)).astype(np.uint8)
-    guess, confidence = semi_global_matching(
-        cost,
-        np.zeros(d.shape, np.float32),
-        labels,
-        SECOND_LAYER_TUNING.sgm_p1_levels,
-        SECOND_LAYER_TUNING.sgm_p2_levels,
-    )
-    trust = np.where(
-        best < SECOND_LAYER_TUNING.max_cost_levels,
-        confidence / (confidence + np.float32(SECOND_LAYER_TUNING.half_confidence)),
-        0,
-    )
+    penalties = SECOND_LAYER_TUNING.sgm_p1_levels, SECOND_LAYER_TUNING.sgm_p2_levels
+    guess, confidence = semi_global_matching(cost, np.zeros(d.shape, np.float32), labels, *penalties)
+    sure = confidence / (confidence + np.float32(SECOND_LAYER_TUNING.half_confidence))
+    trust = np.where(best < SECOND_LAYER_TUNING.max_cost_levels, sure, 0)
     return np.minimum(guess, np.where(want, ceiling, np.inf)).astype(np.float32), trust.astype(np.float32)
 
 

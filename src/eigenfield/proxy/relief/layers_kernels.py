@@ -41,14 +41,10 @@ def mark_revealed(d, valid, cut, reach, slack, want, ceiling):
                     if 0 <= q < h and 0 <= p < w and valid[q, p]:
                         near, far = max(near, d[q, p]), min(far, d[q, p])
                 jump = near - far
-                right, down = (
-                    int(np.ceil(reach[0] * jump)) + REVEALED_PADDING_PIXELS,
-                    int(np.ceil(reach[1] * jump)) + REVEALED_PADDING_PIXELS,
-                )
-                left, up = (
-                    int(np.ceil(reach[2] * jump)) + REVEALED_PADDING_PIXELS,
-                    int(np.ceil(reach[3] * jump)) + REVEALED_PADDING_PIXELS,
-                )
+                right = int(np.ceil(reach[0] * jump)) + REVEALED_PADDING_PIXELS
+                down = int(np.ceil(reach[1] * jump)) + REVEALED_PADDING_PIXELS
+                left = int(np.ceil(reach[2] * jump)) + REVEALED_PADDING_PIXELS
+                up = int(np.ceil(reach[3] * jump)) + REVEALED_PADDING_PIXELS
                 if axis == 0 and forward:
                     left = -1
                 elif axis == 0:

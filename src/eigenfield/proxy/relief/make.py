@@ -32,7 +32,6 @@ RELIEF_SECOND_LAYER_FRACTION = 0.3  # of the triangles, for the second layer at 
 RELIEF_BACKDROP_FRACTION = 0.05  # of the triangles, for the backdrop
 RELIEF_BACKDROP_GAP_CUTS = 0.25  # distance of the backdrop behind the layers
 RELIEF_SECOND_TOLERANCE_RATIO = 2.5  # to that of the first layer: few views see the second
-RELIEF_GUTTER_PIXELS = 4.0  # of the reference view, between charts: six texels at density 1.5
 
 
 def relief_mesh(
@@ -44,7 +43,6 @@ def relief_mesh(
     cut: float,
     tolerance: float,
     triangles: int | None = None,
-    gutter: float = RELIEF_GUTTER_PIXELS,
     cameras: Sequence[Camera] = (),
     progress: Progress | None = None,
 ) -> Mesh:
@@ -61,7 +59,6 @@ def relief_mesh(
         tolerance: Largest difference of the mesh from the depth map in labels, except within a pixel of a cut. The
             second layer is allowed RELIEF_SECOND_TOLERANCE_RATIO times as much.
         triangles: Most triangles, at the cost of the tolerance. Default: PROXY_DEFAULT_TRIANGLES.
-        gutter: Free pixels of the reference view between charts.
         cameras: What they see past both layers is closed by a backdrop (`make_backdrop`).
         progress: Called for each view of the backdrop.
 
@@ -73,31 +70,20 @@ def relief_mesh(
     limit -= spare
     others = []
     if second is not None and second[1].any():
-        behind = triangulate_height_field(
-            second[0],
-            second[1],
-            cut=float("inf"),
-            tolerance=RELIEF_SECOND_TOLERANCE_RATIO * tolerance,
-            limit=int(RELIEF_SECOND_LAYER_FRACTION * limit),
-        )
+        loose, most = RELIEF_SECOND_TOLERANCE_RATIO * tolerance, int(RELIEF_SECOND_LAYER_FRACTION * limit)
+        behind = triangulate_height_field(*second, cut=float("inf"), tolerance=loose, limit=most)
+        limit -= len(behind.faces)
         others = [behind] if len(behind.faces) else []
-    front = triangulate_height_field(
-        d, valid, cut=cut, tolerance=tolerance, limit=limit - sum(len(s.faces) for s in others)
-    )
+    front = triangulate_height_field(d, valid, cut=cut, tolerance=tolerance, limit=limit)
     if len(front.faces) == 0:
         raise ProxyError(
             "relief-empty", "the depth map has no surface", remedy="widen the depth range, or look at the masks"
         )
-    far = (
-        make_backdrop(
-            reference, [front, *others], cameras, gap=RELIEF_BACKDROP_GAP_CUTS * cut, limit=spare, progress=progress
-        )
-        if cameras
-        else None
-    )
-    if far is not None:
-        others.append(far)
-    parts, places, side = pack_layers(extract_faces(front), others, gutter)
+    if cameras:
+        gap = RELIEF_BACKDROP_GAP_CUTS * cut
+        far = make_backdrop(reference, [front, *others], cameras, gap=gap, limit=spare, progress=progress)
+        others += [] if far is None else [far]
+    parts, places, side = pack_layers(extract_faces(front), others)
     uv = np.concatenate([(np.stack([p.x, p.y], axis=1) + place) / side for p, place in zip(parts, places, strict=True)])
     mesh = height_field_to_world(reference, join_height_fields(parts))
     return replace(mesh, uv=np.clip(uv, 0, 1).astype(np.float32))

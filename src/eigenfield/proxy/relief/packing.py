@@ -9,18 +9,15 @@ from numpy.typing import NDArray
 from scipy.ndimage import binary_dilation
 
 from eigenfield.core.mesh import signed_areas
-from eigenfield.proxy.relief.height_field import HeightFieldMesh, extract_faces, face_components
+from eigenfield.proxy.relief.height_field import HeightFieldMesh, extract_faces
 from eigenfield.proxy.relief.kernels import label_pixels, place_first_fit
 from eigenfield.proxy.relief.triangulation import DELAUNAY_STEPS_PER_PIXEL
+from eigenfield.proxy.topology import face_components
 
 PACK_MIN_BOX_FILL = 0.6  # fraction of its box that a piece should fill
 PACK_MIN_BOX_PIXELS = 24.0  # longer side of a box that is not divided further
-PACK_STRIP_WIDTHS = (
-    0.05,
-    0.1,
-    0.2,
-    0.4,
-)  # widths of the strips beside the first layer, in units of its longer side
+PACK_STRIP_WIDTHS = (0.05, 0.1, 0.2, 0.4)  # of the strips beside the first layer, in units of its longer side
+PACK_GUTTER_PIXELS = 4.0  # of the reference view, between charts: six texels at density 1.5
 PACK_MAX_DIVISION_AREA_RATIO = 0.9  # area of the boxes of a division relative to the whole box, at most
 PACK_DIVISION_TRIALS = 9  # places along each axis
 PACK_RASTER_CELLS = 320  # along a side, approximately
@@ -28,7 +25,7 @@ PACK_SIDE_GROWTH = 1.01  # from a side that is too small to the next
 
 
 def pack_layers(
-    first: HeightFieldMesh, others: Sequence[HeightFieldMesh], gutter: float
+    first: HeightFieldMesh, others: Sequence[HeightFieldMesh]
 ) -> tuple[list[HeightFieldMesh], list[NDArray[np.float64]], float]:
     """The first layer whole and the others in pieces, packed into a square.
 
@@ -38,33 +35,26 @@ def pack_layers(
     Args:
         first: The first layer.
         others: The other layers.
-        gutter: Pixels between parts.
 
     Returns:
         The parts, (2,) by how much each moves, and the side of the square.
     """
     if not others:
-        return [first], *pack_charts([first], gutter)
+        return [first], *_pack_charts([first])
     longer = max(np.ptp(first.x), np.ptp(first.y))
     trials = []
-    for room in PACK_STRIP_WIDTHS:
-        pieces = [
-            piece for mesh in others for piece in divide_into_pieces(mesh, max(PACK_MIN_BOX_PIXELS, room * longer))
-        ]
-        parts = [first, *sorted(pieces, key=lambda piece: -height_field_area(piece))]
-        trials.append((parts, *pack_charts(parts, gutter)))
+    for width in PACK_STRIP_WIDTHS:
+        room = max(PACK_MIN_BOX_PIXELS, width * longer)
+        pieces = [piece for mesh in others for piece in _divide_into_pieces(mesh, room)]
+        parts = [first, *sorted(pieces, key=lambda piece: -_area(_corners(piece)))]
+        trials.append((parts, *_pack_charts(parts)))
     return min(trials, key=lambda trial: trial[2])
 
 
-def divide_into_pieces(mesh: HeightFieldMesh, room: float) -> list[HeightFieldMesh]:
-    """A mesh divided into connected pieces that fill their boxes and fit into a strip, largest first.
-
-    Args:
-        mesh: The height field.
-        room: Width of the strip, pixels.
-    """
+def _divide_into_pieces(mesh: HeightFieldMesh, room: float) -> list[HeightFieldMesh]:
+    """A mesh divided into connected pieces that fill their boxes and fit into a strip of that width, largest first."""
     pieces: list[NDArray[np.int64]] = []
-    corners = np.stack([mesh.x, mesh.y], axis=1)[mesh.faces]
+    corners = _corners(mesh)
     component = face_components(mesh.faces, len(mesh.x))
     waiting = [np.flatnonzero(component == c) for c in range(component.max(initial=-1) + 1)]
     while waiting:
@@ -81,13 +71,9 @@ def divide_into_pieces(mesh: HeightFieldMesh, room: float) -> list[HeightFieldMe
     return [extract_faces(mesh, np.sort(pieces[i])) for i in order]
 
 
-def height_field_area(mesh: HeightFieldMesh) -> float:
-    """Area in squared pixels.
-
-    Args:
-        mesh: The height field.
-    """
-    return _area(np.stack([mesh.x, mesh.y], axis=1)[mesh.faces])
+def _corners(mesh: HeightFieldMesh) -> NDArray[np.float64]:
+    """(m, 3, 2) pixels."""
+    return np.stack([mesh.x, mesh.y], axis=1)[mesh.faces]
 
 
 def _area(corners: NDArray[np.float64]) -> float:
@@ -116,17 +102,9 @@ def _find_division(corners: NDArray[np.float64], room: float) -> NDArray[np.bool
     return found
 
 
-def pack_charts(parts: Sequence[HeightFieldMesh], gutter: float) -> tuple[list[NDArray[np.float64]], float]:
-    """Pack parts into a square, in the given order.
-
-    Args:
-        parts: The parts.
-        gutter: Pixels between parts; half of it to the border.
-
-    Returns:
-        (2,) by how much each part moves, and the side of the square.
-    """
-    reach = int(np.ceil(gutter / 2)) + 1
+def _pack_charts(parts: Sequence[HeightFieldMesh]) -> tuple[list[NDArray[np.float64]], float]:
+    """(2,) by how much each part moves to lie in a square, packed in the given order, and the side of the square."""
+    reach = int(np.ceil(PACK_GUTTER_PIXELS / 2)) + 1  # half the gutter to the border
     masks, corners = zip(*(_mask(part, reach) for part in parts), strict=True)
     filled = sum(int(mask.sum()) for mask in masks)
     cell = max(1, round(np.sqrt(filled) / PACK_RASTER_CELLS))
@@ -149,9 +127,8 @@ def _mask(part: HeightFieldMesh, reach: int) -> tuple[NDArray[np.bool_], NDArray
     width, height = (high - low).astype(int) + 1
     xy = np.stack([part.x, part.y], axis=1) - low
     owner = np.empty((height, width), np.int32)
-    label_pixels(
-        np.rint(xy * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64), part.faces.astype(np.int64), len(part.faces), owner
-    )
+    steps = np.rint(xy * DELAUNAY_STEPS_PER_PIXEL).astype(np.int64)
+    label_pixels(steps, part.faces.astype(np.int64), len(part.faces), owner)
     mask = owner >= 0
     column, row = np.rint(xy).astype(int).T
     mask[row, column] = True

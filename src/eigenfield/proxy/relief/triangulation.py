@@ -36,9 +36,20 @@ def twice_signed_area(points, a, b, c):
         points: (n, 2).
         a, b, c: Indices of points.
     """
-    return (points[b, 0] - points[a, 0]) * (points[c, 1] - points[a, 1]) - (points[b, 1] - points[a, 1]) * (
-        points[c, 0] - points[a, 0]
-    )
+    return twice_area_to(points, a, b, points[c, 0], points[c, 1])
+
+
+@kernel()
+def twice_area_to(points, a, b, x, y):
+    """Twice the signed area of a, b and a place.
+
+    Args:
+        points: (n, 2).
+        a, b: Indices of points.
+        x, y: The place, in the same steps.
+    """
+    ax, ay = points[a, 0], points[a, 1]
+    return (points[b, 0] - ax) * (y - ay) - (points[b, 1] - ay) * (x - ax)
 
 
 @kernel()
@@ -99,12 +110,8 @@ def flip(tri, adjacent, constrained, incident, t, k):
     k1, k2, j1, j2 = (k + 1) % 3, (k + 2) % 3, (j + 1) % 3, (j + 2) % 3
     a, b, c, d = tri[t, k], tri[t, k1], tri[t, k2], tri[u, j]
     over_ca, over_ab, over_bd, over_dc = adjacent[t, k1], adjacent[t, k2], adjacent[u, j1], adjacent[u, j2]
-    fixed_ca, fixed_ab, fixed_bd, fixed_dc = (
-        constrained[t, k1],
-        constrained[t, k2],
-        constrained[u, j1],
-        constrained[u, j2],
-    )
+    fixed_ca, fixed_ab = constrained[t, k1], constrained[t, k2]
+    fixed_bd, fixed_dc = constrained[u, j1], constrained[u, j2]
     tri[t, 0], tri[t, 1], tri[t, 2] = a, b, d
     adjacent[t, 0], adjacent[t, 1], adjacent[t, 2] = over_bd, u, over_ab
     constrained[t, 0], constrained[t, 1], constrained[t, 2] = fixed_bd, 0, fixed_ab
@@ -316,10 +323,8 @@ def first_crossing(points, tri, adjacent, incident, a, b):
             return t, b
         on = twice_signed_area(points, a, b, first)
         if on == 0:
-            ahead = (points[b, 0] - points[a, 0]) * (points[first, 0] - points[a, 0]) + (
-                points[b, 1] - points[a, 1]
-            ) * (points[first, 1] - points[a, 1])
-            if ahead > 0:
+            ahead_x = (points[b, 0] - points[a, 0]) * (points[first, 0] - points[a, 0])
+            if ahead_x + (points[b, 1] - points[a, 1]) * (points[first, 1] - points[a, 1]) > 0:
                 return t, first
         if on < 0 and twice_signed_area(points, a, b, second) > 0:
             return t, -1
@@ -388,9 +393,8 @@ def insert_segments(points, tri, adjacent, constrained, incident, segments, line
                 p, q = tri[t, (k + 1) % 3], tri[t, (k + 2) % 3]
                 u = adjacent[t, k]
                 c, d = tri[t, k], tri[u, opposite_corner(adjacent, u, t)]
-                again = (
-                    twice_signed_area(points, c, p, d) <= 0 or twice_signed_area(points, d, q, c) <= 0
-                )  # the quad is not convex yet
+                # whether the quad is not convex yet
+                again = twice_signed_area(points, c, p, d) <= 0 or twice_signed_area(points, d, q, c) <= 0
                 if not again:
                     flip(tri, adjacent, constrained, incident, t, k)
                     over = twice_signed_area(points, a, target, c) > 0 > twice_signed_area(points, a, target, d)

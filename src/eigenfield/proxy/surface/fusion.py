@@ -1,4 +1,4 @@
-"""Fusion of the depth maps of many views into one set of oriented, coloured points.
+"""Fusion of the depth maps of many views into one set of oriented points.
 
 A point stays if enough other views confirm it and no majority sees through it. Of the pixels that show one surface
 element, the finest represents all of them. Merrell et al., "Real-Time Visibility-Based Fusion of Depth Maps", 2007.
@@ -24,6 +24,7 @@ log = logging.getLogger("eigenfield.proxy")
 
 FUSION_ROWS_PER_TASK = 32
 FUSION_MAX_POINTS = 1_500_000
+FUSION_MIN_AGREEING_VIEWS = 2  # other views that must confirm a point
 FUSION_CELL_GROWTH = 1.25  # of the cells in each step, until few enough points remain
 
 
@@ -35,13 +36,11 @@ class DepthView:
         camera: At the depth map's size.
         inverse_depth: (H, W) float32, 1 / depth along z at pixel centres; 0, negative or not finite where there is
             none.
-        colour: (H, W, 3) uint8; None: grey.
         mask: (H, W) bool, True where the photograph is valid; None: everywhere.
     """
 
     camera: Camera
     inverse_depth: NDArray[np.float32]
-    colour: NDArray[np.uint8] | None = None
     mask: NDArray[np.bool_] | None = None
 
 
@@ -52,25 +51,15 @@ class OrientedPoints:
     Attributes:
         positions: (n, 3) float64.
         normals: (n, 3) float32, unit, outwards.
-        colours: (n, 3) uint8.
         spacing: (n,) float32, world units: approximate distance to the next point, a pixel's width on the surface.
     """
 
     positions: NDArray[np.float64]
     normals: NDArray[np.float32]
-    colours: NDArray[np.uint8]
     spacing: NDArray[np.float32]
 
     def __len__(self) -> int:
         return len(self.positions)
-
-    def subset(self, chosen: NDArray[np.bool_] | NDArray[np.int64]) -> OrientedPoints:
-        """Some of the points.
-
-        Args:
-            chosen: A mask or indices.
-        """
-        return OrientedPoints(self.positions[chosen], self.normals[chosen], self.colours[chosen], self.spacing[chosen])
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,7 +80,6 @@ def fuse_depth_maps(
     views: Sequence[DepthView],
     *,
     tolerance: float = 0.01,
-    agreement: int = 2,
     limit: int = FUSION_MAX_POINTS,
     progress: Progress | None = None,
 ) -> OrientedPoints:
@@ -102,7 +90,6 @@ def fuse_depth_maps(
     Args:
         views: Depth maps.
         tolerance: Relative difference of depth up to which two views agree.
-        agreement: How many other views must agree.
         limit: Merge points into growing cells until at most so many remain.
         progress: Called for each part.
 
@@ -118,7 +105,6 @@ def fuse_depth_maps(
         )
     total = len(stack.inverse_depth)
     mean, counts, keep = np.empty((total, 3)), np.zeros(total, np.int16), np.zeros(total, np.bool_)
-    everyone = np.arange(len(views))
     bands = [
         (v, *band)
         for v, (_, height, _) in enumerate(stack.layout)
@@ -128,30 +114,30 @@ def fuse_depth_maps(
 
     def confirm(band: tuple[int, int, int]) -> None:
         confirm_points(
-            *band, stack.layout, stack.projections, stack.unprojections, stack.centres, everyone, stack.inverse_depth,
-            stack.normals, stack.level, stack.inside, tolerance, agreement, mean[spans[band[0]]],
+            *band, stack.layout, stack.projections, stack.unprojections, stack.centres, stack.inverse_depth,
+            stack.normals, stack.inside, tolerance, FUSION_MIN_AGREEING_VIEWS, mean[spans[band[0]]],
             counts[spans[band[0]]],
         )  # fmt: skip
 
     def select(band: tuple[int, int, int]) -> None:
         select_finest(
-            *band, stack.layout, stack.projections, everyone, mean, stack.normals, stack.level, counts, tolerance,
+            *band, stack.layout, stack.projections, mean, stack.normals, stack.level, counts, tolerance,
             keep[spans[band[0]]],
         )  # fmt: skip
 
-    for part in track(pieces(len(bands), 64), "fusion", len(pieces(len(bands), 64)), progress):
+    parts = pieces(len(bands), 64)
+    for part in track(parts, "fusion", len(parts), progress):
         parallel_map(confirm, bands[slice(*part)])
     parallel_map(select, bands)
     chosen = np.flatnonzero(keep)
     if len(chosen) == 0:
         raise ProxyError(
             "surface-no-points",
-            f"no point is confirmed by {agreement + 1} of the {len(views)} views",
+            f"no point is confirmed by {FUSION_MIN_AGREEING_VIEWS + 1} of the {len(views)} views",
             remedy="check the calibration (eigenfield inspect); the photographs must overlap and have texture",
         )
-    points = OrientedPoints(
-        mean[chosen], stack.normals[chosen], _point_colours(views, chosen, spans), _point_spacing(stack, chosen)
-    )
+    spacing = (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)  # the middle of each level's range
+    points = OrientedPoints(mean[chosen], stack.normals[chosen], spacing)
     log.info("fusion: %d points from %d views", len(points), len(views))
     return subsample_points(points, limit)
 
@@ -166,8 +152,7 @@ def subsample_points(points: OrientedPoints, limit: int) -> OrientedPoints:
         points: The points.
         limit: How many may remain.
     """
-    factor = 1.0
-    result = points
+    factor, result = 1.0, points
     while len(result) > limit:
         result = _merge_cells(points, factor)
         factor *= FUSION_CELL_GROWTH
@@ -190,8 +175,7 @@ def _merge_cells(points: OrientedPoints, factor: float) -> OrientedPoints:
     normals = average(points.normals.astype(np.float64))
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
     spacing = np.maximum(average(points.spacing.astype(np.float64)), factor * size[order][starts] / np.sqrt(2))
-    colours = np.rint(average(points.colours.astype(np.float64))).astype(np.uint8)
-    return OrientedPoints(average(points.positions), normals.astype(np.float32), colours, spacing.astype(np.float32))
+    return OrientedPoints(average(points.positions), normals.astype(np.float32), spacing.astype(np.float32))
 
 
 def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
@@ -225,17 +209,3 @@ def _stack_views(views: Sequence[DepthView]) -> _StackedViews:
 
     parallel_map(fill, range(len(views)))
     return stack
-
-
-def _point_colours(views: Sequence[DepthView], chosen: NDArray[np.int64], spans: Sequence[slice]) -> NDArray[np.uint8]:
-    colours = np.full((len(chosen), 3), 128, np.uint8)
-    for view, span in zip(views, spans, strict=True):
-        if view.colour is not None:
-            first, last = np.searchsorted(chosen, [span.start, span.stop])
-            colours[first:last] = view.colour.reshape(-1, 3)[chosen[first:last] - span.start]
-    return colours
-
-
-def _point_spacing(stack: _StackedViews, chosen: NDArray[np.int64]) -> NDArray[np.float32]:
-    """From the levels: the middle of each level's range."""
-    return (2.0 ** ((stack.level[chosen] + 0.5) / 2.0)).astype(np.float32)

@@ -107,8 +107,8 @@ def project_point(projection, x, y, z):
 
 @kernel()
 def confirm_points(
-    view, first, last, layout, projections, unprojections, centres, others, inverse_depth, normals, level, inside,
-    tolerance, agreement, mean, counts,
+    view, first, last, layout, projections, unprojections, centres, inverse_depth, normals, inside, tolerance,
+    agreement, mean, counts,
 ):  # fmt: skip
     """Which points of rows [first, last) of one view other views confirm, and their mean position.
 
@@ -122,10 +122,8 @@ def confirm_points(
         projections: (V, 3, 4).
         unprojections: (V, 3, 3) take index coordinates (x, y, 1) to the world direction of depth 1.
         centres: (V, 3).
-        others: Indices of the views to compare with.
         inverse_depth: Flat, of all views.
         normals: Flat, of all views.
-        level: Not used.
         inside: Flat uint8, 0 outside a mask.
         tolerance: Relative difference of depth.
         agreement: How many views must confirm.
@@ -149,7 +147,7 @@ def confirm_points(
             z = centres[view, 2] + (unproject[2, 0] * column + unproject[2, 1] * row + unproject[2, 2]) / w
             mx, my, mz = x, y, z
             confirmed, contradicted, hidden, seen = 0, 0, 0, 0
-            for u in others:
+            for u in range(layout.shape[0]):
                 if u == view:
                     continue
                 px, py, depth = project_point(projections[u], x, y, z)
@@ -190,7 +188,7 @@ def confirm_points(
 
 
 @kernel()
-def select_finest(view, first, last, layout, projections, order, mean, normals, level, confirmed, tolerance, keep):
+def select_finest(view, first, last, layout, projections, mean, normals, level, confirmed, tolerance, keep):
     """Which confirmed pixels of rows [first, last) of one view represent their surface element.
 
     A pixel yields to another view's confirmed pixel of the same element with a finer level, or with the same level and
@@ -201,7 +199,6 @@ def select_finest(view, first, last, layout, projections, order, mean, normals, 
         first, last: Range of rows.
         layout: (V, 3).
         projections: (V, 3, 4).
-        order: Indices of the views to compare with.
         mean: Flat positions of `confirm_points`, of all views.
         normals: Flat, of all views.
         level: Flat, of all views.
@@ -218,7 +215,7 @@ def select_finest(view, first, last, layout, projections, order, mean, normals, 
             if not keep[local]:
                 continue
             x, y, z = mean[pixel, 0], mean[pixel, 1], mean[pixel, 2]
-            for u in order:
+            for u in range(layout.shape[0]):
                 if u == view:
                     continue
                 px, py, depth = project_point(projections[u], x, y, z)
@@ -232,17 +229,10 @@ def select_finest(view, first, last, layout, projections, order, mean, normals, 
                 if not first_one:
                     continue
                 matrix = projections[u]
-                theirs = (
-                    matrix[2, 0] * mean[other, 0]
-                    + matrix[2, 1] * mean[other, 1]
-                    + matrix[2, 2] * mean[other, 2]
-                    + matrix[2, 3]
-                )
-                facing = (
-                    normals[pixel, 0] * normals[other, 0]
-                    + normals[pixel, 1] * normals[other, 1]
-                    + normals[pixel, 2] * normals[other, 2]
-                )
+                ox, oy, oz = mean[other, 0], mean[other, 1], mean[other, 2]
+                theirs = matrix[2, 0] * ox + matrix[2, 1] * oy + matrix[2, 2] * oz + matrix[2, 3]
+                facing = normals[pixel, 0] * normals[other, 0] + normals[pixel, 1] * normals[other, 1]
+                facing += normals[pixel, 2] * normals[other, 2]
                 if abs(theirs - depth) < 2 * tolerance * depth and facing > FUSION_MIN_NORMAL_COSINE:
                     keep[local] = False
                     break

@@ -21,15 +21,14 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
 from eigenfield.proxy.atlas.unwrap import PROXY_DEFAULT_TRIANGLES
-from eigenfield.proxy.background import camera_coverage, fill_background
+from eigenfield.proxy.background import fill_background
 from eigenfield.proxy.primitives.shapes import Primitive, insert_primitive
 from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
 from eigenfield.runtime.parallel import parallel_stream
-from eigenfield.stereo import ReferenceView
-from eigenfield.stereo.estimate import estimate_depth
+from eigenfield.stereo import ReferenceView, estimate_depth, view_matrices
 
 log = logging.getLogger("eigenfield.proxy")
 
@@ -93,14 +92,12 @@ class ReconstructedSurface:
     Attributes:
         mesh: Without UVs.
         error: Of its simplification, in pixels of the central camera.
-        coverage: (n,) fraction of each camera's pixels that the mesh covers.
         views: Number of depth maps.
         points: Number of fused points.
     """
 
     mesh: Mesh
     error: SurfaceError
-    coverage: NDArray[np.float64]
     views: int
     points: int
 
@@ -152,26 +149,15 @@ def surface_from_views(
         chosen = spread_views(cameras, MULTIVIEW_TUNING.coarse_views)
         pictures = _pictures(light_field, chosen, MULTIVIEW_TUNING.coarse_pixels, progress)
         views, tolerance = _depth_views(pictures, None, progress)
-        points = fuse_depth_maps(
-            views,
-            tolerance=tolerance,
-            agreement=MULTIVIEW_TUNING.min_neighbours,
-            limit=MULTIVIEW_TUNING.min_fused_points,
-            progress=progress,
-        ).positions
+        limit = MULTIVIEW_TUNING.min_fused_points
+        points = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress).positions
         log.info("coarse pass: %d points", len(points))
     chosen = spread_views(cameras, MULTIVIEW_TUNING.max_views)
-    pictures = _pictures(
-        light_field,
-        chosen,
-        min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen)),
-        progress,
-    )
+    most = min(MULTIVIEW_TUNING.max_pixels, MULTIVIEW_TUNING.max_total_pixels // len(chosen))
+    pictures = _pictures(light_field, chosen, most, progress)
     views, tolerance = _depth_views(pictures, points, progress)
     limit = max(MULTIVIEW_TUNING.points_per_triangle * triangles, MULTIVIEW_TUNING.min_fused_points)
-    fused = fuse_depth_maps(
-        views, tolerance=tolerance, agreement=MULTIVIEW_TUNING.min_neighbours, limit=limit, progress=progress
-    )
+    fused = fuse_depth_maps(views, tolerance=tolerance, limit=limit, progress=progress)
     masked = any(picture.mask is not None for picture in pictures)
     middle = cameras[_central_camera(cameras)]
     # masked pixels have no depth that could contradict a patch: nothing without points stays there
@@ -180,16 +166,13 @@ def surface_from_views(
     if masked:
         mesh = trim_by_masks(mesh, [p.camera for p in pictures], [p.mask for p in pictures])
     closed = (not masked) if background is None else background
-    mesh, error = simplify_with_error(
-        mesh, fused, round((1 - MULTIVIEW_TUNING.background_fraction * closed) * triangles), middle
-    )
+    share = 1 - MULTIVIEW_TUNING.background_fraction * closed
+    mesh, error = simplify_with_error(mesh, fused, round(share * triangles), middle)
     for primitive in primitives:
         mesh = insert_primitive(mesh, primitive, cameras)
     if closed:
         mesh = fill_background(mesh, cameras)
-    covered = camera_coverage(mesh, cameras)
-    log.info("surface: %d triangles, coverage %.4f (least %.4f)", len(mesh.faces), covered.mean(), covered.min())
-    return ReconstructedSurface(mesh, error, covered, len(chosen), len(fused))
+    return ReconstructedSurface(mesh, error, len(chosen), len(fused))
 
 
 def _central_camera(cameras: Sequence[Camera]) -> int:
@@ -260,7 +243,7 @@ def _depth_views(
         inverse_depth, tolerance = _depth_map(index, others, pictures, span)
         tolerances.append(tolerance)
         picture = pictures[index]
-        views.append(DepthView(picture.camera, inverse_depth, picture.pixels, picture.mask))
+        views.append(DepthView(picture.camera, inverse_depth, picture.mask))
     if len(views) < MULTIVIEW_TUNING.min_neighbours + 1:
         raise ProxyError(
             "surface-overlap",
@@ -288,9 +271,8 @@ def _inverse_range(
     distances = np.sort([float(np.linalg.norm(other.centre - camera.centre)) for other in cameras])
     baseline = float(np.median(distances[distances > 0][:3])) if (distances > 0).any() else 1.0
     parallax = camera.K[0, 0] * baseline
-    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, MULTIVIEW_TUNING.max_parallax_sides * max(
-        camera.width, camera.height
-    ) / parallax
+    most = MULTIVIEW_TUNING.max_parallax_sides * max(camera.width, camera.height)
+    return MULTIVIEW_TUNING.min_parallax_pixels / parallax, most / parallax
 
 
 def _depth_map(
@@ -300,7 +282,8 @@ def _depth_map(
     own = pictures[index]
     cameras = [pictures[i].camera for i in others]
     axis = own.camera.R[2]
-    across = [np.linalg.norm(d - (d @ axis) * axis) for d in (camera.centre - own.camera.centre for camera in cameras)]
+    apart = [camera.centre - own.camera.centre for camera in cameras]
+    across = [np.linalg.norm(step - (step @ axis) * axis) for step in apart]
     unit = 1 / (own.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
     reference = ReferenceView.with_margin(own.camera, 0, span[0], unit)
     reach = (span[1] - span[0]) / unit
@@ -309,11 +292,11 @@ def _depth_map(
     for slot, i in zip(stack, [index, *others], strict=True):
         part = pictures[i].pixels
         slot[: part.shape[0], : part.shape[1]] = part
-    depth = estimate_depth(
-        stack, [own.camera, *cameras], reference, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds
-    )
-    w = reference.offset + reference.scale * depth.d
-    w[(depth.d <= MULTIVIEW_TUNING.range_end_labels) | (depth.d >= reach - MULTIVIEW_TUNING.range_end_labels)] = 0
+    matrices = view_matrices(reference, [own.camera, *cameras])
+    d = estimate_depth(stack, matrices, reference.shape, (0.0, reach), rounds=MULTIVIEW_TUNING.refinement_rounds)
+    w = reference.offset + reference.scale * d
+    end = MULTIVIEW_TUNING.range_end_labels
+    w[(d <= end) | (d >= reach - end)] = 0
     for kept in (own.mask, own.known):
         if kept is not None:
             w[~kept] = 0

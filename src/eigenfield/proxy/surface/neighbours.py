@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,8 +33,10 @@ def frustum_points(camera: Camera, w_low: float, w_high: float) -> NDArray[np.fl
     return (rays / w.ravel()[:, None] - camera.t) @ camera.R
 
 
-def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(n,) which world points a camera has in its frame.
+def project_inside(
+    camera: Camera, points: NDArray[np.floating[Any]]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]:
+    """Pixels (n, 2) and depths (n,) of world points, and (n,) which of them a camera has in its frame.
 
     Args:
         camera: The camera.
@@ -41,8 +44,18 @@ def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool
     """
     pixels, depth = camera.project(points)
     with np.errstate(invalid="ignore"):
-        within = (pixels > 0).all(axis=1) & (pixels[:, 0] < camera.width) & (pixels[:, 1] < camera.height)
-    return np.asarray((depth > 0) & within)
+        within = (pixels > 0).all(axis=1) & (pixels < (camera.width, camera.height)).all(axis=1)
+    return pixels, depth, (depth > 0) & within
+
+
+def inside_frame(camera: Camera, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(n,) which world points a camera has in its frame.
+
+    Args:
+        camera: The camera.
+        points: (n, 3).
+    """
+    return project_inside(camera, points)[2]
 
 
 def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray[np.float64], count: int) -> list[int]:
@@ -65,24 +78,12 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
             continue
         seen = inside_frame(camera, points)
         rays = camera.centre - points[seen]
-        cosine = (rays * to_own[seen]).sum(axis=1) / (
-            np.linalg.norm(rays, axis=1) * np.linalg.norm(to_own[seen], axis=1) + 1e-300
-        )
+        lengths = np.linalg.norm(rays, axis=1) * np.linalg.norm(to_own[seen], axis=1)
+        cosine = (rays * to_own[seen]).sum(axis=1) / (lengths + 1e-300)
         angle = np.degrees(np.arccos(np.clip(cosine, -1, 1)))
-        bell = np.exp(
-            -(
-                (
-                    (angle - NEIGHBOUR_BEST_ANGLE_DEGREES)
-                    / np.where(
-                        angle < NEIGHBOUR_BEST_ANGLE_DEGREES,
-                        NEIGHBOUR_NARROW_SIGMA_DEGREES,
-                        NEIGHBOUR_WIDE_SIGMA_DEGREES,
-                    )
-                )
-                ** 2
-            )
-            / 2
-        )
+        narrow = angle < NEIGHBOUR_BEST_ANGLE_DEGREES
+        sigma = np.where(narrow, NEIGHBOUR_NARROW_SIGMA_DEGREES, NEIGHBOUR_WIDE_SIGMA_DEGREES)
+        bell = np.exp(-(((angle - NEIGHBOUR_BEST_ANGLE_DEGREES) / sigma) ** 2) / 2)
         # a narrow array has only small angles: they count by their size, and two cameras at one place not at all
         scores[index] = (np.minimum(bell, angle / NEIGHBOUR_BEST_ANGLE_DEGREES)).sum()
     centres = np.array([camera.centre for camera in cameras])
@@ -94,10 +95,8 @@ def choose_neighbours(reference: int, cameras: Sequence[Camera], points: NDArray
         if len(chosen) >= NEIGHBOUR_MIN_COUNT and scores[best] < NEIGHBOUR_MIN_SCORE_RATIO * scores.max():
             break
         chosen.append(best)
-        apart = np.linalg.norm(centres - centres[best], axis=1) / np.maximum(
-            NEIGHBOUR_MIN_DISTANCE_RATIO * distance, 1e-300
-        )
-        worth = worth * np.minimum(apart, 1.0)
+        apart = np.linalg.norm(centres - centres[best], axis=1)
+        worth = worth * np.minimum(apart / np.maximum(NEIGHBOUR_MIN_DISTANCE_RATIO * distance, 1e-300), 1.0)
         worth[best] = 0
     return chosen
 

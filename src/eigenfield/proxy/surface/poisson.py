@@ -7,7 +7,6 @@ import logging
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
@@ -23,14 +22,13 @@ POISSON_CELL_SPACINGS = 2.0  # width of a cell in spacings of the points: less f
 POISSON_BOX_MARGIN = 1.1  # size of the octree's cube relative to the points' box
 
 
-def poisson_surface(points: OrientedPoints, *, depth: int | None = None, progress: Progress | None = None) -> Mesh:
+def poisson_surface(points: OrientedPoints, *, progress: Progress | None = None) -> Mesh:
     """The watertight (or box-bounded) surface through oriented points; trim it with `trim_surface`.
 
     It runs in one thread of a child process: with more threads, the library's result differs from run to run.
 
     Args:
         points: Oriented points.
-        depth: Of the octree; None chooses it from the points' spacing.
         progress: Called while the child works.
 
     Raises:
@@ -42,38 +40,29 @@ def poisson_surface(points: OrientedPoints, *, depth: int | None = None, progres
             f"{len(points)} points are no surface",
             remedy="check the calibration (eigenfield inspect), and that the photographs overlap and have texture",
         )
-    centre, scale = _normalisation(points.positions)
-    chosen = octree_depth(points) if depth is None else depth
+    low, high = points.positions.min(axis=0), points.positions.max(axis=0)
+    centre, scale = (low + high) / 2, float((high - low).max()) or 1.0
+    depth = _octree_depth(points, scale)
     table = np.hstack([(points.positions - centre) / scale, points.normals]).astype(np.float32)
     report = progress or (lambda stage, done, total: None)
     report("surface", 0, 1)
     answer = run_child(
-        Path(__file__).with_name("poisson_process.py"), [table, np.array([chosen])], lambda: report("surface", 0, 1),
+        Path(__file__).with_name("poisson_process.py"), [table, np.array([depth])], lambda: report("surface", 0, 1),
         "surface-poisson", "the Poisson reconstruction",
         "ask for smaller photographs if memory ran out; else report it with these photographs",
     )  # fmt: skip
     report("surface", 1, 1)
     written = io.BytesIO(answer)
     vertices, faces = (np.load(written, allow_pickle=False) for _ in range(2))
-    log.info("Poisson: depth %d, %d triangles from %d points", chosen, len(faces), len(points))
+    log.info("Poisson: depth %d, %d triangles from %d points", depth, len(faces), len(points))
     mesh = Mesh((vertices.astype(np.float64) * scale + centre).astype(np.float32), faces)
     return _orient_like_points(mesh, points)
 
 
-def octree_depth(points: OrientedPoints) -> int:
-    """The depth at which a cell is about POISSON_CELL_SPACINGS of the points' median spacing wide.
-
-    Args:
-        points: Oriented points.
-    """
-    _, scale = _normalisation(points.positions)
+def _octree_depth(points: OrientedPoints, scale: float) -> int:
+    """The depth at which a cell is about POISSON_CELL_SPACINGS of the points' median spacing wide."""
     cells = POISSON_BOX_MARGIN * scale / (POISSON_CELL_SPACINGS * float(np.median(points.spacing)))
     return int(np.clip(np.rint(np.log2(max(cells, 1.0))), POISSON_MIN_DEPTH, POISSON_MAX_DEPTH))
-
-
-def _normalisation(positions: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
-    low, high = positions.min(axis=0), positions.max(axis=0)
-    return (low + high) / 2, float((high - low).max()) or 1.0
 
 
 def _orient_like_points(mesh: Mesh, points: OrientedPoints) -> Mesh:

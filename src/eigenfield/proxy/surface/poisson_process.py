@@ -14,6 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
+from trimesh.exchange.ply import load_ply
 
 
 def main() -> None:
@@ -38,27 +39,13 @@ def main() -> None:
         options = pycolmap.PoissonMeshingOptions()
         options.depth, options.trim, options.color, options.num_threads = int(depth), 0.0, False, 1
         pycolmap.poisson_meshing(source, result, options)
-        vertices, faces = _read_ply(result)
+        with result.open("rb") as file:
+            mesh = load_ply(file, fix_texture=False, skip_materials=True)
     written = io.BytesIO()
-    for array in (vertices, faces):
+    for array in (mesh["vertices"].astype(np.float32), mesh["faces"].astype(np.int32)):
         np.save(written, array, allow_pickle=False)
     with answer:
         answer.write(written.getvalue())
-
-
-def _read_ply(path: Path) -> tuple[np.ndarray, np.ndarray]:
-    data = path.read_bytes()
-    end = data.index(b"end_header\n") + len(b"end_header\n")
-    lines = [line.split() for line in data[:end].decode().splitlines()]
-    counts = {line[1]: int(line[2]) for line in lines if line[0] == "element"}
-    vertex_lines = lines[: next(i for i, line in enumerate(lines) if line[:2] == ["element", "face"])]
-    kinds = {"float": "<f4", "uchar": "u1", "int": "<i4", "double": "<f8"}
-    fields = [(line[2], kinds[line[1]]) for line in vertex_lines if line[0] == "property"]
-    (listing,) = [line for line in lines if line[:2] == ["property", "list"]]
-    vertex, face = np.dtype(fields), np.dtype([("count", kinds[listing[2]]), ("corners", kinds[listing[3]], 3)])
-    table = np.frombuffer(data, vertex, counts["vertex"], end)
-    corners = np.frombuffer(data, face, counts["face"], end + counts["vertex"] * vertex.itemsize)["corners"]
-    return np.stack([table[name] for name in ("x", "y", "z")], axis=1).astype(np.float32), corners.astype(np.int32)
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ from eigenfield.core.errors import ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.proxy.atlas.unwrap import simplify_mesh
 from eigenfield.proxy.surface.fusion import DepthView, OrientedPoints
+from eigenfield.proxy.surface.neighbours import project_inside
 from eigenfield.proxy.topology import face_patches, fill_holes, make_manifold, remove_islands
 from eigenfield.runtime.parallel import parallel_map
 
@@ -37,14 +38,12 @@ class SurfaceError:
 
     Attributes:
         rms: Root mean square, world units.
-        p95: 95th percentile, world units.
         relative: rms over the diagonal of the points' box (1st to 99th percentiles).
         pixels: Root mean square in pixels of a camera, as if the whole distance were across the line of sight.
         pixels_p95: 95th percentile in pixels.
     """
 
     rms: float
-    p95: float
     relative: float
     pixels: float
     pixels_p95: float
@@ -59,36 +58,28 @@ def trim_surface(
     *,
     views: Sequence[DepthView] = (),
     tolerance: float = 0.01,
-    reach: float = TRIM_SUPPORT_SPACINGS,
-    max_gap: float = TRIM_MAX_GAP_SPACINGS,
-    max_wall: float = TRIM_MAX_WALL_SPACINGS,
-    min_island: float = TRIM_MIN_ISLAND_FRACTION,
 ) -> Mesh:
     """Remove what no points support and close small holes; no small islands and nothing non-manifold remains.
 
     Args:
         mesh: The closed surface.
         points: The points that it was reconstructed from.
-        views: Depth maps. With them, unsupported patches up to `max_wall` stay too if no two depth maps see through
-            them: bare walls have no points.
+        views: Depth maps. With them, larger unsupported patches stay too if no two depth maps see through them: bare
+            walls have no points.
         tolerance: Relative; a view sees through a patch if it sees something farther by more than twice this.
-        reach: Distance from a point at which the surface is supported, in spacings of that point.
-        max_gap: Size up to which unsupported patches stay and holes are closed, in median spacings.
-        max_wall: See `views`, in median spacings.
-        min_island: Fraction of the area below which a patch is dropped.
 
     Raises:
         ProxyError: `surface-empty`: nothing remains.
     """
     spacing = float(np.median(points.spacing))
-    gap_size = max_gap * spacing
-    supported = np.asarray(_has_support(mesh, points, reach)[mesh.faces].all(axis=1), np.bool_)
+    gap_size = TRIM_MAX_GAP_SPACINGS * spacing
+    supported = np.asarray(_has_support(mesh, points)[mesh.faces].all(axis=1), np.bool_)
     kept = supported | _small_patches(mesh, ~supported, gap_size)
     if views:
         solid = ~supported & ~_seen_through(mesh, views, tolerance)[mesh.faces].any(axis=1)
-        kept |= _small_patches(mesh, solid, max_wall * spacing)
-    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), min_island))
-    result = remove_islands(fill_holes(result, gap_size), min_island)
+        kept |= _small_patches(mesh, solid, TRIM_MAX_WALL_SPACINGS * spacing)
+    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), TRIM_MIN_ISLAND_FRACTION))
+    result = remove_islands(fill_holes(result, gap_size), TRIM_MIN_ISLAND_FRACTION)
     if len(result.faces) == 0:
         raise ProxyError(
             "surface-empty",
@@ -99,20 +90,13 @@ def trim_surface(
     return result
 
 
-def trim_by_masks(
-    mesh: Mesh,
-    cameras: Sequence[Camera],
-    masks: Sequence[NDArray[np.bool_] | None],
-    *,
-    min_island: float = TRIM_MIN_ISLAND_FRACTION,
-) -> Mesh:
+def trim_by_masks(mesh: Mesh, cameras: Sequence[Camera], masks: Sequence[NDArray[np.bool_] | None]) -> Mesh:
     """Remove what no view has in its frame, and what more than a tenth of those that do see outside their masks.
 
     Args:
         mesh: The surface.
         cameras: The views.
         masks: (H, W) bool at the cameras' sizes; one pixel outside is tolerated.
-        min_island: Fraction of the area below which a patch is dropped.
 
     Raises:
         ProxyError: `surface-empty`: nothing remains.
@@ -120,16 +104,13 @@ def trim_by_masks(
     positions = mesh.vertices.astype(np.float64)
     seen, hidden = np.zeros(len(positions), np.int64), np.zeros(len(positions), np.int64)
     for camera, mask in zip(cameras, masks, strict=True):
-        pixels, depth = camera.project(positions)
-        with np.errstate(invalid="ignore"):
-            inside = (depth > 0) & (pixels >= 0).all(axis=1)
-            inside &= (pixels[:, 0] < camera.width) & (pixels[:, 1] < camera.height)
+        pixels, _, inside = project_inside(camera, positions)
         seen += inside
         if mask is not None:
             column, row = pixels[inside].astype(np.int64).T
             hidden[inside] += ~binary_dilation(mask, np.ones((3, 3), np.bool_))[row, column]
     kept = ((seen > 0) & (hidden * 10 <= seen))[mesh.faces].all(axis=1)
-    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), min_island))
+    result = make_manifold(remove_islands(Mesh(mesh.vertices, mesh.faces[kept]), TRIM_MIN_ISLAND_FRACTION))
     if len(result.faces) == 0:
         raise ProxyError(
             "surface-empty",
@@ -151,9 +132,8 @@ def simplify_with_error(
         camera: Whose pixels measure the error.
     """
     result = mesh if len(mesh.faces) <= triangles else make_manifold(simplify_mesh(mesh, triangles))
-    near = (
-        KDTree(mesh.vertices).query(points.positions)[0] <= TRIM_SUPPORT_SPACINGS * points.spacing
-    )  # not what trimming removed
+    # not what trimming removed
+    near = KDTree(mesh.vertices).query(points.positions)[0] <= TRIM_SUPPORT_SPACINGS * points.spacing
     error = surface_error(result, points.positions[near] if near.any() else points.positions, camera)
     log.info("simplified from %d to %d triangles: %s", len(mesh.faces), len(result.faces), error)
     return result, error
@@ -177,7 +157,6 @@ def surface_error(mesh: Mesh, positions: NDArray[np.float64], camera: Camera) ->
     rms = float(np.sqrt((distance**2).mean()))
     return SurfaceError(
         rms,
-        float(np.percentile(distance, 95)),
         rms / (float(np.linalg.norm(high - low)) or 1.0),
         float(np.sqrt((pixels**2).mean())) if len(pixels) else 0.0,
         float(np.percentile(pixels, 95)) if len(pixels) else 0.0,
@@ -226,12 +205,12 @@ def surface_samples(mesh: Mesh, count: int) -> tuple[NDArray[np.float64], NDArra
     return p[:, 0] + u[:, None] * (p[:, 1] - p[:, 0]) + v[:, None] * (p[:, 2] - p[:, 0]), face
 
 
-def _has_support(mesh: Mesh, points: OrientedPoints, reach: float) -> NDArray[np.bool_]:
-    """(n,) whether a point lies within `reach` of each vertex, in units of its spacing or of a typical edge."""
+def _has_support(mesh: Mesh, points: OrientedPoints) -> NDArray[np.bool_]:
+    """(n,) whether a point lies near each vertex, in units of its spacing or of half a typical edge."""
     corners = mesh.vertices[mesh.faces].astype(np.float64)
     edge = float(np.median(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)))
     distance, nearest = KDTree(points.positions).query(mesh.vertices)
-    return distance <= reach * np.maximum(points.spacing[nearest], edge / 2)
+    return distance <= TRIM_SUPPORT_SPACINGS * np.maximum(points.spacing[nearest], edge / 2)
 
 
 def _seen_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> NDArray[np.bool_]:
@@ -240,10 +219,7 @@ def _seen_through(mesh: Mesh, views: Sequence[DepthView], tolerance: float) -> N
 
     def behind(view: DepthView) -> NDArray[np.bool_]:
         nearest = maximum_filter(np.where(view.inverse_depth > 0, view.inverse_depth, np.inf), 3)
-        pixels, depth = view.camera.project(positions)
-        with np.errstate(invalid="ignore"):
-            inside = (depth > 0) & (pixels >= 0).all(axis=1)
-            inside &= (pixels[:, 0] < view.camera.width) & (pixels[:, 1] < view.camera.height)
+        pixels, depth, inside = project_inside(view.camera, positions)
         column, row = pixels[inside].astype(np.int64).T
         result = np.zeros(len(positions), np.bool_)
         result[inside] = nearest[row, column] * depth[inside] < 1 - 2 * tolerance
