@@ -50,9 +50,9 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
     normalised = target.copy()
     with np.errstate(all="ignore"):
         for _ in range(UNDISTORT_MAX_ITERATIONS):
-            error = apply_distortion(normalised, known.lens) - target
+            error = _apply_distortion(normalised, known.lens) - target
             right, down = (
-                (apply_distortion(normalised + step, known.lens) - apply_distortion(normalised - step, known.lens))
+                (_apply_distortion(normalised + step, known.lens) - _apply_distortion(normalised - step, known.lens))
                 / (2 * UNDISTORT_DERIVATIVE_STEP)
                 for step in UNDISTORT_DERIVATIVE_STEP * np.eye(2)
             )
@@ -64,7 +64,7 @@ def undistort_pixels(points: F64, known: KnownLens) -> F64:
             normalised = normalised - step
             if np.abs(step).max() < UNDISTORT_STEP_TOLERANCE:
                 break
-        left = np.abs(apply_distortion(normalised, known.lens) - target).max(axis=1)
+        left = np.abs(_apply_distortion(normalised, known.lens) - target).max(axis=1)
         wrong = ~(left < UNDISTORT_MAX_ERROR_PIXELS / focal.max())
         wrong |= ~((normalised**2).sum(axis=1) < known.lens.valid_radius() ** 2)
     normalised[wrong] = np.nan
@@ -78,17 +78,12 @@ def distort_to_pixels(normalised: F64, known: KnownLens) -> F64:
         normalised: (n, 2) directions x / z, y / z.
         known: The lens.
     """
-    seen = normalised if known.lens is None or len(normalised) == 0 else apply_distortion(normalised, known.lens)
+    seen = normalised if known.lens is None or len(normalised) == 0 else _apply_distortion(normalised, known.lens)
     return seen * known.K[[0, 1], [0, 1]] + known.K[:2, 2]
 
 
-def apply_distortion(normalised: F64, lens: Lens) -> F64:
-    """(n, 2) distorted coordinates x', y', as `Lens` defines them.
-
-    Args:
-        normalised: (n, 2) directions x / z, y / z.
-        lens: The distortion.
-    """
+def _apply_distortion(normalised: F64, lens: Lens) -> F64:
+    """(n, 2) distorted coordinates x', y' of directions x / z, y / z (n, 2), as `Lens` defines them."""
     if lens.model.startswith("metashape"):
         return np.column_stack(metashape_distortion(normalised[:, 0], normalised[:, 1], lens))
     rays = np.column_stack([normalised, np.ones(len(normalised))])[:, None]

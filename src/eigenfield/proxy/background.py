@@ -192,12 +192,8 @@ def _small_camera(camera: Camera) -> Camera:
     return camera.resize(max(1, round(camera.width * scale)), max(1, round(camera.height * scale)))
 
 
-def corner_rays(camera: Camera) -> NDArray[np.float64]:
-    """(16, 3) world directions of depth 1 around the border of a camera's frame.
-
-    Args:
-        camera: The camera.
-    """
+def _corner_rays(camera: Camera) -> NDArray[np.float64]:
+    """(16, 3) world directions of depth 1 around the border of a camera's frame."""
     t = np.linspace(0, 1, 5)[:-1]
     x = np.concatenate([t, np.ones(4), 1 - t, np.zeros(4)]) * camera.width
     y = np.concatenate([np.zeros(4), t, np.ones(4), 1 - t]) * camera.height
@@ -222,7 +218,7 @@ def _sheet_directions(samples: NDArray[np.float64], cameras: Sequence[Camera]) -
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     steepest = np.tan(np.radians(BACKGROUND_TUNING.sheet_max_angle_degrees))
     for camera in cameras:
-        rays = corner_rays(camera) @ axis.T
+        rays = _corner_rays(camera) @ axis.T
         if (rays[:, 2] * steepest <= np.hypot(rays[:, 0], rays[:, 1])).any():
             return None
         local = axis @ (camera.centre - centre)

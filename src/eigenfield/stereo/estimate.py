@@ -98,7 +98,7 @@ def estimate_depth(
     step = _label_step(matrices, shape, low, high)
     sharp = detail_pictures(packed[chosen], DEPTH_TUNING.sweep_detail_gain, blur_sigma=0)
     detail = detail_pictures(packed)
-    picture, known = warp_reference_picture(packed, matrices, shape)
+    picture, known = _warp_reference_picture(packed, matrices, shape)
 
     def extend(d: NDArray[np.float32]) -> NDArray[np.float32]:
         return extend_depth(d, known | _seen_by_enough(packed[chosen], matrices[chosen], d), low, high)
@@ -121,22 +121,13 @@ def estimate_depth(
     return d
 
 
-def warp_reference_picture(
-    pictures: Pictures, matrices: NDArray[np.float64], shape: tuple[int, int]
+def _warp_reference_picture(
+    packed: NDArray[np.uint32], matrices: NDArray[np.float64], shape: tuple[int, int]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     """The reference camera's own picture, warped to the reference view, if it is among the views.
 
-    It is the view in which no point moves with its label.
-
-    Args:
-        pictures: (V, H, W, 3) uint8 or packed.
-        matrices: (V, 3, 4) of the views.
-        shape: (h, w) of the reference view.
-
-    Returns:
-        (h, w, 3) float32 picture and (h, w) mask of where it has pixels.
+    It is the view in which no point moves with its label: (h, w, 3), and (h, w) where it has pixels.
     """
-    packed = pack_pictures(pictures)
     moved = np.abs(matrices[:, :, 2]).max(axis=1)
     scale = np.abs(label_parallax(matrices, shape)).max(initial=0.0)
     index = int(moved.argmin())
@@ -214,8 +205,8 @@ def sweep_and_match(
         labels: (L,) evenly spaced.
         options: Of `plane_sweep`.
     """
-    compared, known = warp_reference_picture(detail, matrices, shape)
-    grey = warp_reference_picture(pictures, matrices, shape)[0].mean(axis=-1).astype(np.float32)
+    compared, known = _warp_reference_picture(detail, matrices, shape)
+    grey = _warp_reference_picture(pictures, matrices, shape)[0].mean(axis=-1).astype(np.float32)
     cost = plane_sweep(detail, matrices, shape, labels, reference=compared, known=known, **options)
     return semi_global_matching(cost, grey, labels)[0], cost
 

@@ -8,13 +8,8 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel(inline=True)
-def bilinear_rgb(picture, x, y):  # type: ignore[no-untyped-def]
-    """The three channels of a picture, bilinearly interpolated.
-
-    Args:
-        picture: (H, W, 3).
-        x, y: Index coordinates inside it.
-    """
+def _bilinear_rgb(picture, x, y):  # type: ignore[no-untyped-def]
+    """The three channels of a picture (H, W, 3), bilinearly interpolated at index coordinates inside it."""
     i, j = int(x), int(y)
     fx, fy = np.float32(x - i), np.float32(y - j)
     one = np.float32(1)
@@ -65,9 +60,9 @@ def normal_equations(picture, points, colours, matrix, derivatives, buffer, bias
             continue
         if buffer[int(v + 0.5), int(u + 0.5)] > d + bias:
             continue
-        here = bilinear_rgb(picture, u, v)
-        east, west = bilinear_rgb(picture, u + half, v), bilinear_rgb(picture, u - half, v)
-        south, north = bilinear_rgb(picture, u, v + half), bilinear_rgb(picture, u, v - half)
+        here = _bilinear_rgb(picture, u, v)
+        east, west = _bilinear_rgb(picture, u + half, v), _bilinear_rgb(picture, u - half, v)
+        south, north = _bilinear_rgb(picture, u, v + half), _bilinear_rgb(picture, u, v - half)
         for p in range(count):
             m = derivatives[p]
             dz = m[2, 0] * x + m[2, 1] * y + m[2, 2] * d + m[2, 3]

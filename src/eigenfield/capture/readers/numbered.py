@@ -41,13 +41,13 @@ def read_numbered(folder: Path, options: OpenOptions) -> Arrangement:
     elif len(files) < total and numbers[-1] - numbers[0] + 1 == total:
         places = [number - numbers[0] for number in numbers]
     else:
-        raise grid_size_error(len(files), options.grid, folder)
+        raise _grid_size_error(len(files), options.grid, folder)
     rows, columns = [p // options.grid[1] for p in places], [p % options.grid[1] for p in places]
     layout, problems = make_grid_layout(files, rows, columns, OpenOptions(), folder)
     return Arrangement("numbered", tuple(files), layout, tuple(problems), tuple(others))
 
 
-def grid_size_error(photographs: int, grid: tuple[int, int], folder: Path) -> CaptureError:
+def _grid_size_error(photographs: int, grid: tuple[int, int], folder: Path) -> CaptureError:
     """The error for a grid that does not hold as many photographs as there are; its remedy states those that would."""
     fitting = [f"{a}x{photographs // a}" for a in range(1, photographs + 1) if photographs % a == 0]
     return CaptureError(

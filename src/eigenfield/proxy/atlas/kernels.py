@@ -21,7 +21,7 @@ def count_layers(
         layers: (H, W) uint8, added to; saturates at 255.
     """
     for f in range(faces.shape[0]):
-        cover_triangle(corners, faces[f], margin, layers, True)
+        _cover_triangle(corners, faces[f], margin, layers, True)
 
 
 @kernel()
@@ -44,13 +44,13 @@ def claim_texels(
         claimed: (m,) bool, set for the selected triangles.
     """
     for f in order:
-        if cover_triangle(corners, faces[f], margin, layers, False) == 0:
-            cover_triangle(corners, faces[f], margin, layers, True)
+        if _cover_triangle(corners, faces[f], margin, layers, False) == 0:
+            _cover_triangle(corners, faces[f], margin, layers, True)
             claimed[f] = True
 
 
 @kernel()
-def cover_triangle(
+def _cover_triangle(
     corners: NDArray[np.float64], face: NDArray[np.int32], margin: float, layers: NDArray[np.uint8], add: bool
 ) -> int:
     """The most layers on the texels whose centre lies in a triangle, before the triangle is added.

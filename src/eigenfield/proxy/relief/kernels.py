@@ -19,14 +19,8 @@ from eigenfield.runtime.jit import kernel
 
 
 @kernel()
-def column_range(points, a, b, c, y):
-    """First and last column of row y whose pixel centre is in the triangle a, b, c; borders count.
-
-    Args:
-        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
-        a, b, c: Indices of points.
-        y: Row.
-    """
+def _column_range(points, a, b, c, y):
+    """First and last column of row y whose pixel centre is in the triangle a, b, c; borders count."""
     low, high = -(1 << 40), 1 << 40
     Y = y * DELAUNAY_STEPS_PER_PIXEL
     for p, q in ((a, b), (b, c), (c, a)):
@@ -43,13 +37,8 @@ def column_range(points, a, b, c, y):
 
 
 @kernel()
-def row_range(points, a, b, c):
-    """First and last row of pixel centres that the triangle a, b, c reaches.
-
-    Args:
-        points: (n, 2) in steps of DELAUNAY_STEPS_PER_PIXEL.
-        a, b, c: Indices of points.
-    """
+def _row_range(points, a, b, c):
+    """First and last row of pixel centres that the triangle a, b, c reaches."""
     low = min(points[a, 1], points[b, 1], points[c, 1])
     high = max(points[a, 1], points[b, 1], points[c, 1])
     return -(-low // DELAUNAY_STEPS_PER_PIXEL), high // DELAUNAY_STEPS_PER_PIXEL
@@ -70,9 +59,9 @@ def label_pixels(points, tri, count, owner):
         a, b, c = tri[t]
         if a < 0:
             continue
-        first, last = row_range(points, a, b, c)
+        first, last = _row_range(points, a, b, c)
         for y in range(max(first, 0), min(last, owner.shape[0] - 1) + 1):
-            low, high = column_range(points, a, b, c, y)
+            low, high = _column_range(points, a, b, c, y)
             for x in range(max(low, 0), min(high, owner.shape[1] - 1) + 1):
                 owner[y, x] = t
 
@@ -103,7 +92,7 @@ def depth_error(d, valid, at_cut, y, x, z):
 
 
 @kernel()
-def worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
+def _worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
     """The valid pixel of triangle t at which the mesh is farthest from the depth map.
 
     Args:
@@ -123,9 +112,9 @@ def worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
     if a < 0:
         return
     area = float(twice_signed_area(points, a, b, c))
-    first, last = row_range(points, a, b, c)
+    first, last = _row_range(points, a, b, c)
     for y in range(max(first, 0), min(last, d.shape[0] - 1) + 1):
-        low, high = column_range(points, a, b, c, y)
+        low, high = _column_range(points, a, b, c, y)
         for x in range(max(low, 0), min(high, d.shape[1] - 1) + 1):
             if not valid[y, x]:
                 continue
@@ -133,19 +122,13 @@ def worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value):
             wa, wb = float(twice_area_to(points, b, c, X, Y)) / area, float(twice_area_to(points, c, a, X, Y)) / area
             z = wa * height[a] + wb * height[b] + (1 - wa - wb) * height[c]
             error, found = depth_error(d, valid, at_cut, y, x, z)
-            if error > worst[t] and not is_corner(points, a, b, c, X, Y):
+            if error > worst[t] and not _is_corner(points, a, b, c, X, Y):
                 worst[t], place[t, 0], place[t, 1], value[t] = error, y, x, found
 
 
 @kernel()
-def is_corner(points, a, b, c, X, Y):
-    """Whether a place is a corner of a triangle.
-
-    Args:
-        points: (n, 2).
-        a, b, c: Indices of points.
-        X, Y: The place, in the same steps.
-    """
+def _is_corner(points, a, b, c, X, Y):
+    """Whether the place X, Y, in the steps of the points, is a corner of the triangle a, b, c."""
     corner = False
     for p in (a, b, c):
         corner |= points[p, 0] == X and points[p, 1] == Y
@@ -161,7 +144,7 @@ def refine_greedily(
     Each pass takes all triangles within a factor of two of the worst that no earlier insertion of the pass has changed.
 
     Args:
-        points, height, tri, adjacent, constrained, incident: As in `triangulation` and `worst_pixel`, with room for
+        points, height, tri, adjacent, constrained, incident: As in `triangulation` and `_worst_pixel`, with room for
             limit + 2 rows.
         vertices: Number of points in use.
         count: Number of triangles in use.
@@ -183,7 +166,7 @@ def refine_greedily(
     while True:
         for t in range(count):
             if changed[t] == stamp:
-                worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value)
+                _worst_pixel(points, height, tri, t, d, valid, at_cut, worst, place, value)
         top = worst[:count].max() if count else 0.0
         if top <= tolerance or count + 2 > limit:
             return vertices, count, top
@@ -204,16 +187,11 @@ def refine_greedily(
 
 
 @kernel()
-def fit_line(sums, first, last):
-    """The least-squares line through points [first, last] of a chain.
+def _fit_line(sums, first, last):
+    """A line through points [first, last] of a chain by least squares: a point, its normal, and the sum of squares.
 
-    Args:
-        sums: (n + 1, 5) prefix sums of x, y, x x, x y, y y.
-        first, last: Indices.
-
-    Returns:
-        A point on the line, its normal, and the sum of squared distances (the smaller eigenvalue of the scatter
-        matrix).
+    The sum of squared distances is the smaller eigenvalue of the scatter matrix. `sums` (n + 1, 5) are prefix sums of
+    x, y, x x, x y, y y.
     """
     n = last - first + 1
     x = (sums[last + 1, 0] - sums[first, 0]) / n
@@ -227,16 +205,9 @@ def fit_line(sums, first, last):
 
 
 @kernel()
-def is_straight(chain, sums, first, last, tolerance):
-    """Whether points [first, last] of a chain lie within a tolerance of their line.
-
-    Args:
-        chain: (n, 2).
-        sums: Of `fit_line`.
-        first, last: Indices.
-        tolerance: Pixels.
-    """
-    x, y, nx, ny, _ = fit_line(sums, first, last)
+def _is_straight(chain, sums, first, last, tolerance):
+    """Whether points [first, last] of a chain (n, 2) lie within a tolerance of their line, pixels."""
+    x, y, nx, ny, _ = _fit_line(sums, first, last)
     farthest = 0.0
     for i in range(first, last + 1):
         farthest = max(farthest, abs((chain[i, 0] - x) * nx + (chain[i, 1] - y) * ny))
@@ -267,15 +238,15 @@ def split_chain(chain, tolerance, window, kept):
     count, first = 1, 0
     while first < n - 1:
         good, bad, step = first + 1, n, 2
-        while first + step < n and is_straight(local, sums, first, first + step, tolerance):
+        while first + step < n and _is_straight(local, sums, first, first + step, tolerance):
             good, step = first + step, 2 * step
         if good < n - 1:
             bad = min(first + step, n)
-            if bad == n and is_straight(local, sums, first, n - 1, tolerance):
+            if bad == n and _is_straight(local, sums, first, n - 1, tolerance):
                 good = n - 1
         while bad - good > 1 and good < n - 1:
             middle = (good + bad) // 2
-            if is_straight(local, sums, first, middle, tolerance):
+            if _is_straight(local, sums, first, middle, tolerance):
                 good = middle
             else:
                 bad = middle
@@ -286,7 +257,7 @@ def split_chain(chain, tolerance, window, kept):
         before, after = knots[k - 1], knots[k + 1]
         best, place = np.inf, knots[k]
         for i in range(max(before + 1, knots[k] - window), min(after - 1, knots[k] + window) + 1):
-            error = fit_line(sums, before, i)[4] + fit_line(sums, i, after)[4]
+            error = _fit_line(sums, before, i)[4] + _fit_line(sums, i, after)[4]
             if error < best:
                 best, place = error, i
         knots[k] = place
@@ -323,22 +294,14 @@ def wedge_moments(points, tri, d, valid, at_cut, reach, clear, near):
                         continue
                     x, y, z = column - middle_x, row - middle_y, d[row, column]
                     w = 1 / (1 + x * x + y * y)
-                    add_moments(near, p, w, x, y, z)
+                    _add_moments(near, p, w, x, y, z)
                     if not at_cut[row, column]:
-                        add_moments(clear, p, w, x, y, z)
+                        _add_moments(clear, p, w, x, y, z)
 
 
 @kernel()
-def add_moments(sums, p, w, x, y, z):
-    """Add one pixel to the moments of vertex p.
-
-    Args:
-        sums: (n, 9).
-        p: Vertex.
-        w: Weight.
-        x, y: Pixel, from the vertex.
-        z: Label.
-    """
+def _add_moments(sums, p, w, x, y, z):
+    """Add one pixel of weight w and label z, at x, y from vertex p, to the moments (n, 9) of the vertex."""
     sums[p, 0] += w
     sums[p, 1] += w * x
     sums[p, 2] += w * y

@@ -53,13 +53,8 @@ def twice_area_to(points, a, b, x, y):
 
 
 @kernel()
-def in_circle(points, a, b, c, d):
-    """Whether d is inside the circle through a, b, c (positive area).
-
-    Args:
-        points: (n, 2).
-        a, b, c, d: Indices of points.
-    """
+def _in_circle(points, a, b, c, d):
+    """Whether d is inside the circle through a, b, c (positive area)."""
     ax, ay = float(points[a, 0] - points[d, 0]), float(points[a, 1] - points[d, 1])
     bx, by = float(points[b, 0] - points[d, 0]), float(points[b, 1] - points[d, 1])
     cx, cy = float(points[c, 0] - points[d, 0]), float(points[c, 1] - points[d, 1])
@@ -70,30 +65,18 @@ def in_circle(points, a, b, c, d):
 
 
 @kernel()
-def opposite_corner(adjacent, u, t):
-    """The corner of u opposite the edge that it shares with t.
-
-    Args:
-        adjacent: See the module.
-        u, t: Triangles.
-    """
+def _opposite_corner(adjacent, u, t):
+    """The corner of triangle u opposite the edge that it shares with t."""
     if adjacent[u, 0] == t:
         return 0
     return 1 if adjacent[u, 1] == t else 2
 
 
 @kernel()
-def relink(adjacent, u, old, new):
-    """Replace a neighbour of a triangle.
-
-    Args:
-        adjacent: See the module.
-        u: The triangle; -1: do nothing.
-        old: The neighbour.
-        new: Its replacement.
-    """
+def _relink(adjacent, u, old, new):
+    """Replace a neighbour of triangle u; -1 is none."""
     if u >= 0:
-        adjacent[u, opposite_corner(adjacent, u, old)] = new
+        adjacent[u, _opposite_corner(adjacent, u, old)] = new
 
 
 @kernel()
@@ -106,7 +89,7 @@ def flip(tri, adjacent, constrained, incident, t, k):
         k: Corner.
     """
     u = adjacent[t, k]
-    j = opposite_corner(adjacent, u, t)
+    j = _opposite_corner(adjacent, u, t)
     k1, k2, j1, j2 = (k + 1) % 3, (k + 2) % 3, (j + 1) % 3, (j + 2) % 3
     a, b, c, d = tri[t, k], tri[t, k1], tri[t, k2], tri[u, j]
     over_ca, over_ab, over_bd, over_dc = adjacent[t, k1], adjacent[t, k2], adjacent[u, j1], adjacent[u, j2]
@@ -118,45 +101,34 @@ def flip(tri, adjacent, constrained, incident, t, k):
     tri[u, 0], tri[u, 1], tri[u, 2] = d, c, a
     adjacent[u, 0], adjacent[u, 1], adjacent[u, 2] = over_ca, t, over_dc
     constrained[u, 0], constrained[u, 1], constrained[u, 2] = fixed_ca, 0, fixed_dc
-    relink(adjacent, over_bd, u, t)
-    relink(adjacent, over_ca, t, u)
+    _relink(adjacent, over_bd, u, t)
+    _relink(adjacent, over_ca, t, u)
     incident[a], incident[b], incident[d], incident[c] = t, t, t, u
 
 
 @kernel()
-def is_legal(points, tri, adjacent, constrained, t, k):
-    """Whether the edge opposite corner k of t satisfies Delaunay's criterion or may not be flipped.
-
-    Args:
-        points, tri, adjacent, constrained: See the module.
-        t: Triangle.
-        k: Corner.
-    """
+def _is_legal(points, tri, adjacent, constrained, t, k):
+    """Whether the edge opposite corner k of triangle t satisfies Delaunay's criterion or may not be flipped."""
     u = adjacent[t, k]
     if u < 0 or constrained[t, k]:
         return True
     a, b, c = tri[t, k], tri[t, (k + 1) % 3], tri[t, (k + 2) % 3]
-    d = tri[u, opposite_corner(adjacent, u, t)]
-    if not in_circle(points, a, b, c, d):
+    d = tri[u, _opposite_corner(adjacent, u, t)]
+    if not _in_circle(points, a, b, c, d):
         return True
     return twice_signed_area(points, a, b, d) <= 0 or twice_signed_area(points, d, c, a) <= 0
 
 
 @kernel()
-def legalise(points, tri, adjacent, constrained, incident, changed, stamp, stack, top):
-    """Flip until every edge on the stack is legal.
+def _legalise(points, tri, adjacent, constrained, incident, changed, stamp, stack, top):
+    """Flip until every edge on the stack is legal; `changed` (m,) is set to `stamp` for triangles that change.
 
-    Args:
-        points, tri, adjacent, constrained, incident: See the module.
-        changed: (m,) set to `stamp` for triangles that change.
-        stamp: A mark.
-        stack: Rows (triangle, corner); the corner is the new point.
-        top: Size of the stack.
+    The first `top` rows of the stack are (triangle, corner), the corner being the new point.
     """
     while top > 0:
         top -= 1
         t, k = stack[top]
-        if is_legal(points, tri, adjacent, constrained, t, k):
+        if _is_legal(points, tri, adjacent, constrained, t, k):
             continue
         u = adjacent[t, k]
         flip(tri, adjacent, constrained, incident, t, k)
@@ -180,7 +152,7 @@ def insert_point(points, p, t, tri, adjacent, constrained, incident, count, chan
         count: Number of triangles.
         changed: (m,) set to `stamp` for triangles that change.
         stamp: A mark.
-        stack: Scratch, as in `legalise`.
+        stack: Scratch, as in `_legalise`.
     """
     a, b, c = tri[t, 0], tri[t, 1], tri[t, 2]
     over_a, over_b, over_c = adjacent[t, 0], adjacent[t, 1], adjacent[t, 2]
@@ -195,8 +167,8 @@ def insert_point(points, p, t, tri, adjacent, constrained, incident, count, chan
     constrained[t, 0], constrained[t, 1], constrained[t, 2] = 0, 0, fixed_c
     constrained[t1, 0], constrained[t1, 1], constrained[t1, 2] = 0, 0, fixed_a
     constrained[t2, 0], constrained[t2, 1], constrained[t2, 2] = 0, 0, fixed_b
-    relink(adjacent, over_a, t, t1)
-    relink(adjacent, over_b, t, t2)
+    _relink(adjacent, over_a, t, t1)
+    _relink(adjacent, over_b, t, t2)
     incident[a], incident[b], incident[c], incident[p] = t, t, t1, t
     top = 0
     for s in (t, t1, t2):
@@ -214,22 +186,17 @@ def insert_point(points, p, t, tri, adjacent, constrained, incident, count, chan
             stack[top + 1, 0], stack[top + 1, 1] = u, 2
             top += 2
         else:
-            drop_triangle(tri, adjacent, incident, s)
-    legalise(points, tri, adjacent, constrained, incident, changed, stamp, stack, top)
+            _drop_triangle(tri, adjacent, incident, s)
+    _legalise(points, tri, adjacent, constrained, incident, changed, stamp, stack, top)
 
 
 @kernel()
-def drop_triangle(tri, adjacent, incident, t):
-    """Remove a triangle: its edges become borders.
-
-    Args:
-        tri, adjacent, incident: See the module.
-        t: The triangle.
-    """
+def _drop_triangle(tri, adjacent, incident, t):
+    """Remove triangle t: its edges become borders."""
     for k in range(3):
         u = adjacent[t, k]
         if u >= 0:
-            adjacent[u, opposite_corner(adjacent, u, t)] = -1
+            adjacent[u, _opposite_corner(adjacent, u, t)] = -1
     for k in range(3):
         for j in (1, 2):
             u = adjacent[t, (k + j) % 3]
@@ -284,14 +251,10 @@ def delaunay_triangulate(points, tri, adjacent, constrained, incident, alias):
 
 
 @kernel()
-def find_edge(tri, adjacent, incident, a, b):
+def _find_edge(tri, adjacent, incident, a, b):
     """The (triangle, opposite corner) of the edge between a and b, from one of its sides.
 
     The edge must exist, and not both ends may lie on the border.
-
-    Args:
-        tri, adjacent, incident: See the module.
-        a, b: Points.
     """
     for p, q in ((a, b), (b, a)):
         t = incident[p]
@@ -306,14 +269,10 @@ def find_edge(tri, adjacent, incident, a, b):
 
 
 @kernel()
-def first_crossing(points, tri, adjacent, incident, a, b):
+def _first_crossing(points, tri, adjacent, incident, a, b):
     """The triangle at a through which the segment to b leaves, and the next point exactly on the segment.
 
     The point is -1 if the segment crosses the edge opposite a.
-
-    Args:
-        points, tri, adjacent, incident: See the module.
-        a, b: Points.
     """
     t = incident[a]
     while True:
@@ -332,18 +291,12 @@ def first_crossing(points, tri, adjacent, incident, a, b):
 
 
 @kernel()
-def crossed_edges(points, tri, adjacent, constrained, incident, a, b, edges):
-    """The edges that the segment from a towards b crosses, up to the next point on it.
+def _crossed_edges(points, tri, adjacent, constrained, incident, a, b, edges):
+    """The number of edges that the segment from a towards b crosses, and the point on it at which that ends.
 
-    Args:
-        points, tri, adjacent, constrained, incident: See the module.
-        a, b: Points.
-        edges: Rows of two points, written.
-
-    Returns:
-        The number of edges, and the point at which the crossing ends; (-1, its mark) if one of them is constrained.
+    The edges are written to `edges`, rows of two points. If one of them is constrained, the result is (-1, its mark).
     """
-    t, target = first_crossing(points, tri, adjacent, incident, a, b)
+    t, target = _first_crossing(points, tri, adjacent, incident, a, b)
     if target >= 0:
         return 0, target
     k = 0 if tri[t, 0] == a else 1 if tri[t, 1] == a else 2
@@ -355,7 +308,7 @@ def crossed_edges(points, tri, adjacent, constrained, incident, a, b, edges):
         edges[count, 0], edges[count, 1] = right, left
         count += 1
         u = adjacent[t, k]
-        j = opposite_corner(adjacent, u, t)
+        j = _opposite_corner(adjacent, u, t)
         apex = tri[u, j]
         on = twice_signed_area(points, a, b, apex)
         if on == 0:
@@ -380,7 +333,7 @@ def insert_segments(points, tri, adjacent, constrained, incident, segments, line
     for s in range(segments.shape[0]):
         a, b = alias[segments[s, 0]], alias[segments[s, 1]]
         while a != b:
-            count, target = crossed_edges(points, tri, adjacent, constrained, incident, a, b, edges)
+            count, target = _crossed_edges(points, tri, adjacent, constrained, incident, a, b, edges)
             if count < 0:
                 clash[line[s]] = clash[target - 1] = True
                 break
@@ -389,10 +342,10 @@ def insert_segments(points, tri, adjacent, constrained, incident, segments, line
                 p, q = edges[head, 0], edges[head, 1]
                 head = (head + 1) % edges.shape[0]
                 count -= 1
-                t, k = find_edge(tri, adjacent, incident, p, q)
+                t, k = _find_edge(tri, adjacent, incident, p, q)
                 p, q = tri[t, (k + 1) % 3], tri[t, (k + 2) % 3]
                 u = adjacent[t, k]
-                c, d = tri[t, k], tri[u, opposite_corner(adjacent, u, t)]
+                c, d = tri[t, k], tri[u, _opposite_corner(adjacent, u, t)]
                 # whether the quad is not convex yet
                 again = twice_signed_area(points, c, p, d) <= 0 or twice_signed_area(points, d, q, c) <= 0
                 if not again:
@@ -405,10 +358,10 @@ def insert_segments(points, tri, adjacent, constrained, incident, segments, line
                     tail = (head + count) % edges.shape[0]
                     edges[tail, 0], edges[tail, 1] = p, q
                     count += 1
-            t, k = find_edge(tri, adjacent, incident, a, target)
+            t, k = _find_edge(tri, adjacent, incident, a, target)
             constrained[t, k] = 1 + line[s]
             u = adjacent[t, k]
-            constrained[u, opposite_corner(adjacent, u, t)] = 1 + line[s]
+            constrained[u, _opposite_corner(adjacent, u, t)] = 1 + line[s]
             a = target
 
 
@@ -425,6 +378,6 @@ def restore_delaunay(points, tri, adjacent, constrained, incident, count):
         again = False
         for t in range(count):
             for k in range(3):
-                if not is_legal(points, tri, adjacent, constrained, t, k):
+                if not _is_legal(points, tri, adjacent, constrained, t, k):
                     flip(tri, adjacent, constrained, incident, t, k)
                     again = True
