@@ -73,7 +73,7 @@ def hci_antinous(data: Path) -> dict[str, Any]:
     if span is None:
         raise SystemExit("no depth range was found")
     depth = estimate_depth(pictures, matrices, truth.shape, span)
-    error = np.abs(depth.d - truth)[BORDER:-BORDER, BORDER:-BORDER]
+    error = np.abs(depth - truth)[BORDER:-BORDER, BORDER:-BORDER]
     return {
         "range": [round(value, 2) for value in span],
         "bad_pixels_0.07": round(100 * float((error > 0.07).mean()), 2),
