@@ -59,9 +59,9 @@ def test_planes_and_back():
     back = to_difference(planes, 30, 40, SCALE)
     np.testing.assert_allclose(back[4:-6, 4:-4], difference[4:-6, 4:-4], atol=1.8 / 510)
     noise = np.random.default_rng(2).normal(0, 0.1, (30, 40, 3)).astype(np.float32)
-    planes = to_planes(noise, (32, 40), SCALE, full=True)
+    planes = to_planes(noise, (32, 40), SCALE, full_chroma=True)
     assert [plane.shape for plane in planes] == [(96, 40), (48, 20), (48, 20)]
-    np.testing.assert_allclose(to_difference(planes, 30, 40, SCALE, full=True), noise, atol=1.8 / 510)
+    np.testing.assert_allclose(to_difference(planes, 30, 40, SCALE, full_chroma=True), noise, atol=1.8 / 510)
 
 
 def test_what_a_code_stands_for():

@@ -289,7 +289,7 @@ def test_what_was_taken_from_one_sample_a_pixel_is_put_on_that(exact, tmp_path):
         exact,
         proxy=Proxy(smaller),
         rig=replace(exact.rig, cameras=cameras),
-        residual=replace(exact.residual, smooth=False),
+        residual=replace(exact.residual, smooth_edges=False),
     )
     path = stored(encode_scene(older), tmp_path)
     assert [one for one in validate(path) if one.severity != "information"] == []

@@ -34,7 +34,9 @@ def files(good):
     """A file of each kind: plain ones of each codec, coded, with regions and a precision, with a residual."""
     made = dict(good)
     coded = coded_scene()
-    video = Residual(b"video", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full=True, smooth=True)
+    video = Residual(
+        b"video", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full_chroma=True, smooth_edges=True
+    )
     made["coded"] = encode_scene(coded)
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())

@@ -32,8 +32,8 @@ class Residual:
         size: (rows, columns) of the pictures in it, whose top left part is a photograph's.
         order: (Ne,) the camera of each frame, counted among the encoded ones.
         scale: Value of one code of luma, and of chroma.
-        full: Chroma has the resolution of luma and stands below it in the frames; otherwise it has half of it.
-        smooth: The renderings have smooth edges, not one sample a pixel, or k x k (files before 1.5).
+        full_chroma: Chroma has the resolution of luma and stands below it in the frames; otherwise it has half of it.
+        smooth_edges: The renderings have smooth edges, not one sample a pixel, or k x k (files before 1.5).
         codec: Of the video, a name in `coding.codecs.CODECS`.
     """
 
@@ -41,15 +41,15 @@ class Residual:
     size: tuple[int, int]
     order: NDArray[np.int64]
     scale: tuple[float, float]
-    full: bool = False
-    smooth: bool = False
+    full_chroma: bool = False
+    smooth_edges: bool = False
     codec: str = "video-1"
 
     @property
     def frame(self) -> tuple[int, int]:
         """(rows, columns) of the video's frames."""
         rows, columns = self.size
-        return (3 * rows if self.full else rows), columns
+        return (3 * rows if self.full_chroma else rows), columns
 
 
 @dataclass(frozen=True, eq=False)

@@ -236,7 +236,7 @@ def _version(scene: Scene, needs: Sequence[str], named: bool) -> str:
     if scene.appearance.colours is not None:
         found.add("1.1")
     if scene.residual is not None:
-        found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth else "1.0"}
+        found |= {CODECS[scene.residual.codec].since, "1.5" if scene.residual.smooth_edges else "1.0"}
     return max(found, key=minor)
 
 
@@ -332,9 +332,9 @@ def _affine_numbers(numbers: NDArray[np.float64], count: int) -> list[float]:
 def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
     order, count = residual.order, len(residual.order)
     made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
-    if residual.full:
+    if residual.full_chroma:
         made["full"] = True
-    if residual.smooth:
+    if residual.smooth_edges:
         made["smooth"] = True
     if (order != np.arange(count)).any():
         made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")

@@ -19,7 +19,7 @@ EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen ed
 
 
 @kernel()
-def footprint_counts(near, spans, parted, finer, counts):
+def footprint_counts(near, spans, multisampled, samples, counts):
     """Fill `counts` from a covered `Framebuffer`; returns how many points that makes. Of a pixel at the border of the
     surface those samples count that show something, if there are two: a single one says too little of a photograph's
     pixel."""
@@ -30,8 +30,8 @@ def footprint_counts(near, spans, parted, finer, counts):
         for at in range(spans[row, 0], spans[row, 1]):
             hits = 0
             for sample in range(4 * at, 4 * at + 4):
-                hits += finer[0, sample] > 0
-            counts[row, parted[at]] = 0 if hits == 1 else hits
+                hits += samples[0, sample] > 0
+            counts[row, multisampled[at]] = 0 if hits == 1 else hits
         for pixel in range(counts.shape[1]):
             total += counts[row, pixel]
     return total
@@ -47,18 +47,18 @@ def put_coordinates(near, column, row, right, bottom, coordinates, at):
 
 
 @kernel()
-def footprint_coordinates(near, column_of, row_of, spans, parted, finer, height, width, counts, coordinates):
+def footprint_coordinates(near, column_of, row_of, spans, multisampled, samples, height, width, counts, coordinates):
     """Fill `coordinates`, for `counts` as `footprint_counts` makes it, in an atlas of height x width."""
     right, bottom = np.float32(width - 1), np.float32(height - 1)
     count = 0
     for row in range(counts.shape[0]):
         at = spans[row, 0]
         for pixel in range(counts.shape[1]):
-            if at < spans[row, 1] and parted[at] == pixel:
+            if at < spans[row, 1] and multisampled[at] == pixel:
                 if counts[row, pixel]:
                     for s in range(4 * at, 4 * at + 4):
                         count += put_coordinates(
-                            finer[0, s], finer[1, s], finer[2, s], right, bottom, coordinates, count
+                            samples[0, s], samples[1, s], samples[2, s], right, bottom, coordinates, count
                         )
                 at += 1
             elif counts[row, pixel]:

@@ -29,7 +29,7 @@ YCBCR_TO_RGB = np.linalg.inv(_matrix()).astype(np.float32)
 
 
 def to_planes(
-    difference: NDArray[np.float32], size: tuple[int, int], scale: tuple[float, float], full: bool = False
+    difference: NDArray[np.float32], size: tuple[int, int], scale: tuple[float, float], full_chroma: bool = False
 ) -> Planes:
     """Differences of R, G and B as codes around 512.
 
@@ -37,12 +37,12 @@ def to_planes(
         difference: (h, w, 3) float32.
         size: (rows, columns) of luma's plane, both even; beyond (h, w) there is no difference.
         scale: What a code of luma, and of chroma, stands for.
-        full: Whether chroma lies below luma in luma's plane, as fine as luma.
+        full_chroma: Whether chroma lies below luma in luma's plane, as fine as luma.
     """
     height, width = difference.shape[:2]
     converted = np.zeros((*size, 3), np.float32)
     converted[:height, :width] = difference @ RGB_TO_YCBCR.T
-    if full:
+    if full_chroma:
         stacked = np.concatenate([_codes(converted[..., channel], scale[min(channel, 1)]) for channel in range(3)])
         flat = np.full((stacked.shape[0] // 2, stacked.shape[1] // 2), MIDDLE_CODE, np.uint16)
         return stacked, flat, flat
@@ -51,10 +51,10 @@ def to_planes(
 
 
 def to_difference(
-    planes: Planes, height: int, width: int, scale: tuple[float, float], full: bool = False
+    planes: Planes, height: int, width: int, scale: tuple[float, float], full_chroma: bool = False
 ) -> NDArray[np.float32]:
     """(height, width, 3) differences of R, G, B from the top left part of a frame's planes. Others as `to_planes`."""
-    if full:
+    if full_chroma:
         luma, blue, red = np.split(planes[0].astype(np.float32) - MIDDLE_CODE, 3)
     else:
         luma, *halves = (plane.astype(np.float32) - MIDDLE_CODE for plane in planes)

@@ -53,7 +53,7 @@ def with_residual(
     encoded, cameras = scene.rig.encoded, scene.rig.encoded_cameras
     rows, columns = check_residual(cameras, quality)
     scale = RESIDUAL_CODE_UNIT, RESIDUAL_CODE_UNIT / RESIDUAL_CHROMA_GAIN
-    renderer, full = Renderer(scene), quality >= RESIDUAL_FULL_CHROMA_QUALITY
+    renderer, full_chroma = Renderer(scene), quality >= RESIDUAL_FULL_CHROMA_QUALITY
 
     def planes(row: int) -> Planes:
         index = int(encoded[row])
@@ -62,11 +62,13 @@ def with_residual(
             scene.rig.cameras[index], camera_weights(scene, index), colour=camera_colour(scene, index)
         )
         counted = drawn.coverage > 0 if shown.mask is None else (drawn.coverage > 0) & (shown.mask > 0.5)
-        return to_planes((shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full)
+        return to_planes(
+            (shown.pixels - surface_colours(drawn)) * counted[..., None], (rows, columns), scale, full_chroma
+        )
 
     order = video_order(cameras)
     frames = track(parallel_stream(planes, order.tolist()), "residual", len(order), progress)
-    made = Residual(b"", (rows, columns), order, scale, full, smooth=True)
+    made = Residual(b"", (rows, columns), order, scale, full_chroma, smooth_edges=True)
     video = encode_video(frames, made.frame, crf_of(quality), RESIDUAL_SVT_PRESET)
     settings = {**scene.settings, "residual": {"quality": quality}}
     return replace(scene, residual=replace(made, video=video), settings=settings)

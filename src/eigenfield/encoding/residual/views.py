@@ -26,7 +26,7 @@ def differences(scene: Scene) -> Iterator[tuple[int, NDArray[np.float32]]]:
     for row, planes in zip(residual.order, residual_frames(residual), strict=True):
         index = int(scene.rig.encoded[row])
         camera = scene.rig.cameras[index]
-        yield index, to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
+        yield index, to_difference(planes, camera.height, camera.width, residual.scale, residual.full_chroma)
 
 
 def with_differences(
@@ -66,7 +66,7 @@ def difference_of(scene: Scene, index: int) -> NDArray[np.float32]:
     camera = scene.rig.cameras[index]
     for number, planes in enumerate(residual_frames(residual)):
         if number == position:
-            return to_difference(planes, camera.height, camera.width, residual.scale, residual.full)
+            return to_difference(planes, camera.height, camera.width, residual.scale, residual.full_chroma)
     raise AssertionError("a video ends with an error")
 
 
@@ -90,7 +90,7 @@ def corrected_picture(
 
 def captured_samples(scene: Scene, index: int) -> int | None:
     """`samples` of a renderer for the picture of a camera that the scene's residual belongs to."""
-    return None if _residual(scene).smooth else renderer_of(scene).grid_side(scene.rig.cameras[index])
+    return None if _residual(scene).smooth_edges else renderer_of(scene).grid_side(scene.rig.cameras[index])
 
 
 def captured_pixels(job: RenderJob, index: int, difference: NDArray[np.float32]) -> NDArray[np.uint8]:
