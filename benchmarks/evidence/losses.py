@@ -165,7 +165,6 @@ def encode_again(
         align=scene.settings.get("align") is not None,
         reference=scene.rig.names[scene.rig.reference],
         hold_out=",".join(held) or None,
-        resampling=scene.settings.get("resampling", "bicubic"),
         harmonise=scene.settings.get("harmonise"),
         fit="none",
     )

@@ -107,12 +107,9 @@ def _densities(prepared: Prepared, base: Base) -> dict[str, Any]:
 
 
 def _filters(prepared: Prepared, base: Base) -> dict[str, Any]:
-    rows = []
-    for resampling in ("bilinear", "bicubic", "lanczos"):
-        scene = base.scene if resampling == "bicubic" else _encode(prepared, resampling=resampling)
-        kept, size = _decoded(scene, prepared)
-        rows += [[resampling, way, *_row(kept, prepared.light_field, size, way)] for way in ("bilinear", "bicubic")]
-    return {"title": "Filters", "columns": ["photograph to atlas", "drawing", *HEAD], "rows": rows, "words": ""}
+    kept, size = _decoded(base.scene, prepared)
+    rows = [[way, *_row(kept, prepared.light_field, size, way)] for way in ("bilinear", "bicubic")]
+    return {"title": "Filters of the drawing", "columns": ["", *HEAD], "rows": rows, "words": ""}
 
 
 def _alignment(prepared: Prepared, base: Base) -> dict[str, Any]:

@@ -197,7 +197,7 @@ def test_cameras_on_a_line_are_no_error(tmp_path):
 
 @pytest.mark.parametrize(
     ("change", "says"),
-    [({"textures": -1}, "0 or more"), ({"uv_ssim": 1.5}, "in \\(0, 1\\]"), ({"resampling": "best"}, "bicubic"),
+    [({"textures": -1}, "0 or more"), ({"uv_ssim": 1.5}, "in \\(0, 1\\]"), ({"harmonise": "best"}, "gain"),
      ({"reference": "lost.png"}, "no camera is called lost"), ({"atlas": 0}, "from 1 to"),
      ({"density": 0.0, "atlas": None}, "ask for one between"), ({"hold_out": "every:0"}, "2 or more"),
      ({"hold_out": "odd", "reference": "view_01.png"}, "is held out")],

@@ -16,11 +16,10 @@ from eigenfield.core.errors import OptionError
 from eigenfield.encoding import EncodeOptions, Target
 from eigenfield.encoding.fields import options_of
 from eigenfield.encoding.options import PRESETS, UNKNOWN_CHOICE_TEXTS, density_for_quality
-from eigenfield.encoding.projected.project import RESAMPLING_FILTERS
 from eigenfield.gltf import encode_scene, save
 from support.captures import write_capture
 
-FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"resampling": "lanczos"}, {"keep_maps": "maps"},
+FOR_MAPS = [{"align": True}, {"uv_ssim": 0.9}, {"harmonise": "gain"}, {"keep_maps": "maps"},
             {"codec": "png"}]  # fmt: skip
 
 
@@ -64,7 +63,7 @@ def test_the_paper_s_way_is_said_where_it_was_not_asked_for(folder, caplog):
     (record,) = caplog.records
     assert record.getMessage().startswith("--uv-ssim is about texture maps, which a fit does not make")
     caplog.clear()
-    ef.encode(capture, folder / "proxy.ply", atlas=64, textures=1, resampling="lanczos", fit="none")
+    ef.encode(capture, folder / "proxy.ply", atlas=64, textures=1, fit="none")
     assert not caplog.records
 
 
@@ -82,9 +81,9 @@ def test_the_rest_is_fitted():
         ({"preset": "small"}, {"fit": "photographs", "quality": 79, "density": density_for_quality(79)}),
         ({"quality": 60, "density": 1.2, "textures": 4}, {"fit": "photographs", "preset": "balanced"}),
         ({"target": Target(psnr=30)}, {"fit": "photographs", "preset": "balanced"}),
-        ({"fit": "none"}, {"textures": 15, "density": 1.5, "resampling": "bicubic"}),
-        ({"uv_ssim": 0.9}, {"fit": "none", "density": 1.5, "resampling": "bicubic"}),
-        ({"codec": "png", "atlas": (64, 32), "density": 1.0, "resampling": "lanczos"}, {"fit": "none", "textures": 15}),
+        ({"fit": "none"}, {"textures": 15, "density": 1.5}),
+        ({"uv_ssim": 0.9}, {"fit": "none", "density": 1.5}),
+        ({"codec": "png", "atlas": (64, 32), "density": 1.0}, {"fit": "none", "textures": 15}),
     ],
 )  # fmt: skip
 def test_what_options_mean(asked, meant):
@@ -94,7 +93,7 @@ def test_what_options_mean(asked, meant):
 
 
 def test_choices_are_what_there_is_to_choose():
-    tables = {"preset": PRESETS, "resampling": RESAMPLING_FILTERS}
+    tables = {"preset": PRESETS}
     choices = {name: set(one.choices) for name, one in options_of(EncodeOptions) if one.choices}
     assert all(choices[name] == set(table) for name, table in tables.items())
     assert set(choices) == {*UNKNOWN_CHOICE_TEXTS, "codec"}
@@ -139,11 +138,11 @@ def test_the_command_line_maps_by_name():
     words = (
         "-n 3 --align --harmonise=affine --density 1.2 --atlas 64x32 --triangles 60 --hold-out odd --reference a.png"
     )
-    words += " --resampling lanczos --codec webp --residual --keep-maps maps --metres-per-unit 0.5 --uv-ssim 0.9"
+    words += " --codec webp --residual --keep-maps maps --metres-per-unit 0.5 --uv-ssim 0.9"
     made = command_line(*words.split(), "--fit", "none")
     assert made == EncodeOptions(
         textures=3, align=True, harmonise="affine", density=1.2, atlas=(64, 32), triangles=60, hold_out="odd",
-        reference="a.png", resampling="lanczos", codec="webp", residual=40, keep_maps=made.keep_maps,
+        reference="a.png", codec="webp", residual=40, keep_maps=made.keep_maps,
         metres_per_unit=0.5, uv_ssim=0.9, fit="none",
     )  # fmt: skip
     assert str(made.keep_maps) == "maps"

@@ -17,17 +17,15 @@ T = TypeVar("T")
 
 DEFAULT_TEXTURES = 15  # without a fit, as in the paper
 DEFAULT_DENSITY = 1.5  # without a fit
-DEFAULT_RESAMPLING = "bicubic"
 DEFAULT_PRESET = "balanced"
 ATLAS_MAX_SIDE_TEXELS = 16384
 DENSITY_LIMITS = 0.01, 100.0  # atlas texels per photograph pixel along one axis
 FIT_MAX_DENSITY = 1.5  # likewise, with a fit
-MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "resampling", "keep_maps", "codec")  # options that a fit has no use for
+MAP_OPTIONS = ("align", "uv_ssim", "harmonise", "keep_maps", "codec")  # options that a fit has no use for
 FIT_OPTIONS = ("target", "preset")  # options that the paper's way has no use for
 UNKNOWN_CHOICE_TEXTS = {
     "fit": "no fit is called",
     "preset": "no preset is called",
-    "resampling": "no filter is called",
     "harmonise": "no harmonisation is called",
 }
 
@@ -120,9 +118,6 @@ class EncodeOptions:
         "three quarters), every:K (every K-th), or names with commas between.",
         metavar="RULE",
     )
-    resampling: str | None = option(
-        "Filter from photograph to atlas.  [default: bicubic]", choices=("bilinear", "bicubic", "lanczos")
-    )
     codec: str | None = option(
         "Pictures of a file that is not fitted: avif is lossy, webp and png keep 8 bits exactly.  [default: avif]",
         choices=("avif", "webp", "png"),
@@ -133,7 +128,7 @@ class EncodeOptions:
     fit: str | None = option(
         "photographs: fit the textures until the drawn pictures match the photographs. none: project the photographs "
         "into the textures, as the paper does; faster, larger, less sharp. --align, --uv-ssim, --harmonise, "
-        "--resampling, --codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
+        "--codec and --keep-maps are about texture maps, which a fit does not make.  [default: "
         "photographs, unless one of these is given]",
         choices=("none", "photographs"),
     )
@@ -173,7 +168,6 @@ class EncodeOptions:
                 fit="none",
                 textures=DEFAULT_TEXTURES if self.textures is None and self.uv_ssim is None else self.textures,
                 density=DEFAULT_DENSITY if self.density is None else self.density,
-                resampling=self.resampling or DEFAULT_RESAMPLING,
             )
         preset, quality, density = self.preset or DEFAULT_PRESET, self.quality, self.density
         if quality is None and self.target is None:

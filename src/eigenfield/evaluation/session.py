@@ -16,7 +16,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.encoding.projected.align import align_map
 from eigenfield.encoding.projected.atlas import Atlas, make_atlas
 from eigenfield.encoding.projected.harmonise import harmonised_map
-from eigenfield.encoding.projected.project import RESAMPLING_FILTERS, texture_map
+from eigenfield.encoding.projected.project import RESAMPLING, texture_map
 from eigenfield.encoding.residual.views import captured_samples, corrected_picture
 from eigenfield.evaluation.exclusion import ExcludedCircle
 from eigenfield.evaluation.image import ImageScores, measure_outside, measure_picture
@@ -61,7 +61,6 @@ class Session:
         curved: Indices of the cameras that are measured with all of `counts`; others are with the last only.
         filter: "bicubic" or "bilinear", for drawing.
         weights: Kind of view weights of held-out cameras.
-        resampling: Filter of the texture maps.
         atlas: Of the texture maps; None if none are measured.
         reference: The texture map and visibility that maps are aligned to; None: they are not aligned.
         circles: Excluded circles by camera, if any.
@@ -77,7 +76,6 @@ class Session:
     curved: frozenset[int]
     filter: str
     weights: str
-    resampling: str
     atlas: Atlas | None
     reference: tuple[NDArray[np.float32], NDArray[np.uint8]] | None
     circles: Mapping[str, ExcludedCircle] | None
@@ -131,9 +129,7 @@ class Session:
             photograph: Its photograph.
         """
         assert self.atlas is not None
-        values, seen = texture_map(
-            self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask, self.resampling
-        )
+        values, seen = texture_map(self.atlas, self.scene.rig.cameras[index], photograph.pixels, photograph.mask)
         colour = camera_colour(self.scene, index)
         if colour is not None:
             values = harmonised_map(values, seen, colour)
@@ -227,7 +223,7 @@ def start_session(
             remedy="evaluate those that are",
         )
     photographs = match_photographs(scene, capture)
-    resampling, align = _recorded_settings(scene)
+    align = _is_aligned(scene)
     one_plane = len(scene.appearance.planes) == 1 and scene.appearance.to_rgb is None
     maps = one_plane and "fitted" not in scene.settings  # a fit makes none
     if curve != "none" and not maps:
@@ -260,7 +256,6 @@ def start_session(
         curved=frozenset(some[curve]),
         filter=filter,
         weights=weights,
-        resampling=resampling,
         atlas=make_atlas(scene.proxy.mesh, width, height) if encoded else None,
         reference=None,
         circles=circles,
@@ -351,16 +346,16 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     return photographs
 
 
-def _recorded_settings(scene: Scene) -> tuple[str, bool]:
-    """The resampling filter of the texture maps, and whether they were aligned, from the scene's settings."""
-    resampling, align = scene.settings.get("resampling", "bicubic"), scene.settings.get("align")
-    if resampling not in list(RESAMPLING_FILTERS) or align not in [None, "dis"]:  # a file may hold anything here
+def _is_aligned(scene: Scene) -> bool:
+    """Whether the texture maps were aligned, by the scene's settings."""
+    resampling, align = scene.settings.get("resampling", RESAMPLING), scene.settings.get("align")
+    if resampling != RESAMPLING or align not in [None, "dis"]:  # a file may hold anything here
         raise OptionError(
             "settings-unknown",
             f"the scene was made with resampling {resampling!r} and alignment {align!r}, which this version has not",
             remedy="evaluate with the version that encoded it",
         )
-    return resampling, align is not None
+    return align is not None
 
 
 def sample_evenly(indices: Sequence[int], count: int) -> list[int]:

@@ -19,7 +19,7 @@ from eigenfield.encoding.projected.atlas import make_atlas
 from eigenfield.encoding.projected.eigen import component_count, eigen_textures, eigenvectors, gram_matrix, weights_of
 from eigenfield.encoding.projected.harmonise import harmonise_maps
 from eigenfield.encoding.projected.mean import Mean, mean_map
-from eigenfield.encoding.projected.project import TextureMaps, texture_maps
+from eigenfield.encoding.projected.project import RESAMPLING, TextureMaps, texture_maps
 from eigenfield.encoding.projected.spread import Spreader, make_spreader
 from eigenfield.encoding.projected.uv_measure import smallest_count
 from eigenfield.encoding.views import CaptureViews, nothing_seen_error
@@ -41,14 +41,12 @@ def encode_projected(plan: EncodePlan, work: Path | None = None, progress: Progr
         OutputError: The scratch folder is full (`disk-full`), or maps cannot be written.
     """
     options, views = plan.options, plan.views
-    resampling = resolved_value(options.resampling)
-    own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": resampling}
+    own = {"uvSsim": options.uv_ssim, "align": "dis" if options.align else None, "resampling": RESAMPLING}
     colours = None
     with texture_maps(
         make_atlas(plan.mesh, *plan.atlas),
         views.rig.encoded_cameras,
         views.observations,
-        resampling=resampling,
         work=work,
         progress=progress,
     ) as maps:

@@ -8,41 +8,32 @@ import numpy as np
 
 from eigenfield.runtime.jit import kernel
 
-BILINEAR, BICUBIC, LANCZOS = 0, 1, 2
+RADIUS_PX = 2.0  # of the filter
 MAX_FOOTPRINT_PX = 16.0  # that a texel may average over, each way
 GRAZING_COSINE = 0.0872  # cosine of 85 degrees
 
 
 @kernel(inline=True)
-def _filter(kind, t):
-    """The resampling filter at distance t: triangle (radius 1), Catmull-Rom (2; Catmull and Rom 1974), Lanczos (3)."""
+def _filter(t):
+    """The bicubic filter at distance t (Catmull and Rom 1974)."""
     t = abs(t)
-    if kind == 0:
-        return max(0.0, 1.0 - t)
-    if kind == 1:
-        if t < 1.0:
-            return (1.5 * t - 2.5) * t * t + 1.0
-        if t < 2.0:
-            return ((-0.5 * t + 2.5) * t - 4.0) * t + 2.0
-        return 0.0
-    if t < 1e-6:
-        return 1.0
-    if t >= 3.0:
-        return 0.0
-    p = np.pi * t
-    return 3.0 * np.sin(p) * np.sin(p / 3.0) / (p * p)
+    if t < 1.0:
+        return (1.5 * t - 2.5) * t * t + 1.0
+    if t < 2.0:
+        return ((-0.5 * t + 2.5) * t - 4.0) * t + 2.0
+    return 0.0
 
 
 @kernel(inline=True)
-def _taps(kind, radius, centre, spread, size, index, weight):
-    """Fill index and weight with the taps of a filter stretched to `spread` pixels round `centre` (pixel centres at
+def _taps(centre, spread, size, index, weight):
+    """Fill index and weight with the taps of the filter stretched to `spread` pixels round `centre` (pixel centres at
     +0.5), clamped to the picture; return their number. Weights sum to 1."""
-    first = int(np.floor(centre - 0.5 - radius * spread)) + 1
-    last = int(np.ceil(centre - 0.5 + radius * spread)) - 1
+    first = int(np.floor(centre - 0.5 - RADIUS_PX * spread)) + 1
+    last = int(np.ceil(centre - 0.5 + RADIUS_PX * spread)) - 1
     total = 0.0
     count = last - first + 1
     for k in range(count):
-        w = _filter(kind, (first + k + 0.5 - centre) / spread)
+        w = _filter((first + k + 0.5 - centre) / spread)
         index[k] = min(max(first + k, 0), size - 1)
         weight[k] = w
         total += w
@@ -70,7 +61,7 @@ def _is_hidden(x, y, q, inverse_depth, bias):
 
 @kernel()
 def project_texels(
-    position, face, normal, along, down, matrix, centre, photograph, mask, inverse_depth, bias, kind, values, seen
+    position, face, normal, along, down, matrix, centre, photograph, mask, inverse_depth, bias, values, seen
 ):  # fmt: skip
     """All texels: values (n, C) and seen (n,) out. mask: (0, 0) for none.
 
@@ -80,8 +71,7 @@ def project_texels(
     filter is stretched to it, so that the texel averages what it covers. With a mask, taps are weighted by it.
     """
     height, width, channels = photograph.shape
-    radius = 1.0 if kind == 0 else (2.0 if kind == 1 else 3.0)
-    most = int(2 * 3 * MAX_FOOTPRINT_PX) + 4
+    most = int(2 * RADIUS_PX * MAX_FOOTPRINT_PX) + 4
     ix, iy = np.empty(most, np.int64), np.empty(most, np.int64)
     wx, wy = np.empty(most), np.empty(most)
     for n in range(position.shape[0]):
@@ -112,8 +102,8 @@ def project_texels(
         yd = (matrix[1, 0] * d[0] + matrix[1, 1] * d[1] + matrix[1, 2] * d[2] - y * zd) / z
         sx = min(max(np.sqrt(xa * xa + xd * xd), 1.0), MAX_FOOTPRINT_PX)
         sy = min(max(np.sqrt(ya * ya + yd * yd), 1.0), MAX_FOOTPRINT_PX)
-        nx = _taps(kind, radius, x, sx, width, ix, wx)
-        ny = _taps(kind, radius, y, sy, height, iy, wy)
+        nx = _taps(x, sx, width, ix, wx)
+        ny = _taps(y, sy, height, iy, wy)
         kept = 1.0
         if mask.size:
             kept = 0.0

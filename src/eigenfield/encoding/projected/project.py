@@ -19,7 +19,7 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import tracked_map
 
-RESAMPLING_FILTERS = {"bilinear": kernels.BILINEAR, "bicubic": kernels.BICUBIC, "lanczos": kernels.LANCZOS}
+RESAMPLING = "bicubic"  # from photograph to atlas, as the settings of a scene name it (Catmull-Rom)
 DEPTH_BIAS_RATIO = 2e-3  # of a view's range of inverse depths
 
 
@@ -53,20 +53,17 @@ def texture_map(
     camera: Camera,
     pixels: NDArray[np.float32],
     mask: NDArray[np.float32] | None = None,
-    resampling: str = "bicubic",
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    """Project one photograph into the atlas.
+    """Project one photograph into the atlas, by a bicubic filter that is stretched where the photograph is denser.
 
     Args:
         atlas: Of the mesh that is seen.
         camera: Of the photograph.
         pixels: (H, W, C) float32.
         mask: (H, W) 0..1; what it hides is not seen.
-        resampling: "bilinear", "bicubic" (Catmull-Rom) or "lanczos", stretched where the photograph is denser than the
-            atlas.
 
     Returns:
-        (n, C) float32 values, which may overshoot the photograph's range (bicubic and Lanczos), and (n,) uint8
+        (n, C) float32 values, which may overshoot the photograph's range, and (n,) uint8
         visibility.
     """
     depth = rasterise_view(atlas.mesh, camera).inverse_depth
@@ -77,7 +74,7 @@ def texture_map(
     kernels.project_texels(
         atlas.position, atlas.face, atlas.normal, atlas.along, atlas.down, camera.matrix, camera.centre,
         np.ascontiguousarray(pixels), np.zeros((0, 0), np.float32) if mask is None else np.ascontiguousarray(mask),
-        depth, bias, RESAMPLING_FILTERS[resampling], values, seen,
+        depth, bias, values, seen,
     )  # fmt: skip
     return values, seen
 
@@ -89,7 +86,6 @@ def texture_maps(
     observations: Observations,
     channels: int = 3,
     *,
-    resampling: str = "bicubic",
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> Iterator[TextureMaps]:
@@ -102,7 +98,6 @@ def texture_maps(
         cameras: Of the observations.
         observations: Each is decoded once, from several threads.
         channels: Of a photograph.
-        resampling: As `texture_map`.
         work: Folder for the scratch file.
         progress: Reports the maps that are made.
     """
@@ -114,7 +109,7 @@ def texture_maps(
 
         def project(index: int) -> None:
             photograph, camera = observations.photograph(index), cameras[observations.camera_of(index)]
-            values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask, resampling)
+            values[index], seen[index] = texture_map(atlas, camera, photograph.pixels, photograph.mask)
 
         tracked_map(project, range(total), "texture maps", progress)
         yield TextureMaps(atlas, values, seen)
