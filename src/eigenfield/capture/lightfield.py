@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -38,13 +39,13 @@ class PhotographSource(Protocol):
     def upright(self) -> bool: ...
 
 
-class StillCapture:
+class StillCapture(ABC):
     """What `LightField` and `PhotoSet` share: photographs of one instant, each by a camera of its own."""
 
     @property
+    @abstractmethod
     def sources(self) -> tuple[PhotographSource, ...]:
         """What each photograph is read from."""
-        raise NotImplementedError
 
     def __len__(self) -> int:
         return len(self.sources)

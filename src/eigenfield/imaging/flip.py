@@ -102,6 +102,7 @@ def flip_map(drawn: PictureArray, photograph: PictureArray) -> Channel:
 
 def _map_region(a: NDArray[np.uint8], b: NDArray[np.uint8], rows: slice, columns: slice) -> Channel:
     """The map at the given rows and columns, a band at a time, each with the margin that its filters reach into."""
+    assert a.shape[2] == 3, a.shape
     height, width = a.shape[:2]
     made = np.empty((rows.stop - rows.start, columns.stop - columns.start), np.float32)
     left, right = max(columns.start - FLIP_MARGIN_PIXELS, 0), min(columns.stop + FLIP_MARGIN_PIXELS, width)

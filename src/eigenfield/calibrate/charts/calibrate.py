@@ -30,9 +30,9 @@ from eigenfield.capture.lightfield import LightField, View
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import CaptureError
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.imaging.graph import components
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 log = logging.getLogger("eigenfield.calibrate")
 
@@ -245,7 +245,7 @@ def _estimate_all_intrinsics(
     def estimate(c: int) -> IntrinsicsEstimate | None:
         return estimate_intrinsics(points, [s.corners for s in observations if s.camera == c], cameras[c].size)
 
-    return list(track(parallel_stream(estimate, range(len(cameras))), "lenses", len(cameras), progress))
+    return tracked_map(estimate, range(len(cameras)), "lenses", progress)
 
 
 def _rebase_to_first(solution: RigSolution) -> tuple[RigEstimate, tuple[int, ...]]:

@@ -24,8 +24,8 @@ from eigenfield.capture.calibration import or_error
 from eigenfield.capture.photographs.decoded import decode_with_mask
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.errors import CaptureError
-from eigenfield.core.progress import Progress, track
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.core.progress import Progress
+from eigenfield.runtime.parallel import tracked_map
 
 FEATURE_LUMA_WEIGHTS = np.array([0.299, 0.587, 0.114], np.float32)
 FEATURE_MASK_THRESHOLD = 0.5
@@ -95,7 +95,7 @@ def _extract(
     shots: Sequence[Shot], options: FeatureOptions, stage: str, progress: Progress | None
 ) -> list[Features | CaptureError]:
     extract = or_error(partial(extract_features_of, options=options))
-    return list(track(parallel_stream(extract, shots), stage, len(shots), progress))
+    return tracked_map(extract, shots, stage, progress)
 
 
 def extract_features_of(shot: Shot, options: FeatureOptions) -> Features:

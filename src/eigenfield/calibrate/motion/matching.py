@@ -20,7 +20,7 @@ from eigenfield.calibrate.motion.matching_kernels import find_best_two, mask_off
 from eigenfield.capture.layout import GridLayout
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress, track
-from eigenfield.runtime.parallel import parallel_stream, pieces
+from eigenfield.runtime.parallel import parallel_stream, pieces, tracked_map
 
 Matching = Literal["auto", "exhaustive", "similar", "grid", "positions"]
 Pair = tuple[int, int]
@@ -228,7 +228,7 @@ def match_pairs(
         return _match_pair(features, cameras, i, j, (seed * 7919 + i * count + j) % 2**31)
 
     with threadpool_limits(1, "blas"):
-        return list(track(parallel_stream(match, pairs), "matches", len(pairs), progress))
+        return tracked_map(match, pairs, "matches", progress)
 
 
 def _match_pair(features: Sequence[Features], cameras: Sequence[Any], i: int, j: int, seed: int) -> Match:

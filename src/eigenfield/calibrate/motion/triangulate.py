@@ -16,9 +16,9 @@ from eigenfield.calibrate.motion.matching import mutual_matches
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet, Shot
 from eigenfield.core.camera import Camera
-from eigenfield.core.progress import Progress, track
+from eigenfield.core.progress import Progress
 from eigenfield.imaging.graph import components
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 
 log = logging.getLogger("eigenfield.calibrate")
 
@@ -138,7 +138,7 @@ def _match_views(
         return i, j, mutual_matches(descriptors[i], descriptors[j], lines)
 
     with threadpool_limits(1, "blas"):
-        return list(track(parallel_stream(match, pairs), "matches", len(pairs), progress))
+        return tracked_map(match, pairs, "matches", progress)
 
 
 def _triangulate_tracks(

@@ -3,8 +3,6 @@
 A file that is to reach a size, a PSNR or an SSIM gets a second fit where another mesh or atlas belongs to it.
 """
 
-# mypy: disable-error-code="no-untyped-call"
-
 from __future__ import annotations
 
 import logging

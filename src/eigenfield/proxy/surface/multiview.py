@@ -27,7 +27,7 @@ from eigenfield.proxy.surface.fusion import DepthView, fuse_depth_maps
 from eigenfield.proxy.surface.neighbours import choose_neighbours, frustum_points, inside_frame, spread_views
 from eigenfield.proxy.surface.poisson import poisson_surface
 from eigenfield.proxy.surface.trim import SurfaceError, simplify_with_error, trim_by_masks, trim_surface
-from eigenfield.runtime.parallel import parallel_stream
+from eigenfield.runtime.parallel import tracked_map
 from eigenfield.stereo import ReferenceView, estimate_depth, view_matrices
 
 log = logging.getLogger("eigenfield.proxy")
@@ -193,7 +193,7 @@ def _pictures(light_field: LightField, chosen: Sequence[int], most: int, progres
             mask = None  # it only marks where the lens leaves no picture
         return _Picture(small, np.rint(np.clip(pixels, 0, 1) * 255).astype(np.uint8), mask, known)
 
-    return list(track(parallel_stream(load, chosen), "photographs", len(chosen), progress))
+    return tracked_map(load, chosen, "photographs", progress)
 
 
 def _lens_mask(view: View, small: Camera) -> NDArray[np.bool_] | None:
