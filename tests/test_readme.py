@@ -24,6 +24,7 @@ COMMANDS = {
         "inspect", "encode", "encode", "encode", "render", "render", "export", "evaluate", "info", "validate", "proxy",
     ],
 }  # fmt: skip
+PAGES = ["README.md", pytest.param("docs/usage.md", marks=pytest.mark.slow)]
 MADE = {
     "README.md": {"scene.glb", "scene.html"},
     "docs/usage.md": {
@@ -42,7 +43,7 @@ def blocks(name, language):
     return re.findall(rf"```{language}\n(.*?)```", page(name), re.DOTALL)
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", PAGES)
 def test_the_commands_run_in_order(name, tmp_path, run, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_capture(tmp_path / "capture")
@@ -76,7 +77,7 @@ def look(words, place):
     assert process.returncode == 0, err
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", PAGES)
 def test_the_python_runs(name, tmp_path, monkeypatch):
     write_capture(tmp_path / "capture")
     write_array(tmp_path / "photos")

@@ -118,6 +118,7 @@ def test_a_focal_length_is_found_where_none_is_known(scene):
     assert np.abs(error.focal).max() < 0.05 and error.position.max() < 0.02
 
 
+@pytest.mark.slow
 def test_any_number_of_threads_and_a_work_folder_give_the_same_cameras(scene, solved):
     set_threads(1 if threads() > 1 else 3)
     try:
@@ -138,6 +139,7 @@ def test_the_world_is_the_natural_gauge(solved):
     assert angle_between(np.linalg.svd(mean)[0] @ np.linalg.svd(mean)[2], np.eye(3)) < 1e-6
 
 
+@pytest.mark.slow
 def test_a_known_lens_is_kept_and_its_distortion_understood(scene, tmp_path):
     """The photographs bent by a strong lens: the cameras come out as before."""
     photos, truth = scene

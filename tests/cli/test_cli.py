@@ -245,11 +245,9 @@ def test_unknown_options_and_traceback(run, scene, tmp_path):
         run("info", tmp_path / "bad.glb", "--traceback")
 
 
-STOPS = [signal.SIGINT, *(pytest.param(one, marks=pytest.mark.slow) for one in (signal.SIGTERM, signal.SIGKILL))]
-
-
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
-@pytest.mark.parametrize("number", STOPS, ids=lambda n: n.name)
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda n: n.name)
 def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
     """Stopped at several moments: the output is whole or absent, and nothing else is there."""
     output = tmp_path / "scene.glb"

@@ -82,7 +82,8 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
 
 
-@pytest.mark.parametrize("asked", [Target(psnr=24), pytest.param(Target(size=6000), marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("asked", [Target(psnr=24), Target(size=6000)])
 def test_of_two_fits_the_better_is_kept(tmp_path, caplog, monkeypatch, asked):
     """The second may be worse: another mesh and atlas are a guess from the quality."""
     cameras = row_grid(9, 64, 56)

@@ -337,6 +337,7 @@ def test_evaluate_says_both_and_mixes_nothing(base, exact, capture, tmp_path):
         assert evaluate(exact, capture, png_maps="none", **other)["image"]["residual"] is None
 
 
+@pytest.mark.slow
 def test_the_command_line(run, capture, tmp_path):
     folder, out = Path(capture.root), tmp_path / "archive.glb"
     how = ["--proxy", folder / "proxy.ply", "--fit", "photographs", "--preset", "small", "-n", "2"]

@@ -162,6 +162,7 @@ def test_charts_keep_their_distance(laid_out):
     assert not ((highest >= 0) & (lowest < highest)).any()
 
 
+@pytest.mark.slow
 def test_refused_uvs_are_welded_and_cut_anew(caplog):
     mesh = grid(10, height=0.1)
     soup = Mesh(

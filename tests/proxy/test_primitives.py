@@ -210,6 +210,7 @@ def before_a_wall():
     return sphere, cameras, [photograph_of(mesh, len(wall.faces), camera) for camera in cameras]
 
 
+@pytest.mark.slow
 def test_a_sphere_is_found_from_a_careless_box(before_a_wall):
     sphere, cameras, pictures = before_a_wall
     around = sphere_outline(sphere, cameras[1])
