@@ -3,10 +3,11 @@
     EIGENFIELD_DATA=captures python benchmarks/fit_studies.py [CAPTURE ...] [--parts regions,...] [--store]
     EIGENFIELD_DATA=captures python benchmarks/fit_studies.py CAPTURE --held-out [--store]
 
-Five captures unless some are named: every second row and column of dense arrays, all views of sparse ones. The whole
-fit is coded at three qualities, which make a curve; without a part it is coded once, at the default's quality, and both
-differences are read off that curve: bytes at equal quality, and quality at equal bytes. Parts that only code share one
-fit, and parts that only fit share one mesh, so that all of it takes about an hour on two cores.
+Five captures unless some are named: every second row and column of dense arrays, all views of sparse ones. Photographs
+of more than MAX_PIXELS are halved: large ones would take most of the time. The whole fit is coded at three qualities,
+which make a curve; without a part it is coded once, at the default's quality, and both differences are read off that
+curve: bytes at equal quality, and quality at equal bytes. Parts that only code share one fit, and parts that only fit
+share one mesh, so that all of it takes less than an hour on two cores.
 
 `--held-out`: the capture's hold-out rule, one fit, quality against bytes in captured views and in those left out.
 
@@ -49,6 +50,7 @@ CAPTURES = ("tarot", "boxes", "shop", "cube", "tarot-5x4")
 QUALITY = encode_options.PRESETS["balanced"].quality
 QUALITIES = (80, QUALITY, 94)
 KEYS = ("psnr", "psnr_luma", "ssim")
+MAX_PIXELS = 1 << 19  # of a photograph
 Change = Callable[[], AbstractContextManager[Any]]
 
 
@@ -237,6 +239,8 @@ def of_parts(ready: Prepared, chosen: Sequence[str]) -> dict[str, Any]:
     field = ready.light_field
     if prepared.grid_of(field) is not None and len(field) >= planes.SUBSAMPLE_MIN_OBSERVATIONS:
         field = prepared.every(field, 2)
+    if max(width * height for width, height in field.sizes) > MAX_PIXELS:
+        field = prepared.halved(field, ready.work / "halved")
     few = len(field) < planes.SUBSAMPLE_MIN_OBSERVATIONS
     chosen = [name for name in PARTS if name in chosen and (few or not PARTS[name].few)]
     views = Views(field, parallel_map(lambda index: prepared.codes(field, index), range(len(field))), [])

@@ -9,20 +9,24 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 import eigenfield as ef
 import measure
-from eigenfield.capture import LightField
+from eigenfield.capture import LightField, View
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import Grid, find_grid, fit_view_plane
 from eigenfield.demo import draw_demo_capture
 from eigenfield.evaluation import ExcludedCircle, read_circles
 from eigenfield.imaging.metrics import to_codes
+from eigenfield.imaging.png import png_bytes
 from eigenfield.proxy import prepare_proxy, read_mesh, write_mesh
 from eigenfield.rendering import Renderer, camera_weights
+from eigenfield.runtime.files import write_bytes
+from eigenfield.runtime.parallel import parallel_map
 from evidence.captures import Capture
 
 
@@ -107,6 +111,20 @@ def every(light_field: LightField, step: int) -> LightField:
     if grid is None:
         raise ValueError("the cameras are on no grid")
     return light_field.subset(sorted(grid.index[::step, ::step].reshape(-1).tolist()))
+
+
+def halved(light_field: LightField, folder: Path) -> LightField:
+    """The capture with photographs of half the size, written to `folder`, without lenses; masks are left out."""
+    folder.mkdir(parents=True, exist_ok=True)
+
+    def half(index: int) -> View:
+        view, path = light_field.views[index], folder / f"{index:03d}.png"
+        camera = view.camera.resize(view.camera.width // 2, view.camera.height // 2)
+        pixels = cv2.resize(codes(light_field, index), (camera.width, camera.height), interpolation=cv2.INTER_AREA)
+        write_bytes(path, png_bytes(np.asarray(pixels, np.uint8)), overwrite=True)
+        return View(view.name, path, camera)
+
+    return replace(light_field, views=tuple(parallel_map(half, range(len(light_field)))))
 
 
 def spread_over_array(scene: Scene, indices: Sequence[int], count: int) -> list[int]:

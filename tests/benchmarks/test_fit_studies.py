@@ -86,3 +86,16 @@ def test_held_out_views_against_bytes(ready, monkeypatch, tmp_path):
     (tmp_path / "fit-studies.json").touch()
     text = rate_tables._studies()
     assert "no rounds | +12.3 %, -0.50 dB |" in text and "| `nine`, odd |" in text and "12.3 kB" in text
+
+
+def test_halved_photographs_show_the_same(ready, tmp_path):
+    """Each pixel is the mean of four, seen by a camera that projects to half the place."""
+    half = prepared.halved(ready.light_field, tmp_path / "halved")
+    assert half.names == ready.light_field.names
+    for index, (camera, whole) in enumerate(zip(half.cameras, ready.light_field.cameras, strict=True)):
+        assert (camera.width, camera.height) == (whole.width // 2, whole.height // 2)
+        point = np.array([[0.1, -0.2, 0.0]])
+        np.testing.assert_allclose(camera.project(point)[0], whole.project(point)[0] / 2, atol=1e-9)
+        pixels = prepared.codes(ready.light_field, index).astype(float)
+        means = pixels.reshape(camera.height, 2, camera.width, 2, 3).mean(axis=(1, 3))
+        np.testing.assert_allclose(prepared.codes(half, index), means, atol=0.51)
