@@ -269,9 +269,36 @@ def test_a_stopped_encode_leaves_no_debris(folder, tmp_path, number):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
-def test_a_signal_that_comes_out_as_another_error_still_ends_with_130(tmp_path):
-    """Within the import of a C module, a KeyboardInterrupt comes out as that module's ImportError."""
+def test_a_signal_within_an_import_waits_for_its_end(tmp_path):
+    """trimesh's modules catch whatever their imports raise, and fail much later without the package."""
+    (tmp_path / "package.py").write_text(
+        "import os, signal, time\nos.kill(os.getpid(), signal.SIGTERM)\ntime.sleep(0.2)"
+    )
+    (tmp_path / "swallows.py").write_text("try:\n    import package\nexcept BaseException:\n    package = None")
     program = """
+import sys, threading
+import eigenfield.cli as cli
+
+def imports_and_waits(*arguments, **options):
+    import swallows
+    assert swallows.package is not None
+    threading.Event().wait(20)
+
+cli.group.invoke = imports_and_waits
+sys.argv = ["eigenfield", "info", "x.glb"]
+cli.main()
+"""
+    start = time.monotonic()
+    done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 130 and "interrupted" in done.stderr, done.stderr
+    assert time.monotonic() - start < 15
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are POSIX")
+@pytest.mark.parametrize("error", ["ImportError", "cli.EigenfieldError"])
+def test_a_signal_that_comes_out_as_another_error_still_ends_with_130(tmp_path, error):
+    """A library may turn a KeyboardInterrupt into an error of its own, which may become one of ours."""
+    program = f"""
 import os, signal, sys, time
 import eigenfield.cli as cli
 
@@ -280,7 +307,7 @@ def interrupted_import(*arguments, **options):
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(5)
     except KeyboardInterrupt:
-        raise ImportError("numpy.core.multiarray failed to import")
+        raise {error}("numpy.core.multiarray failed to import")
 
 cli.group.invoke = interrupted_import
 sys.argv = ["eigenfield", "info", "x.glb"]

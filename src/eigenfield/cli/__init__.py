@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import _thread
 import contextlib
 import importlib
 import logging
 import os
 import signal
 import sys
+import threading
+from types import FrameType
 from typing import NoReturn
 
 import click
@@ -63,12 +66,29 @@ def group() -> None:
     """Light fields as eigen textures: photographs from a camera array in, one small .glb out."""
 
 
-_signals: list[int] = []  # those that asked this process to stop
+SIGNAL_RETRY_SECONDS = 0.05
+_signals: list[int] = []  # those that have stopped this process
 
 
-def _stop(number: int, frame: object) -> NoReturn:
+def _stop(number: int, frame: FrameType | None) -> None:
+    """Raise KeyboardInterrupt, but not within an import: trimesh takes any exception there for a missing package and
+    goes on without it, and a C module turns it into an ImportError. The signal comes again a little later."""
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            again = threading.Timer(SIGNAL_RETRY_SECONDS, _signal_main_thread, [number])
+            again.daemon = True
+            again.start()
+            return
+        frame = frame.f_back
     _signals.append(number)
     raise KeyboardInterrupt
+
+
+def _signal_main_thread(number: int) -> None:
+    if sys.platform == "win32":
+        _thread.interrupt_main(number)
+    else:  # wakes it also where it waits for a lock
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
 
 
 def _exit_interrupted() -> NoReturn:
@@ -96,6 +116,8 @@ def main() -> None:
         error.show()
         sys.exit(2)
     except EigenfieldError as error:
+        if _signals:  # a library has caught the KeyboardInterrupt and failed later
+            _exit_interrupted()
         if context.get("traceback"):
             raise
         click.echo(f"eigenfield: {error}", err=True)
@@ -108,4 +130,4 @@ def main() -> None:
     except Exception:
         if not _signals:
             raise
-        _exit_interrupted()  # a KeyboardInterrupt within a C module's import comes out as that module's ImportError
+        _exit_interrupted()
