@@ -13,17 +13,11 @@ from llvmlite import ir
 from numba import types
 from numba.extending import intrinsic
 
-TEXEL_LANES = 4
+from eigenfield.imaging.texels import TEXEL_LANES, splat
+
 EDGE_SAMPLES = 4  # of an edge pixel
 LANE_PX = 8  # drawn at once
 FASTMATH_FLAGS = ("fast",)
-
-
-def _splat(builder, scalar, kind):
-    """A vector of `kind` with a number in all its lanes."""
-    index = ir.IntType(32)
-    first = builder.insert_element(ir.Constant(kind, ir.Undefined), scalar, ir.Constant(index, 0))
-    return builder.shuffle_vector(first, first, ir.Constant(ir.VectorType(index, kind.count), [0] * kind.count))
 
 
 @intrinsic
@@ -60,7 +54,7 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
             pointer = builder.gep(data, [builder.zext(builder.add(row, column), whole)])
             return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=4)
 
-        horizontal, vertical = ([_splat(builder, weight, vector) for weight in of] for of in (across, down))
+        horizontal, vertical = ([splat(builder, weight, vector) for weight in of] for of in (across, down))
         lines = [weighted_sum([texel(row, column) for column in columns], horizontal) for row in rows]
         total = weighted_sum(lines, vertical)
         lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(TEXEL_LANES)]
@@ -84,7 +78,7 @@ def _square_of_taps(context, builder, signature, arguments):
     for _ in range(TEXEL_LANES):
         pointers.append(builder.bitcast(builder.gep(data, [place]), vector.as_pointer()))
         place = builder.add(place, line)
-    return pointers, horizontal, [_splat(builder, builder.extract_value(down, i), vector) for i in range(TEXEL_LANES)]
+    return pointers, horizontal, [splat(builder, builder.extract_value(down, i), vector) for i in range(TEXEL_LANES)]
 
 
 @intrinsic
@@ -122,7 +116,7 @@ def scatter_bicubic(typing_context, texture, first, line, across, down, value):
 
     def generate(context, builder, signature, arguments):
         pointers, horizontal, vertical = _square_of_taps(context, builder, signature, arguments)
-        share = builder.fmul(horizontal, _splat(builder, arguments[5], horizontal.type))
+        share = builder.fmul(horizontal, splat(builder, arguments[5], horizontal.type))
         for pointer, weight in zip(pointers, vertical, strict=True):
             found = builder.fadd(builder.load(pointer, align=4), builder.fmul(share, weight))
             builder.store(found, pointer, align=4)
@@ -177,12 +171,12 @@ def draw_lanes(typing_context, nearest, first, second, at, count, near, near_ste
         steps = ir.Constant(vector, [float(i) for i in range(LANE_PX)])
 
         def along(position):
-            product = builder.fmul(steps, _splat(builder, arguments[position + 1], vector), flags=FASTMATH_FLAGS)
-            return builder.fadd(_splat(builder, arguments[position], vector), product, flags=FASTMATH_FLAGS)
+            product = builder.fmul(steps, splat(builder, arguments[position + 1], vector), flags=FASTMATH_FLAGS)
+            return builder.fadd(splat(builder, arguments[position], vector), product, flags=FASTMATH_FLAGS)
 
         place, depth = pointer(0), along(5)
         before = builder.load(place, align=4)
-        meant = builder.icmp_signed("<", ir.Constant(whole, list(range(LANE_PX))), _splat(builder, arguments[4], whole))
+        meant = builder.icmp_signed("<", ir.Constant(whole, list(range(LANE_PX))), splat(builder, arguments[4], whole))
         drawn = builder.and_(meant, builder.fcmp_ordered(">", depth, before))
         builder.store(builder.select(drawn, depth, before), place, align=4)
         for array, value in ((1, along(7)), (2, along(9))):
@@ -228,9 +222,9 @@ def draw_four(typing_context, samples, at, more, a, b, c, slack, u, v):
         here = []
         for i, value in enumerate(arguments[3:6]):
             more = builder.load(four(offsets, whole(EDGE_SAMPLES * i), double), align=8)
-            here.append(builder.fadd(_splat(builder, value, double), more))
+            here.append(builder.fadd(splat(builder, value, double), more))
         depth = add_in_order(here)
-        least = builder.fmul(_splat(builder, builder.fneg(arguments[6]), double), depth)
+        least = builder.fmul(splat(builder, builder.fneg(arguments[6]), double), depth)
         places = [four(data, builder.add(arguments[1], whole(EDGE_SAMPLES * part)), single) for part in range(3)]
         near, before = builder.fptrunc(depth, single), builder.load(places[0], align=4)
         drawn = builder.fcmp_ordered(">", near, before)
@@ -238,7 +232,7 @@ def draw_four(typing_context, samples, at, more, a, b, c, slack, u, v):
             drawn = builder.and_(drawn, builder.fcmp_ordered(">=", value, least))
         builder.store(builder.select(drawn, near, before), places[0], align=4)
         for place, corners in zip(places[1:], arguments[7:], strict=True):
-            ends = [_splat(builder, builder.extract_value(corners, i), double) for i in range(3)]
+            ends = [splat(builder, builder.extract_value(corners, i), double) for i in range(3)]
             value = add_in_order([builder.fmul(weight, end) for weight, end in zip(here, ends, strict=True)])
             kept = builder.load(place, align=4)
             builder.store(builder.select(drawn, builder.fptrunc(value, single), kept), place, align=4)

@@ -1,0 +1,240 @@
+"""Kernels of a multiplane image: its layers as a photograph sees them, composited, and the gradients of both."""
+
+# mypy: disable-error-code="no-untyped-def,no-untyped-call"
+
+from __future__ import annotations
+
+import numpy as np
+
+from eigenfield.imaging.texels import gather_bilinear, scatter_bilinear
+from eigenfield.runtime.jit import kernel
+
+
+@kernel(inline=True)
+def place_in_layer(homography, row, column, width, height):
+    """Column and row of a photograph's pixel in a layer of width x height texels; -1, -1 beyond its texels' centres."""
+    x, y = np.float64(column), np.float64(row)
+    across = homography[0, 0] * x + homography[0, 1] * y + homography[0, 2]
+    down = homography[1, 0] * x + homography[1, 1] * y + homography[1, 2]
+    scale = homography[2, 0] * x + homography[2, 1] * y + homography[2, 2]
+    over = 1 / scale
+    u, v = np.float32(across * over), np.float32(down * over)
+    inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
+    return (u, v) if inside else (np.float32(-1), np.float32(-1))
+
+
+@kernel()
+def draw_layer(layer, homography, picture):
+    """picture (H, W, 4) = the layer (h, w, 4) read bilinearly where a photograph sees it; 0 beyond its border.
+
+    Args:
+        layer: Contiguous float32.
+        homography: (3, 3) from the photograph's index coordinates to the layer's.
+        picture: Contiguous float32, written.
+    """
+    height, width = layer.shape[:2]
+    flat, drawn, line = layer.reshape(-1), picture.reshape(-1), np.int64(4 * width)
+    at = np.int64(0)
+    for row in range(picture.shape[0]):
+        for column in range(picture.shape[1]):
+            u, v = place_in_layer(homography, row, column, width, height)
+            if u >= 0:
+                left, top = np.int64(u), np.int64(v)
+                right, below = u - np.float32(left), v - np.float32(top)
+                gather_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
+            else:
+                drawn[at : at + 4] = 0
+            at += 4
+
+
+@kernel()
+def add_layer_gradient(gradient, homography, layer_gradient):
+    """The transpose of `draw_layer`: adds what a picture's gradient (H, W, 4) is for the layer (h, w, 4).
+
+    Args:
+        gradient: Contiguous float32.
+        homography: As of `draw_layer`.
+        layer_gradient: Contiguous float32, added to.
+    """
+    height, width = layer_gradient.shape[:2]
+    flat, drawn, line = layer_gradient.reshape(-1), gradient.reshape(-1), np.int64(4 * width)
+    at = np.int64(0)
+    for row in range(gradient.shape[0]):
+        for column in range(gradient.shape[1]):
+            u, v = place_in_layer(homography, row, column, width, height)
+            if u >= 0:
+                left, top = np.int64(u), np.int64(v)
+                right, below = u - np.float32(left), v - np.float32(top)
+                scatter_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
+            at += 4
+
+
+@kernel()
+def composite(layers, top, bottom, picture):
+    """picture = the layers one over the other, for rows from `top` to `bottom`.
+
+    Args:
+        layers: (D, H, W, 4) R, G, B and opacity, back to front.
+        top, bottom: First row, and the one after the last.
+        picture: (H, W, 3), written.
+    """
+    for row in range(top, bottom):
+        for column in range(picture.shape[1]):
+            r, g, b = np.float32(0), np.float32(0), np.float32(0)
+            for d in range(layers.shape[0]):
+                a = layers[d, row, column, 3]
+                r += a * (layers[d, row, column, 0] - r)
+                g += a * (layers[d, row, column, 1] - g)
+                b += a * (layers[d, row, column, 2] - b)
+            picture[row, column, 0], picture[row, column, 1], picture[row, column, 2] = r, g, b
+
+
+@kernel()
+def composite_gradient(layers, codes, top, bottom, behind):
+    """Replace the layers by the gradient of the squared error, for rows from `top` to `bottom`; returns that error.
+
+    With T the transmittance of what lies in front of a layer, c its colour, a its opacity, b what lies behind it,
+    composited, and e the picture's error, the gradient is 2 T a e for the colour and 2 T e . (c - b) for the opacity.
+
+    Args:
+        layers: As of `composite`.
+        codes: (H, W, 3) uint8 the photograph.
+        top, bottom: As of `composite`.
+        behind: (D, 3) float32 scratch.
+    """
+    total, scale = 0.0, np.float32(1 / 255)
+    for row in range(top, bottom):
+        for column in range(layers.shape[2]):
+            r, g, b = np.float32(0), np.float32(0), np.float32(0)
+            for d in range(layers.shape[0]):
+                behind[d, 0], behind[d, 1], behind[d, 2] = r, g, b
+                a = layers[d, row, column, 3]
+                r += a * (layers[d, row, column, 0] - r)
+                g += a * (layers[d, row, column, 1] - g)
+                b += a * (layers[d, row, column, 2] - b)
+            r -= scale * np.float32(codes[row, column, 0])
+            g -= scale * np.float32(codes[row, column, 1])
+            b -= scale * np.float32(codes[row, column, 2])
+            total += np.float64(r * r + g * g + b * b)
+            through = np.float32(2)
+            for d in range(layers.shape[0] - 1, -1, -1):
+                red, green, blue = layers[d, row, column, 0], layers[d, row, column, 1], layers[d, row, column, 2]
+                a = layers[d, row, column, 3]
+                moved = r * (red - behind[d, 0]) + g * (green - behind[d, 1]) + b * (blue - behind[d, 2])
+                layers[d, row, column, 3] = through * moved
+                part = through * a
+                layers[d, row, column, 0], layers[d, row, column, 1] = part * r, part * g
+                layers[d, row, column, 2] = part * b
+                through *= np.float32(1) - a
+    return total
+
+
+@kernel(inline=True)
+def slope(difference, inverse_width):
+    """Derivative of the Huber function, which is quadratic up to 1 / inverse_width and then of slope 1."""
+    return min(max(difference * inverse_width, np.float32(-1)), np.float32(1))
+
+
+@kernel()
+def add_priors(layer, scale, variation, price, inverse_width, gradient):
+    """gradient = scale gradient + that of the total variation and of a price for each number.
+
+    Args:
+        layer: (h, w C) float32, texels of C numbers.
+        scale: Of the gradient so far.
+        variation: (w C) of each column: weight of the difference of neighbours.
+        price: (w C) of each column: cost of the number itself.
+        inverse_width: Of `slope`.
+        gradient: (h, w C) float32, changed.
+    """
+    rows, columns = layer.shape
+    channels = 4
+    for row in range(rows):
+        here, out = layer[row], gradient[row]
+        above, below = layer[max(row - 1, 0)], layer[min(row + 1, rows - 1)]
+        for i in range(columns):
+            vertical = slope(here[i] - above[i], inverse_width) + slope(here[i] - below[i], inverse_width)
+            out[i] = scale * out[i] + variation[i] * vertical + price[i]
+        for i in range(channels, columns):
+            out[i] += variation[i] * slope(here[i] - here[i - channels], inverse_width)
+        for i in range(columns - channels):
+            out[i] += variation[i] * slope(here[i] - here[i + channels], inverse_width)
+
+
+@kernel()
+def restrict(fine, row_at, row_part, column_at, column_part, coarse):
+    """coarse = the transpose of `prolong`, of the fine grid.
+
+    Args:
+        fine: (h, w, 4).
+        row_at, row_part: (h,) the coarse row before each fine one, ascending, and the weight of the next.
+        column_at, column_part: (w,) likewise.
+        coarse: (h', w', 4), written.
+    """
+    height, width = fine.shape[:2]
+    source = fine.reshape(height, 4 * width)
+    first, second = np.zeros(4 * width, np.float32), np.zeros(4 * width, np.float32)
+    coarse[:] = 0
+    row = 0
+    for into in range(coarse.shape[0]):
+        for i in range(4 * width):
+            first[i], second[i] = second[i], np.float32(0)
+        while row < height and row_at[row] == into:
+            part, line = row_part[row], source[row]
+            rest = np.float32(1) - part
+            for i in range(4 * width):
+                first[i] += rest * line[i]
+                second[i] += part * line[i]
+            row += 1
+        for column in range(width):
+            at, part = column_at[column], column_part[column]
+            rest = np.float32(1) - part
+            for channel in range(4):
+                value = first[4 * column + channel]
+                coarse[into, at, channel] += rest * value
+                coarse[into, at + 1, channel] += part * value
+
+
+@kernel()
+def prolong(coarse, row_at, row_part, column_at, column_part, fine):
+    """fine += the coarse grid, interpolated bilinearly. Arguments as of `restrict`."""
+    height, width = fine.shape[:2]
+    line = np.zeros((coarse.shape[1], 4), np.float32)
+    for row in range(height):
+        at, part = row_at[row], row_part[row]
+        rest = np.float32(1) - part
+        for column in range(coarse.shape[1]):
+            for channel in range(4):
+                line[column, channel] = rest * coarse[at, column, channel] + part * coarse[at + 1, column, channel]
+        for column in range(width):
+            at, right = column_at[column], column_part[column]
+            left = np.float32(1) - right
+            for channel in range(4):
+                fine[row, column, channel] += left * line[at, channel] + right * line[at + 1, channel]
+
+
+@kernel()
+def adam_step(gradient, mean, square, mean_decay, square_decay, mean_correction, square_correction):
+    """Replace a gradient by the step of Adam, of a rate of 1.
+
+    Args:
+        gradient: (n,) float32, changed.
+        mean: (n,) its running mean, changed.
+        square: (n,) the running mean of its square, changed.
+        mean_decay, square_decay: Of the running means.
+        mean_correction, square_correction: By which they are multiplied for their start at zero.
+    """
+    for i in range(gradient.size):
+        value = gradient[i]
+        mean[i] = mean_decay * mean[i] + (np.float32(1) - mean_decay) * value
+        square[i] = square_decay * square[i] + (np.float32(1) - square_decay) * value * value
+        gradient[i] = -mean[i] * mean_correction / (np.sqrt(square[i] * square_correction) + np.float32(1e-8))
+
+
+@kernel()
+def move(layer, step, rate, low, high):
+    """layer += rate times the step, clamped. All are (h, n), but rate, low and high (n,) of each column."""
+    for row in range(layer.shape[0]):
+        here, there = layer[row], step[row]
+        for i in range(layer.shape[1]):
+            here[i] = min(max(here[i] + rate[i] * there[i], low[i]), high[i])
