@@ -9,15 +9,29 @@ from numpy.testing import assert_allclose
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import set_threads
 from eigenfield.stereo import ReferenceView, view_matrices
-from eigenfield.stereo.multiplane import MULTIPLANE_TUNING, MultiplaneImage, MultiplaneTuning, fit_multiplane
+from eigenfield.stereo.multiplane import (
+    MULTIPLANE_TUNING,
+    MultiplaneImage,
+    MultiplaneTuning,
+    SheetTuning,
+    SoftSheets,
+    fit_multiplane,
+    fit_sheets,
+)
 from eigenfield.stereo.multiplane.image import backpropagate, draw_layers, plane_homographies
 from eigenfield.stereo.multiplane.kernels import add_layer_gradient, add_priors, draw_layer, prolong, restrict
 from eigenfield.stereo.multiplane.pyramid import Pyramid, interpolation
+from eigenfield.stereo.multiplane.sheets import (
+    backpropagate_sheets,
+    draw_sheets,
+    label_parallax_maps,
+    sheets_of,
+)
 
 SHAPE = (20, 26)  # of a photograph
 FRAME = (28, 34)  # of the reference view, with a margin of 4
 LABELS = np.array([0.5, 1.0, 2.0])
-QUICK = MultiplaneTuning(small_steps=120, steps=90, small_levels=4, levels=3)
+QUICK = MultiplaneTuning(steps=200, levels=4, opacity_price=0.0006)  # few planes: what is hidden costs more
 
 
 def cameras(count=9, pitch=0.12, seed=0):
@@ -123,7 +137,7 @@ def test_priors_are_the_gradient_of_variation_and_price():
 
     given = np.random.default_rng(8).random(layer.shape).astype(np.float32)
     gradient = given.copy()
-    add_priors(layer, np.float32(0.5), variation, price, np.float32(1 / width), gradient)
+    add_priors(layer, 4, np.float32(0.5), variation, price, np.float32(1 / width), gradient)
     direction = np.random.default_rng(9).standard_normal(layer.shape)
     exact = layer.astype(float)
     difference = (cost(exact + 1e-5 * direction) - cost(exact - 1e-5 * direction)) / 2e-5
@@ -151,12 +165,12 @@ def prolonged_ones(coarse, fine, taps):
 
 def test_a_step_of_the_pyramid_moves_what_the_photographs_do_not_see():
     """One texel asks for more: all grids answer, the coarser the farther."""
-    pyramid = Pyramid((32, 32), 4)
+    pyramid = Pyramid((32, 32), 4, 4)
     pyramid.gradient[16, 16] = -1
     pyramid.step(1)
     assert pyramid.gradient[16, 16, 0] == pytest.approx(4, rel=1e-3)  # each grid moves there by its rate of 1
     assert pyramid.gradient[16, 22, 0] > 0 and pyramid.gradient[0, 0, 0] == 0
-    alone = Pyramid((32, 32), 1)
+    alone = Pyramid((32, 32), 4, 1)
     alone.gradient[16, 16] = -1
     alone.step(1)
     assert np.count_nonzero(alone.gradient[..., 0]) == 1
@@ -195,24 +209,131 @@ def test_a_known_scene_is_found_again():
 
 
 def test_threads_do_not_change_it():
-    tuning = MultiplaneTuning(small_steps=6, steps=4, small_levels=3, levels=2)
+    planes, tuning = MultiplaneTuning(steps=6, levels=3), SheetTuning(steps=4, levels=2)
     made = []
     try:
         for count in (1, 3):
             set_threads(count)
-            made.append(fit_multiplane(photographs(), matrices(), FRAME, LABELS, tuning=tuning).layers)
+            found = fit_sheets(photographs(), matrices(), FRAME, LABELS, 2, planes=planes, tuning=tuning)
+            made.append(found.layers.tobytes() + found.labels.tobytes())
     finally:
         set_threads(None)
-    assert made[0].tobytes() == made[1].tobytes()
+    assert made[0] == made[1]
 
 
 def test_progress_goes_from_nothing_to_all():
-    told, tuning = [], MultiplaneTuning(small_steps=3, steps=2, small_levels=2, levels=2)
-    fit_multiplane(photographs(), matrices(), FRAME, LABELS, tuning=tuning, progress=lambda *said: told.append(said))
-    assert [done for _, done, _ in told] == [1, 2, 3, 4, 5] and {total for *_, total in told} == {5}
+    told, planes, tuning = [], MultiplaneTuning(steps=3, levels=2), SheetTuning(steps=2, levels=2)
+    given = photographs(), matrices(), FRAME, LABELS, 2
+    fit_sheets(*given, planes=planes, tuning=tuning, progress=lambda *said: told.append(said))
+    assert told == [("planes", 1, 3), ("planes", 2, 3), ("planes", 3, 3), ("sheets", 1, 2), ("sheets", 2, 2)]
 
 
 @pytest.mark.parametrize("labels", [[1.0], [1.0, 1.0], [2.0, 1.0], [[1.0, 2.0]]])
 def test_labels_ascend(labels):
     with pytest.raises(ValueError, match="labels must be at least two, ascending"):
         fit_multiplane(photographs(), matrices(), FRAME, np.array(labels), tuning=MULTIPLANE_TUNING)
+
+
+@pytest.mark.parametrize("count", [0, 4])
+def test_there_are_no_more_sheets_than_planes(count):
+    with pytest.raises(ValueError, match="sheets of 3 planes"):
+        fit_sheets(photographs(), matrices(), FRAME, LABELS, count)
+
+
+def wavy_labels(seed=0):
+    """(2, h, w): a slanted sheet and a wavy one before it."""
+    rows, columns = np.indices(FRAME)
+    far = 0.5 + 0.012 * columns + 0.006 * rows
+    return np.stack([far, 1.6 + 0.1 * np.sin(columns / 4 + seed)]).astype(np.float32)
+
+
+def test_a_pixel_reads_a_sheet_where_its_ray_meets_it():
+    labels, view = wavy_labels(), reference()
+    for camera, matrix in zip(cameras(), matrices(), strict=True):
+        places, drawn = np.zeros((2, *SHAPE, 2), np.float32), np.zeros((2, *SHAPE, 4), np.float32)
+        draw_sheets(labels, random_layers()[:2], matrix, places, drawn)
+        for sheet, there in zip(labels, places, strict=True):
+            row, column = 8, 12
+            u, v = there[row, column].astype(float)
+            left, top = int(u), int(v)
+            f, g = u - left, v - top
+            line = (1 - f) * sheet[top : top + 2, left] + f * sheet[top : top + 2, left + 1]
+            point = view.points(np.array(u), np.array(v), np.array((1 - g) * line[0] + g * line[1]))
+            assert_allclose(camera.project(point[None])[0][0] - 0.5, [column, row], atol=2e-3)
+
+
+def test_a_level_sheet_is_a_plane():
+    layers = random_layers(3)
+    level = SoftSheets(np.broadcast_to(LABELS[:, None, None], (3, *FRAME)).astype(np.float32), layers)
+    for matrix in matrices()[:3]:
+        assert_allclose(level.draw(matrix, SHAPE), MultiplaneImage(LABELS, layers).draw(matrix, SHAPE), atol=2e-5)
+
+
+def test_parallax_is_affine_in_the_label():
+    for matrix in matrices()[:3]:
+        base, slope = label_parallax_maps(matrix)
+        pixel = np.array([7.0, 5, 1])
+        for label, homography in zip(LABELS, plane_homographies(matrix, LABELS), strict=True):
+            exact = homography @ pixel
+            found = ((base @ pixel)[:2] + label * (slope @ pixel)) / (base @ pixel)[2]
+            assert_allclose(found, exact[:2] / exact[2], atol=1e-9)
+
+
+def test_the_gradient_of_sheets_agrees_with_differences():
+    """Labels move smoothly: the derivative is that of a fixed place's texels, which cross no texel's middle here."""
+    rows, columns = np.indices(FRAME)
+    smooth = np.sin(np.stack([rows / 5 + k + columns / 7 for k in range(8)], axis=-1)).reshape(*FRAME, 2, 4)
+    layers = np.ascontiguousarray(0.5 + 0.3 * smooth.transpose(2, 0, 1, 3), np.float32)
+    labels, matrix = wavy_labels(), matrices()[1]
+    codes = np.random.default_rng(5).integers(100, 156, (*SHAPE, 3), np.uint8)
+
+    def error(changed_labels, changed_layers):
+        picture = SoftSheets(changed_labels, changed_layers).draw(matrix, SHAPE).astype(float)
+        return np.square(picture - codes / 255).sum()
+
+    places, drawn = np.zeros((2, *SHAPE, 2), np.float32), np.zeros((2, *SHAPE, 4), np.float32)
+    draw_sheets(labels, layers, matrix, places, drawn)
+    by_layer, by_label = np.zeros_like(layers), np.zeros_like(labels)
+    total = backpropagate_sheets(codes, layers, matrix, places, drawn, list(by_layer), list(by_label))
+    assert total == pytest.approx(error(labels, layers), rel=1e-5)
+    step = np.float32(1e-3) * np.random.default_rng(6).standard_normal(layers.shape).astype(np.float32)
+    change = error(labels, layers + step) - error(labels, layers - step)
+    assert change == pytest.approx(2 * float(np.vdot(by_layer.astype(float), step)), rel=5e-3, abs=1e-5)
+    for k in range(2):  # a whole sheet nearer: labels are level where the derivative is exact
+        step = np.zeros_like(labels)
+        step[k] = 2e-3
+        change = error(labels + step, layers) - error(labels - step, layers)
+        assert change == pytest.approx(2 * float(np.vdot(by_label.astype(float), step)), rel=0.1)
+
+
+def test_planes_are_shared_out_among_sheets_by_what_they_hold():
+    labels = np.array([0.0, 1.0, 2.0, 6.0, 7.0, 9.0])
+    layers = np.full((6, 12, 16, 4), 0.5, np.float32)
+    layers[..., 3] = 0
+    layers[0, ..., 3] = 1
+    layers[3, :, :8, 3], layers[4, :, 8:, 3] = 1, 1
+    layers[3, :, :8, 0], layers[4, :, 8:, 0] = 0.2, 0.8
+    found = sheets_of(MultiplaneImage(labels, layers), 2)
+    assert_allclose(found.labels[0], 0, atol=1e-5)
+    assert found.labels[1, :, 0].mean() == pytest.approx(6, abs=0.1)
+    assert found.labels[1, :, 15].mean() == pytest.approx(7, abs=0.1)
+    assert_allclose(found.layers[1, ..., 3], 1)
+    assert_allclose(found.layers[1, :, 2, :3], np.broadcast_to([0.2, 0.5, 0.5], (12, 3)), atol=1e-6)
+
+
+def test_sheets_find_a_slanted_wall_between_planes():
+    """Two planes, and a wall that leans from one to the other: labels follow it, and held-out views are drawn well."""
+    rows, columns = np.indices(FRAME)
+    wall = np.zeros((1, *FRAME, 4), np.float32)
+    pattern = 0.5 + 0.2 * np.sin(columns / 1.7) + 0.2 * np.sin(rows / 2.1 + columns / 5)
+    wall[0] = np.stack([pattern, 0.9 * pattern, 0.7 * pattern, np.ones(FRAME)], axis=-1)
+    leaning = (0.6 + 1.2 * columns / FRAME[1]).astype(np.float32)[None]
+    views, shown = matrices(), [0, 1, 2, 3, 5, 6, 8]
+    pictures = np.stack([SoftSheets(leaning, wall).draw(matrix, SHAPE) for matrix in views])
+    codes = np.round(np.clip(pictures, 0, 1) * 255).astype(np.uint8)
+    planes, tuning = MultiplaneTuning(steps=60, levels=4), SheetTuning(steps=200, levels=4)
+    given = codes[shown], views[shown], FRAME, np.array([0.6, 1.2, 1.8]), 1
+    found = fit_sheets(*given, planes=planes, tuning=tuning)
+    inner = slice(6, -6), slice(8, -8)
+    assert np.abs(found.labels[0] - leaning[0])[inner].mean() < 0.15
+    assert psnr(found.draw(views[4], SHAPE), codes[4]) > 30

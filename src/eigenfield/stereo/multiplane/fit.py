@@ -1,13 +1,8 @@
-"""A multiplane image fitted to photographs by descent, small first.
-
-What is minimised, over all layers at once, is the mean squared error of the photographs, plus the total variation of
-colour and opacity, plus a price for opacity, which empties what no photograph asks for. One step takes one photograph.
-"""
+"""Fitted to photographs: a multiplane image, and soft sheets, which start from one of half the size."""
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import cv2
@@ -16,9 +11,11 @@ from numpy.typing import NDArray
 
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
+from eigenfield.stereo.multiplane.descent import Descent, DescentTuning
 from eigenfield.stereo.multiplane.image import MultiplaneImage, backpropagate, draw_layers, plane_homographies
 from eigenfield.stereo.multiplane.kernels import add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
+from eigenfield.stereo.multiplane.sheets import SoftSheets, backpropagate_sheets, draw_sheets, sheets_of
 from eigenfield.stereo.views import (
     Pictures,
     check_matrices,
@@ -28,55 +25,49 @@ from eigenfield.stereo.views import (
     unpack_pictures,
 )
 
-log = logging.getLogger("eigenfield.stereo")
-
 
 @dataclass(frozen=True)
-class MultiplaneTuning:
-    """Constants of `fit_multiplane`, found on Fern.
+class MultiplaneTuning(DescentTuning):
+    """Constants of `fit_multiplane`, found on Fern at 252x189.
 
     Attributes:
-        small_steps: Steps at half the size.
-        steps: Steps at full size.
-        small_levels: Grids of the pyramid at half the size.
-        levels: Grids of the pyramid at full size, where regions are in place.
-        small_rate: Movement of a colour in the first step at half the size.
-        rate: The same at full size.
-        opacity_rate_ratio: Movement of an opacity to that of a colour.
-        last_rate_ratio: Of the last step to the first; it falls exponentially.
-        colour_variation: Weight of the mean difference of neighbouring colours beside the mean squared error.
-        opacity_variation: The same of opacities.
-        small_variation_ratio: Both of these at half the size: neighbours there are twice as far apart.
-        opacity_price: Weight of the mean opacity.
-        huber_width: Difference of neighbours up to which its cost is quadratic.
-        colour_margin: By which colours may leave 0..1.
         start_error_ratio: A layer starts opaque where its photographs differ by so many times the least difference.
         start_opacity: Opacity there.
         start_haze: Opacity elsewhere.
         start_window_pixels: Window in which photographs are compared.
     """
 
-    small_steps: int = 480
-    steps: int = 240
-    small_levels: int = 7
-    levels: int = 5
-    small_rate: float = 0.02
-    rate: float = 0.01
-    opacity_rate_ratio: float = 0.5
-    last_rate_ratio: float = 0.1
-    colour_variation: float = 0.02
-    opacity_variation: float = 0.06
-    small_variation_ratio: float = 0.75
-    opacity_price: float = 0.002
-    huber_width: float = 0.01
-    colour_margin: float = 0.2
+    steps: int = 480
+    levels: int = 7
+    rate: float = 0.02
+    colour_variation: float = 0.00045
+    opacity_variation: float = 0.00125
     start_error_ratio: float = 1.15
     start_opacity: float = 0.9
     start_haze: float = 0.02
     start_window_pixels: int = 5
 
 
+@dataclass(frozen=True)
+class SheetTuning(DescentTuning):
+    """Constants of `fit_sheets`, found on Fern at 504x378. Labels count in distances of the planes.
+
+    Attributes:
+        label_rate: Movement of a label in the first step.
+        label_variation: Weight of the mean difference of neighbouring labels in a sheet, summed over sheets.
+        label_huber_width: Difference of neighbours up to which its cost is quadratic.
+    """
+
+    steps: int = 240
+    levels: int = 5
+    rate: float = 0.01
+    label_rate: float = 0.05
+    label_variation: float = 0.01
+    label_huber_width: float = 0.2
+
+
 MULTIPLANE_TUNING = MultiplaneTuning()
+SHEET_TUNING = SheetTuning()
 
 
 def fit_multiplane(
@@ -107,86 +98,130 @@ def fit_multiplane(
     matrices = check_matrices(matrices, len(packed))
     if labels.ndim != 1 or len(labels) < 2 or not (np.diff(labels) > 0).all():
         raise ValueError("labels must be at least two, ascending")
-    total = tuning.small_steps + tuning.steps
-
-    def tick(done: int) -> None:
-        if progress is not None:
-            progress("multiplane image", done, total)
-
-    small, fewer = halve_pictures(packed), halved_matrices(matrices)
-    half = (shape[0] + 1) // 2, (shape[1] + 1) // 2
-    layers = start_layers(small, fewer, half, labels, tuning)
-    ratio = tuning.small_variation_ratio
-    first = _Descent(layers, labels, tuning.small_levels, tuning.small_rate, ratio, tuning)
-    first.run(small, fewer, tuning.small_steps, tick)
-    layers = np.stack([cv2.resize(layer, shape[::-1], interpolation=cv2.INTER_LINEAR) for layer in layers])
-    second = _Descent(layers, labels, tuning.levels, tuning.rate, 1.0, tuning)
-    second.run(packed, matrices, tuning.steps, lambda done: tick(tuning.small_steps + done))
+    layers = start_layers(packed, matrices, shape, labels, tuning)
+    _PlaneDescent(layers, labels, tuning).run(packed, matrices, _ticker(progress, "planes", tuning.steps))
     return MultiplaneImage(labels, layers)
 
 
-class _Descent:
-    """Steps of all layers, which are changed in place."""
+def fit_sheets(
+    pictures: Pictures,
+    matrices: NDArray[np.float64],
+    shape: tuple[int, int],
+    labels: NDArray[np.float64],
+    count: int,
+    *,
+    planes: MultiplaneTuning = MULTIPLANE_TUNING,
+    tuning: SheetTuning = SHEET_TUNING,
+    progress: Progress | None = None,
+) -> SoftSheets:
+    """The soft sheets that draw V photographs best: first planes at half the size, then sheets at full size.
 
-    def __init__(
+    Args:
+        pictures: As of `fit_multiplane`.
+        matrices: As of `fit_multiplane`.
+        shape: As of `fit_multiplane`.
+        labels: As of `fit_multiplane`, at about equal distances.
+        count: Number of sheets, at most that of labels.
+        planes: Constants of the planes.
+        tuning: Constants of the sheets.
+        progress: Reports the steps of both.
+
+    Raises:
+        ValueError: As `fit_multiplane`; or `count` is not from 1 to the number of labels.
+    """
+    packed = pack_pictures(pictures)
+    matrices = check_matrices(matrices, len(packed))
+    if not 1 <= count <= np.size(labels):
+        raise ValueError(f"{count} sheets of {np.size(labels)} planes")
+    half = (shape[0] + 1) // 2, (shape[1] + 1) // 2
+    image = fit_multiplane(
+        halve_pictures(packed), halved_matrices(matrices), half, labels, tuning=planes, progress=progress
+    )
+    sheets = enlarged(sheets_of(image, count), shape)
+    spacing = float(np.ptp(image.labels)) / (len(image.labels) - 1)
+    _SheetDescent(sheets, spacing, tuning).run(packed, matrices, _ticker(progress, "sheets", tuning.steps))
+    return sheets
+
+
+def enlarged(sheets: SoftSheets, shape: tuple[int, int]) -> SoftSheets:
+    """The same sheets at another size.
+
+    Args:
+        sheets: Of a reference view.
+        shape: (h, w) of the same view at another resolution.
+    """
+    size = shape[::-1]
+    labels = np.stack([cv2.resize(one, size, interpolation=cv2.INTER_LINEAR) for one in sheets.labels])
+    layers = np.stack([cv2.resize(one, size, interpolation=cv2.INTER_LINEAR) for one in sheets.layers])
+    return SoftSheets(labels, layers)
+
+
+def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[[int], None] | None:
+    return None if progress is None else lambda done: progress(stage, done, total)
+
+
+class _PlaneDescent(Descent):
+    """Of the layers of a multiplane image."""
+
+    def __init__(self, layers: NDArray[np.float32], labels: NDArray[np.float64], tuning: DescentTuning) -> None:
+        super().__init__(layers, tuning)
+        self._labels = labels
+
+    def _backpropagate(
         self,
-        layers: NDArray[np.float32],
-        labels: NDArray[np.float64],
-        levels: int,
-        rate: float,
-        variation_ratio: float,
-        tuning: MultiplaneTuning,
-    ) -> None:
-        self._layers, self._labels, self._rate, self._tuning = layers, labels, rate, tuning
-        self._pyramids = [Pyramid(layers.shape[1:3], levels) for _ in layers]
-        texels, width = layers[..., 0].size, layers.shape[2]
-        colour, opacity = tuning.colour_variation / (3 * texels), tuning.opacity_variation / texels
-        self._variation = _columns(variation_ratio * colour, variation_ratio * opacity, width)
-        self._price = _columns(0, tuning.opacity_price / texels, width)
-        self._low, self._high = _columns(-tuning.colour_margin, 0, width), _columns(1 + tuning.colour_margin, 1, width)
-        self._backdrop = self._low.copy()
-        self._backdrop[3::4] = 1  # the farthest layer is opaque
-        layers[0, ..., 3] = 1
-
-    def run(
-        self, pictures: NDArray[np.uint32], matrices: NDArray[np.float64], steps: int, tick: Callable[[int], None]
-    ) -> None:
-        """Take steps, each by one photograph, in an order that is drawn anew when all had their turn."""
-        order, waiting = np.random.default_rng(0), np.zeros(0, np.int64)
-        drawn = np.empty((len(self._layers), *pictures.shape[1:], 4), np.float32)
-        for number in range(1, steps + 1):
-            if not len(waiting):
-                waiting = order.permutation(len(pictures))
-            view, waiting = int(waiting[-1]), waiting[:-1]
-            homographies = plane_homographies(matrices[view], self._labels)
-            draw_layers(self._layers, homographies, drawn)
-            gradient = [pyramid.gradient for pyramid in self._pyramids]
-            error = backpropagate(unpack_pictures(pictures[view]), homographies, drawn, gradient)
-            falling = self._tuning.last_rate_ratio ** ((number - 1) / steps)
-            self._move(number, self._rate * falling, 1 / (3 * drawn[0, ..., 0].size))
-            tick(number)
-            if number % 60 == 0:
-                log.debug("step %d: %.2f dB", number, -10 * np.log10(error / (3 * drawn[0, ..., 0].size)))
-
-    def _move(self, number: int, rate: float, scale: float) -> None:
-        width = self._layers.shape[2]
-        rates = _columns(rate, rate * self._tuning.opacity_rate_ratio, width)
-        narrow = np.float32(1 / self._tuning.huber_width)
-
-        def one(index: int) -> None:
-            layer, pyramid = self._layers[index].reshape(-1, 4 * width), self._pyramids[index]
-            step = pyramid.gradient.reshape(-1, 4 * width)
-            add_priors(layer, np.float32(scale), self._variation, self._price, narrow, step)
-            pyramid.step(number)
-            move(layer, step, rates, self._low if index else self._backdrop, self._high)
-            step[:] = 0
-
-        parallel_map(one, range(len(self._layers)))
+        codes: NDArray[np.uint8],
+        matrix: NDArray[np.float64],
+        drawn: NDArray[np.float32],
+        gradients: Sequence[NDArray[np.float32]],
+    ) -> float:
+        homographies = plane_homographies(matrix, self._labels)
+        draw_layers(self.layers, homographies, drawn)
+        return backpropagate(codes, homographies, drawn, gradients)
 
 
-def _columns(colour: float, opacity: float, width: int) -> NDArray[np.float32]:
-    """(4 width,) float32: one number for each of a texel's four, along a row."""
-    return np.tile(np.array([colour, colour, colour, opacity], np.float32), width)
+class _SheetDescent(Descent):
+    """Of soft sheets: their layers, and their labels."""
+
+    def __init__(self, sheets: SoftSheets, spacing: float, tuning: SheetTuning) -> None:
+        """Prepare the first step.
+
+        Args:
+            sheets: Are changed in place.
+            spacing: Distance of the planes, in labels.
+            tuning: Constants.
+        """
+        super().__init__(sheets.layers, tuning)
+        self._labels, self._spacing, self._sheet_tuning = sheets.labels, spacing, tuning
+        height, width = sheets.labels.shape[1:]
+        self._label_pyramids = [Pyramid((height, width), 1, tuning.levels) for _ in sheets.labels]
+        variation = tuning.label_variation / (spacing * height * width)
+        self._label_variation = np.full(width, variation, np.float32)
+        self._nothing, self._anything = np.zeros(width, np.float32), np.full(width, np.inf, np.float32)
+        self._places = np.zeros((0, 0, 0, 2), np.float32)
+
+    def _backpropagate(
+        self,
+        codes: NDArray[np.uint8],
+        matrix: NDArray[np.float64],
+        drawn: NDArray[np.float32],
+        gradients: Sequence[NDArray[np.float32]],
+    ) -> float:
+        if self._places.shape[:3] != drawn.shape[:3]:
+            self._places = np.empty((*drawn.shape[:3], 2), np.float32)
+        draw_sheets(self._labels, self.layers, matrix, self._places, drawn)
+        label_gradients = [pyramid.gradient[..., 0] for pyramid in self._label_pyramids]
+        return backpropagate_sheets(codes, self.layers, matrix, self._places, drawn, gradients, label_gradients)
+
+    def _move(self, index: int, number: int, falling: float, scale: np.float32) -> None:
+        super()._move(index, number, falling, scale)
+        labels, pyramid, tuning = self._labels[index], self._label_pyramids[index], self._sheet_tuning
+        step = pyramid.gradient[..., 0]
+        narrow = np.float32(1 / (tuning.label_huber_width * self._spacing))
+        add_priors(labels, 1, scale, self._label_variation, self._nothing, narrow, step)
+        pyramid.step(number)
+        rate = np.full(labels.shape[1], tuning.label_rate * self._spacing * falling, np.float32)
+        move(labels, step, rate, -self._anything, self._anything)
+        step[:] = 0
 
 
 def start_layers(
@@ -194,7 +229,7 @@ def start_layers(
     matrices: NDArray[np.float64],
     shape: tuple[int, int],
     labels: NDArray[np.float64],
-    tuning: MultiplaneTuning,
+    tuning: MultiplaneTuning = MULTIPLANE_TUNING,
 ) -> NDArray[np.float32]:
     """(D, h, w, 4): the mean of the photographs on each plane, opaque where they differ least among all planes.
 

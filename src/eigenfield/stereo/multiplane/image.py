@@ -63,11 +63,25 @@ def draw_layers(layers: NDArray[np.float32], homographies: NDArray[np.float64], 
     parallel_map(lambda d: draw_layer(layers[d], homographies[d], drawn[d]), range(len(layers)))
 
 
+def composite_error(drawn: NDArray[np.float32], codes: NDArray[np.uint8]) -> float:
+    """The squared error of a photograph, whose gradient takes the place of the drawn layers.
+
+    Args:
+        drawn: (D, H, W, 4), overwritten.
+        codes: (H, W, 3) the photograph.
+    """
+
+    def band(rows: tuple[int, int]) -> float:
+        return float(composite_gradient(drawn, codes, *rows, np.empty((len(drawn), 3), np.float32)))
+
+    return sum(parallel_map(band, pieces(len(codes), BAND_ROWS)))
+
+
 def backpropagate(
     codes: NDArray[np.uint8],
     homographies: NDArray[np.float64],
     drawn: NDArray[np.float32],
-    gradient: Sequence[NDArray[np.float32]],
+    gradients: Sequence[NDArray[np.float32]],
 ) -> float:
     """Add the gradient of a photograph's squared error to that of the layers; returns this error.
 
@@ -75,12 +89,8 @@ def backpropagate(
         codes: (H, W, 3) the photograph.
         homographies: (D, 3, 3) of the photograph.
         drawn: (D, H, W, 4) of `draw_layers`, overwritten.
-        gradient: D of (h, w, 4), added to.
+        gradients: D of (h, w, 4), added to.
     """
-
-    def band(rows: tuple[int, int]) -> float:
-        return float(composite_gradient(drawn, codes, *rows, np.empty((len(drawn), 3), np.float32)))
-
-    errors = parallel_map(band, pieces(len(codes), BAND_ROWS))
-    parallel_map(lambda d: add_layer_gradient(drawn[d], homographies[d], gradient[d]), range(len(drawn)))
-    return sum(errors)
+    error = composite_error(drawn, codes)
+    parallel_map(lambda d: add_layer_gradient(drawn[d], homographies[d], gradients[d]), range(len(drawn)))
+    return error

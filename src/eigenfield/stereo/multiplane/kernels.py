@@ -70,6 +70,108 @@ def add_layer_gradient(gradient, homography, layer_gradient):
 
 
 @kernel()
+def sheet_places(labels, base, slope, start, iterations, places):
+    """places (H, W, 2) = column and row in a sheet of what a photograph's pixels see of it; -1, -1 beyond its border.
+
+    A pixel sees (u, v) + d (s, t) on the plane of label d. On a sheet d is that of the place itself,
+    which a fixed point finds while d changes by less than one over the parallax (s, t) from texel to texel.
+
+    Args:
+        labels: (h, w) float32 of the sheet.
+        base: (3, 3) float64, from the pixel (x, y, 1) to (u, v, 1), homogeneous.
+        slope: (2, 3) float64, from the pixel to (s, t) times that scale.
+        start: The label to begin with.
+        iterations: Of the fixed point.
+        places: Written.
+    """
+    height, width = labels.shape
+    right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
+    for row in range(places.shape[0]):
+        for column in range(places.shape[1]):
+            x, y = np.float64(column), np.float64(row)
+            scale = base[2, 0] * x + base[2, 1] * y + base[2, 2]
+            over = 1 / scale
+            u0 = np.float32((base[0, 0] * x + base[0, 1] * y + base[0, 2]) * over)
+            v0 = np.float32((base[1, 0] * x + base[1, 1] * y + base[1, 2]) * over)
+            s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
+            t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+            u, v = u0 + start * s, v0 + start * t
+            for _ in range(iterations):
+                across, down = min(max(u, np.float32(0)), right), min(max(v, np.float32(0)), bottom)
+                left, top = np.int64(across), np.int64(down)
+                f, g = across - np.float32(left), down - np.float32(top)
+                above = labels[top, left] + f * (labels[top, left + 1] - labels[top, left])
+                below = labels[top + 1, left] + f * (labels[top + 1, left + 1] - labels[top + 1, left])
+                d = above + g * (below - above)
+                u, v = u0 + d * s, v0 + d * t
+            inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
+            places[row, column, 0] = u if inside else np.float32(-1)
+            places[row, column, 1] = v if inside else np.float32(-1)
+
+
+@kernel()
+def draw_sheet(layer, places, picture):
+    """picture (H, W, 4) = the layer (h, w, 4) read bilinearly at `places`; 0 where these are negative."""
+    width = layer.shape[1]
+    flat, drawn, line = layer.reshape(-1), picture.reshape(-1), np.int64(4 * width)
+    at = np.int64(0)
+    for row in range(picture.shape[0]):
+        for column in range(picture.shape[1]):
+            u, v = places[row, column, 0], places[row, column, 1]
+            if u >= 0:
+                left, top = np.int64(u), np.int64(v)
+                gather_bilinear(flat, top * line + 4 * left, line, u - np.float32(left), v - np.float32(top), drawn, at)
+            else:
+                drawn[at : at + 4] = 0
+            at += 4
+
+
+@kernel()
+def add_sheet_gradient(gradient, places, layer, base, slope, layer_gradient, label_gradient):
+    """Add what a picture's gradient is for a sheet's layer, and for its labels.
+
+    A label moves the place at which a pixel reads the layer along (s, t), see `sheet_places`: its gradient is that of
+    the pixel times the layer's slope along (s, t).
+
+    Args:
+        gradient: (H, W, 4) contiguous.
+        places: (H, W, 2).
+        layer: (h, w, 4).
+        base, slope: As of `sheet_places`.
+        layer_gradient: (h, w, 4) contiguous, added to.
+        label_gradient: (h, w), added to.
+    """
+    width = layer.shape[1]
+    flat, drawn, line = layer_gradient.reshape(-1), gradient.reshape(-1), np.int64(4 * width)
+    at = np.int64(0)
+    for row in range(gradient.shape[0]):
+        for column in range(gradient.shape[1]):
+            u, v = places[row, column, 0], places[row, column, 1]
+            asked = drawn[at] != 0 or drawn[at + 1] != 0 or drawn[at + 2] != 0 or drawn[at + 3] != 0
+            if u >= 0 and asked:
+                left, top = np.int64(u), np.int64(v)
+                f, g = u - np.float32(left), v - np.float32(top)
+                scatter_bilinear(flat, top * line + 4 * left, line, f, g, drawn, at)
+                across, down = np.float32(0), np.float32(0)
+                for k in range(4):
+                    a, b = layer[top, left, k], layer[top, left + 1, k]
+                    c, d = layer[top + 1, left, k], layer[top + 1, left + 1, k]
+                    twist = a - b - c + d
+                    across += drawn[at + k] * (b - a + g * twist)
+                    down += drawn[at + k] * (c - a + f * twist)
+                x, y = np.float64(column), np.float64(row)
+                over = 1 / (base[2, 0] * x + base[2, 1] * y + base[2, 2])
+                s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
+                t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+                moved = across * s + down * t
+                label_gradient[top, left] += (np.float32(1) - f) * (np.float32(1) - g) * moved
+                label_gradient[top, left + 1] += f * (np.float32(1) - g) * moved
+                label_gradient[top + 1, left] += (np.float32(1) - f) * g * moved
+                label_gradient[top + 1, left + 1] += f * g * moved
+            at += 4
+
+
+@kernel()
 def composite(layers, top, bottom, picture):
     """picture = the layers one over the other, for rows from `top` to `bottom`.
 
@@ -136,11 +238,12 @@ def slope(difference, inverse_width):
 
 
 @kernel()
-def add_priors(layer, scale, variation, price, inverse_width, gradient):
+def add_priors(layer, channels, scale, variation, price, inverse_width, gradient):
     """gradient = scale gradient + that of the total variation and of a price for each number.
 
     Args:
         layer: (h, w C) float32, texels of C numbers.
+        channels: C.
         scale: Of the gradient so far.
         variation: (w C) of each column: weight of the difference of neighbours.
         price: (w C) of each column: cost of the number itself.
@@ -148,7 +251,6 @@ def add_priors(layer, scale, variation, price, inverse_width, gradient):
         gradient: (h, w C) float32, changed.
     """
     rows, columns = layer.shape
-    channels = 4
     for row in range(rows):
         here, out = layer[row], gradient[row]
         above, below = layer[max(row - 1, 0)], layer[min(row + 1, rows - 1)]
@@ -166,31 +268,31 @@ def restrict(fine, row_at, row_part, column_at, column_part, coarse):
     """coarse = the transpose of `prolong`, of the fine grid.
 
     Args:
-        fine: (h, w, 4).
+        fine: (h, w, C).
         row_at, row_part: (h,) the coarse row before each fine one, ascending, and the weight of the next.
         column_at, column_part: (w,) likewise.
-        coarse: (h', w', 4), written.
+        coarse: (h', w', C), written.
     """
-    height, width = fine.shape[:2]
-    source = fine.reshape(height, 4 * width)
-    first, second = np.zeros(4 * width, np.float32), np.zeros(4 * width, np.float32)
+    height, width, channels = fine.shape
+    source = fine.reshape(height, channels * width)
+    first, second = np.zeros(channels * width, np.float32), np.zeros(channels * width, np.float32)
     coarse[:] = 0
     row = 0
     for into in range(coarse.shape[0]):
-        for i in range(4 * width):
+        for i in range(channels * width):
             first[i], second[i] = second[i], np.float32(0)
         while row < height and row_at[row] == into:
             part, line = row_part[row], source[row]
             rest = np.float32(1) - part
-            for i in range(4 * width):
+            for i in range(channels * width):
                 first[i] += rest * line[i]
                 second[i] += part * line[i]
             row += 1
         for column in range(width):
             at, part = column_at[column], column_part[column]
             rest = np.float32(1) - part
-            for channel in range(4):
-                value = first[4 * column + channel]
+            for channel in range(channels):
+                value = first[channels * column + channel]
                 coarse[into, at, channel] += rest * value
                 coarse[into, at + 1, channel] += part * value
 
@@ -198,18 +300,18 @@ def restrict(fine, row_at, row_part, column_at, column_part, coarse):
 @kernel()
 def prolong(coarse, row_at, row_part, column_at, column_part, fine):
     """fine += the coarse grid, interpolated bilinearly. Arguments as of `restrict`."""
-    height, width = fine.shape[:2]
-    line = np.zeros((coarse.shape[1], 4), np.float32)
+    height, width, channels = fine.shape
+    line = np.zeros((coarse.shape[1], channels), np.float32)
     for row in range(height):
         at, part = row_at[row], row_part[row]
         rest = np.float32(1) - part
         for column in range(coarse.shape[1]):
-            for channel in range(4):
+            for channel in range(channels):
                 line[column, channel] = rest * coarse[at, column, channel] + part * coarse[at + 1, column, channel]
         for column in range(width):
             at, right = column_at[column], column_part[column]
             left = np.float32(1) - right
-            for channel in range(4):
+            for channel in range(channels):
                 fine[row, column, channel] += left * line[at, channel] + right * line[at + 1, channel]
 
 

@@ -1,0 +1,141 @@
+"""Descent of layers with colour and opacity, one photograph a step.
+
+What is minimised is the mean squared error of the photographs, plus the total variation of colour and opacity, plus a
+price for opacity, which empties what no photograph asks for.
+"""
+
+from __future__ import annotations
+
+import logging
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.runtime.parallel import parallel_map
+from eigenfield.stereo.multiplane.kernels import add_priors, move
+from eigenfield.stereo.multiplane.pyramid import Pyramid
+from eigenfield.stereo.views import unpack_pictures
+
+log = logging.getLogger("eigenfield.stereo")
+
+CHANNELS = 4
+LOG_STEPS = 60
+
+
+@dataclass(frozen=True)
+class DescentTuning:
+    """Constants of a descent.
+
+    Attributes:
+        steps: Number of steps.
+        levels: Grids of the pyramid of corrections.
+        rate: Movement of a colour in the first step.
+        opacity_rate_ratio: Movement of an opacity to that of a colour.
+        last_rate_ratio: Of the last step to the first; it falls exponentially.
+        colour_variation: Weight of the mean difference of neighbouring colours in a layer, summed over layers.
+        opacity_variation: The same of opacities.
+        opacity_price: Weight of a layer's mean opacity, summed over layers.
+        huber_width: Difference of neighbours up to which its cost is quadratic.
+        colour_margin: By which colours may leave 0..1.
+    """
+
+    steps: int
+    levels: int
+    rate: float
+    opacity_rate_ratio: float = 0.5
+    last_rate_ratio: float = 0.1
+    colour_variation: float = 0.0006
+    opacity_variation: float = 0.0019
+    opacity_price: float = 0.00006
+    huber_width: float = 0.01
+    colour_margin: float = 0.2
+
+
+class Descent(ABC):
+    """Steps of all layers, which are changed in place. The first is the farthest, and is kept opaque.
+
+    Attributes:
+        layers: (D, h, w, 4) float32.
+        tuning: Constants.
+    """
+
+    def __init__(self, layers: NDArray[np.float32], tuning: DescentTuning) -> None:
+        """Prepare the first step.
+
+        Args:
+            layers: (D, h, w, 4) float32, contiguous.
+            tuning: Constants.
+        """
+        self.layers, self.tuning = layers, tuning
+        _, height, width, channels = layers.shape
+        self._pyramids = [Pyramid((height, width), channels, tuning.levels) for _ in layers]
+        texels = height * width
+        self._variation = _columns(tuning.colour_variation / (3 * texels), tuning.opacity_variation / texels, width)
+        self._price = _columns(0, tuning.opacity_price / texels, width)
+        low, high = -tuning.colour_margin, 1 + tuning.colour_margin
+        self._low, self._opaque, self._high = (_columns(*pair, width) for pair in ((low, 0), (low, 1), (high, 1)))
+        layers[0, ..., 3] = 1
+
+    def run(
+        self, pictures: NDArray[np.uint32], matrices: NDArray[np.float64], tick: Callable[[int], None] | None = None
+    ) -> None:
+        """Take all steps, in an order of photographs that is drawn anew when all had their turn.
+
+        Args:
+            pictures: (V, H, W) packed.
+            matrices: (V, 3, 4) of the views.
+            tick: Is called after each step with its number, from 1 on.
+        """
+        order, waiting, tuning = np.random.default_rng(0), np.zeros(0, np.int64), self.tuning
+        drawn = np.empty((len(self.layers), *pictures.shape[1:], CHANNELS), np.float32)
+        numbers = 3 * pictures[0].size
+        for number in range(1, tuning.steps + 1):
+            if not len(waiting):
+                waiting = order.permutation(len(pictures))
+            view, waiting = int(waiting[-1]), waiting[:-1]
+            gradients = [pyramid.gradient for pyramid in self._pyramids]
+            error = self._backpropagate(unpack_pictures(pictures[view]), matrices[view], drawn, gradients)
+            falling = tuning.last_rate_ratio ** ((number - 1) / tuning.steps)
+            parallel_map(lambda k: self._move(k, number, falling, np.float32(1 / numbers)), range(len(self.layers)))  # noqa: B023
+            if number % LOG_STEPS == 0:
+                log.debug("step %d: %.2f dB", number, -10 * np.log10(max(error / numbers, 1e-12)))
+            if tick is not None:
+                tick(number)
+
+    @abstractmethod
+    def _backpropagate(
+        self,
+        codes: NDArray[np.uint8],
+        matrix: NDArray[np.float64],
+        drawn: NDArray[np.float32],
+        gradients: Sequence[NDArray[np.float32]],
+    ) -> float:
+        """Add the gradient of a photograph's squared error to that of the layers; return this error.
+
+        Args:
+            codes: (H, W, 3) the photograph.
+            matrix: (3, 4) of its view.
+            drawn: (D, H, W, 4) scratch.
+            gradients: D of (h, w, 4), added to.
+        """
+
+    def _move(self, index: int, number: int, falling: float, scale: np.float32) -> None:
+        """Turn a layer's gradient, times `scale`, into a step, and take it."""
+        tuning, width = self.tuning, self.layers.shape[2]
+        layer, pyramid = self.layers[index].reshape(-1, CHANNELS * width), self._pyramids[index]
+        step = pyramid.gradient.reshape(layer.shape)
+        narrow = np.float32(1 / tuning.huber_width)
+        add_priors(layer, CHANNELS, scale, self._variation, self._price, narrow, step)
+        pyramid.step(number)
+        rate = tuning.rate * falling
+        rates = _columns(rate, rate * tuning.opacity_rate_ratio, width)
+        move(layer, step, rates, self._low if index else self._opaque, self._high)
+        step[:] = 0
+
+
+def _columns(colour: float, opacity: float, width: int) -> NDArray[np.float32]:
+    """(4 width,) float32: one number for each of a texel's four, along a row."""
+    return np.tile(np.array([colour, colour, colour, opacity], np.float32), width)
