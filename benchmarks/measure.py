@@ -34,17 +34,23 @@ def meaning(file: Path) -> bytes:
     return ast.dump(ast.parse(file.read_text(encoding="utf-8"))).encode()
 
 
-def run(arguments: list[str]) -> dict[str, Any]:
+def run(arguments: list[str], tree: Path | None = None) -> dict[str, Any]:
     """Run `python ARGUMENTS...`: wall seconds, peak anonymous memory (RssAnon, children included, sampled 50 times a
-    second; Linux only, else None) and what it printed. File-backed pages, such as memory maps, are not anonymous."""
+    second; Linux only, else None) and what it printed. File-backed pages, such as memory maps, are not anonymous.
+
+    Args:
+        arguments: Of Python.
+        tree: Whose package is imported. Default: this one's.
+    """
     started = time.perf_counter()
-    process = subprocess.Popen([sys.executable, *arguments], stdout=subprocess.PIPE, text=True)
+    environment = None if tree is None else {**os.environ, "PYTHONPATH": str(tree / "src")}
     peak = 0
-    while process.poll() is None:
-        peak = max(peak, _anonymous(process.pid))
-        time.sleep(0.02)
-    seconds = time.perf_counter() - started
-    output = process.stdout.read() if process.stdout else ""
+    with subprocess.Popen([sys.executable, *arguments], stdout=subprocess.PIPE, text=True, env=environment) as process:
+        while process.poll() is None:
+            peak = max(peak, _anonymous(process.pid))
+            time.sleep(0.02)
+        seconds = time.perf_counter() - started
+        output = process.stdout.read() if process.stdout else ""
     if process.returncode:
         raise SystemExit(f"{' '.join(arguments)} ended with {process.returncode}")
     return {"seconds": round(seconds, 2), "peak_anonymous_mb": round(peak / 1e6) or None, "output": output}
@@ -61,11 +67,11 @@ def _anonymous(pid: int) -> int:
     return own + sum(_anonymous(child) for child in children)
 
 
-def commit() -> str:
-    """The commit that is measured, marked if the tree differs from it."""
+def commit(tree: Path | None = None) -> str:
+    """The commit that is measured, of another tree where one is named, marked if the tree differs from it."""
     try:
         name, changes = (
-            subprocess.run(["git", *words], capture_output=True, text=True, check=True).stdout
+            subprocess.run(["git", *words], capture_output=True, text=True, check=True, cwd=tree).stdout
             for words in (
                 ["rev-parse", "--short", "HEAD"],
                 ["status", "--porcelain", "-uno", "--", ".", ":!benchmarks/results"],

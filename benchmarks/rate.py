@@ -7,7 +7,7 @@ CAPTURE: names as benchmarks/report.py knows them, or a folder of photographs of
 and the sparse Tarot. Ours: a fit for
 each preset, coded at qualities near its own, each point a real .glb that is read and drawn again; --best adds a curve
 of that preset alone, which takes its time. SVT-AV1 walks the views row by row, to and fro or in a spiral, whichever is
-best at its middle rate. Crops at about equal bytes go to
+best at its middle rate; VVenC, which takes minutes, goes to and fro. Crops at about equal bytes go to
 OUT/NAME/crops.png; what is done stays there too, and a run that was stopped goes on while the code is the same. The
 loss without a codec stands beside: of ours before coding, of the peers' colours in 4:2:0.
 """
@@ -21,7 +21,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,7 +36,7 @@ from evidence.prepared import Prepared
 from evidence.runner import kept
 
 CAPTURES = ("tarot", "shop", "boxes", "antinous", "tarot-5x4")
-PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444")
+PEERS = ("svt-av1-2", "svt-av1-6", "libaom-444", "vvenc")
 # a fit for each preset, and one with the mesh that the lowest quality has; the finest mesh says what is covered
 FITS: tuple[ours.Fit, ...] = (
     (EncodeOptions(preset="best"), (94, 97)),
@@ -47,7 +46,7 @@ FITS: tuple[ours.Fit, ...] = (
 )
 BEST: tuple[ours.Fit, ...] = ((EncodeOptions(preset="best", quality=88), (78, 84, 88, 91)),)
 CRF = (32, 40, 48, 56, 63)
-DOUBLING = 2.0  # dB of luma for twice the bytes, by which the orders are compared: they differ in both
+QP = (27, 32, 37, 42, 47)  # of VVC, whose scale is another
 KEYS = ("psnr", "psnr_luma", "ssim")
 
 
@@ -65,6 +64,9 @@ def main() -> None:
         raise SystemExit("name a capture, demo or a folder: EIGENFIELD_DATA names no folder that holds the shared ones")
     some = [captures.named(name, out) for name in names]
     chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
+    for codec in chosen:
+        if codecs.missing(codec):
+            print(f"left out: {codec.label}: {codecs.missing(codec)}", flush=True)
     figures = {}
     for capture in some:
         name, work = capture.name, out / capture.name
@@ -117,26 +119,27 @@ def peer_curve(
     codec: VideoCodec, ready: Prepared, photographs: list[NDArray[np.uint8]], covered: list[NDArray[np.bool_]]
 ) -> dict[str, Any]:
     """A peer's curve in the order of views that suits it best."""
-    field = ready.light_field
+    field, steps = ready.light_field, QP if codec.parameter == "qp" else CRF
+    middle = steps[len(steps) // 2]
     with tempfile.TemporaryDirectory() as folder:
-        orders = codecs.orders(field.cameras)
+        orders = codecs.orders_of(codec, field.cameras)
 
-        def point(crf: int, name: str) -> dict[str, Any]:
+        def point(step: int, name: str) -> dict[str, Any]:
             order, place = orders[name], Path(folder) / name  # a film of one order is not written over by another's
             place.mkdir(exist_ok=True)
             film, counted = [photographs[index] for index in order], [covered[index] for index in order]
-            return codecs.measure_video(codec, crf, film, [field.names[index] for index in order], counted, place)
+            return codecs.measure_video(codec, step, film, [field.names[index] for index in order], counted, place)
 
-        tried = {name: point(CRF[len(CRF) // 2], name) for name in orders}
-        best = max(tried, key=lambda name: tried[name]["psnr_luma"] - DOUBLING * np.log2(tried[name]["bytes"]))
-        points = [tried[best] if crf == CRF[len(CRF) // 2] else point(crf, best) for crf in CRF]
+        tried = {name: point(middle, name) for name in orders}
+        best = codecs.best_order(tried)
+        points = [tried[best] if step == middle else point(step, best) for step in steps]
         for one in points:
             film = Path(folder) / best / f"{codec.name}-{one['parameter']}.{codec.container}"
             at = orders[best].index(shown_view(ready))
             picture = codecs.access(film, codec, at, photographs[shown_view(ready)].shape[:2])[1]
             one["shown"] = pictures.write_exact(picture, ready.work / f"{codec.name}-{one['parameter']}.webp").name
     for one in points:
-        print(f"{ready.capture.name}: {codec.label}, crf {one['parameter']}: {line(one)}", flush=True)
+        print(f"{ready.capture.name}: {codec.label}, {codec.parameter} {one['parameter']}: {line(one)}", flush=True)
     return {
         "name": codec.label, "key": codec.name, "order": best,
         "orders": {name: [one[key] for key in ("bytes", "psnr", "psnr_luma")] for name, one in tried.items()},
@@ -171,16 +174,8 @@ def contact_sheet(
         for name, one in (("eigenfield", own), (film["name"], other))
     ]
     corners = pictures.busiest([shown[0]] * 2, shown[1:], 3, covered[index])
-    columns = []
-    for picture, caption in zip(shown, words, strict=True):
-        crops = [np.repeat(np.repeat(pictures.crop(picture, corner), 2, axis=0), 2, axis=1) for corner in corners]
-        head = np.full((20, crops[0].shape[1], 3), 255, np.uint8)
-        cv2.putText(head, caption, (2, 14), cv2.FONT_HERSHEY_SIMPLEX, 0.38, (0, 0, 0), 1, cv2.LINE_AA)
-        columns.append(np.concatenate([head, *crops]))
-    place = ready.work / "crops.png"
-    done, data = cv2.imencode(".png", np.ascontiguousarray(np.concatenate(columns, axis=1)[..., ::-1]))
-    assert done
-    place.write_bytes(data.tobytes())
+    rows = [("", [pictures.crop(picture, corner) for picture in shown]) for corner in corners]
+    place = pictures.write_sheet(words, rows, ready.work / "crops.png")
     print(f"{ready.capture.name}: {place}", flush=True)
     return place
 

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import between_tables
 import evaluation_tables
 import rate_tables
 from evaluation_tables import table
@@ -251,6 +252,7 @@ def main() -> None:
     made = {
         README: rate_tables.five(),
         BENCHMARKS: rate_tables.section()
+        + between_tables.section()
         + "## The paper's way (`--fit none`)\n\n"
         + quality()
         + reconstruction()

@@ -16,22 +16,31 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eigenfield.capture import LightField
+from eigenfield.capture.overlay import proxy_lines
+from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.scene import Scene
 from eigenfield.evaluation import ExcludedCircle, match_photographs
 from eigenfield.evaluation.image import ImageScores, measure_picture, summarise_scores
 from eigenfield.gltf import parts
+from eigenfield.imaging.colour import LUMA_BT709
 from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import WEIGHT_MODES, Renderer, ViewWeights, camera_weights, view_weights
+from evidence import codecs
 from evidence.lumigraph import BLENDED, Lumigraph, draw_lumigraph, make_lumigraph
 from evidence.prepared import spread_over_array
 
+EDGE_REACH = 2  # pixels: what lies so near a depth edge counts as the edge's
 AVIF_QUALITY, AVIF_SAMPLE = 50, 12  # of the photographs as AVIF: how many are packed to say what all need
 TITLES = {
     "nearest": "photograph of the nearest encoded camera",
     "blend": "photographs of the neighbours, blended without geometry",
     "lumigraph": f"unstructured lumigraph, {BLENDED} photographs on the proxy",
     **{mode: f"our scene, {mode} view weights" for mode in WEIGHT_MODES},
+    "ours": "our scene",
+    "before": "our scene, the version before",
+    **{codec.name: f"lumigraph of the encoded views as {codec.label}" for codec in codecs.VIDEO},
 }
 WORDS = (
     "Held-out views; mean over views, the worst beside it. All ways are measured over the same pixels, those that the "
@@ -75,8 +84,8 @@ def between(
     scene's, for its bytes. circles: of `read_circles`; then psnr_outside counts the covered pixels outside them.
     """
     scene = stage.scene
-    chosen = _chosen(stage, sample)
-    rows, notes = _measured(stage, chosen, ways_of(stage, peers), circles)
+    chosen = held_out(stage, sample)
+    rows, notes = measure_ways(stage, chosen, ways_of(stage, peers), circles)
     if _blended_by(scene) != "bilinear":
         notes.append("The encoded cameras are on no full grid: photographs are blended with Delaunay weights.")
     return {
@@ -98,8 +107,8 @@ def weights_study(
 ) -> dict[str, Any]:
     """The view weights of our scene on held-out views: a row for each of `WEIGHT_MODES`, as `between` has them."""
     stage = Stage(scene, light_field, match_photographs(scene, light_field), Renderer(scene))
-    chosen = _chosen(stage, sample)
-    rows, notes = _measured(stage, chosen, {mode: partial(_ours, stage, mode) for mode in WEIGHT_MODES}, circles)
+    chosen = held_out(stage, sample)
+    rows, notes = measure_ways(stage, chosen, {mode: partial(_ours, stage, mode) for mode in WEIGHT_MODES}, circles)
     return {"cameras": len(chosen), "methods": rows, "words": " ".join(notes)}
 
 
@@ -171,17 +180,49 @@ def _as_large(photograph: NDArray[np.uint8], stage: Stage, index: int) -> NDArra
     return np.asarray(cv2.resize(photograph, (camera.width, camera.height), interpolation=cv2.INTER_AREA), np.uint8)
 
 
-def _chosen(stage: Stage, sample: int | None) -> list[int]:
+def held_out(stage: Stage, sample: int | None = None) -> list[int]:
+    """The held-out cameras whose photographs are there, or `sample` of them; ValueError where there is none."""
     held = [int(index) for index in np.flatnonzero(stage.scene.rig.held_out) if int(index) in stage.views]
     if not held:
         raise ValueError("the scene holds out no camera whose photograph is here")
     return spread_over_array(stage.scene, held, len(held) if sample is None else sample)
 
 
-def _measured(
-    stage: Stage, chosen: Sequence[int], ways: Mapping[str, Way], circles: Mapping[str, ExcludedCircle] | None
+def near_depth_edges(mesh: Mesh, camera: Camera) -> NDArray[np.bool_]:
+    """(H, W) the pixels within EDGE_REACH rows and columns of the mesh's outline and depth edges (`proxy_lines`)."""
+    side = 2 * EDGE_REACH + 1
+    outline = proxy_lines(mesh, camera).outline.astype(np.uint8)
+    return np.asarray(cv2.dilate(outline, np.ones((side, side), np.uint8)), np.bool_)
+
+
+def squared_luma_errors(drawn: NDArray[np.uint8], photograph: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """(H, W) of the 8-bit codes (H, W, 3), in BT.709 luma."""
+    difference = np.asarray(cv2.subtract(drawn, photograph, dtype=cv2.CV_32F))
+    return np.square(np.asarray(cv2.transform(difference, np.array([LUMA_BT709], np.float32)), np.float32))
+
+
+def share_near(values: Sequence[NDArray[Any]], near: Sequence[NDArray[np.bool_]]) -> float:
+    """The part of the sum of all values that lies at the places `near`; 0 where the sum is 0."""
+    total = sum(float(one.sum(dtype=np.float64)) for one in values)
+    there = sum(float(one.sum(where=at, dtype=np.float64)) for one, at in zip(values, near, strict=True))
+    return there / total if total else 0.0
+
+
+def measure_ways(
+    stage: Stage, chosen: Sequence[int], ways: Mapping[str, Way], circles: Mapping[str, ExcludedCircle] | None = None
 ) -> tuple[list[dict[str, Any]], list[str]]:
-    """A row for each way that this array allows, and a word on each that it does not."""
+    """A row for each way that this array allows, and a word on each that it does not.
+
+    A row has key, title, the scores of `measure_picture` with FLIP, their worst views and seconds a view. edge_share is
+    the part of all squared errors of luma in covered pixels that lies near depth edges; edge_pixels is their part of
+    the covered pixels.
+
+    Args:
+        stage: The scene and its photographs.
+        chosen: Indices of its cameras.
+        ways: By their keys in TITLES.
+        circles: Where there are some, psnr_outside counts the covered pixels outside them.
+    """
     notes = []
     usable: dict[str, Way] = {}
     for key, draw in ways.items():
@@ -193,16 +234,20 @@ def _measured(
             usable[key] = draw
     figures: dict[str, list[ImageScores]] = {key: [] for key in usable}
     seconds: dict[str, list[float]] = {key: [] for key in usable}
+    errors: dict[str, list[NDArray[np.float32]]] = {key: [] for key in usable}
+    edges = []
     for index in chosen:
         photograph = stage.capture.photograph(stage.views[index])
         covered = covered_by_proxy(stage, index, photograph.mask)
         true = to_codes(photograph.pixels)
         circle = None if circles is None else circles.get(stage.scene.rig.names[index])
+        edges.append(near_depth_edges(stage.scene.proxy.mesh, stage.scene.rig.cameras[index])[covered])
         for key, draw in usable.items():
             started = time.perf_counter()
             drawn = to_codes(draw(index))
             seconds[key].append(time.perf_counter() - started)
             figures[key].append(measure_picture(drawn, covered, true, with_flip=True))
+            errors[key].append(squared_luma_errors(drawn, true)[covered])
             if circles is not None:
                 beyond = covered if circle is None else covered & circle.outside(true.shape[1], true.shape[0])
                 figures[key][-1]["psnr_outside"] = psnr(drawn, true, beyond)
@@ -210,6 +255,8 @@ def _measured(
     rows = []
     for key in usable:
         row: dict[str, Any] = {"key": key, "title": TITLES[key], **summarise_scores(figures[key], names)}
+        row["edge_share"] = share_near(errors[key], edges)
+        row["edge_pixels"] = share_near([np.ones(len(one)) for one in edges], edges)
         rows.append({**row, "seconds": round(float(np.median(seconds[key])), 4)})
     return rows, notes
 

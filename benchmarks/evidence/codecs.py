@@ -1,7 +1,7 @@
 """Video codecs as peers: all views as one film in serpentine order, with one key frame, and one view out of it again.
 
 A file is counted whole, in the smallest container there is: AV1 as an OBU stream (2 bytes a frame; IVF takes 12 more,
-3.5 kB for 17x17 views), HEVC as its bare byte stream without x265's note on its settings.
+3.5 kB for 17x17 views), HEVC and VVC as their bare byte streams without the encoder's note on its settings.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import tempfile
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -30,6 +30,7 @@ from evidence.colour import Chroma, Picture, Planes, even, pad, to_planes, to_rg
 
 RATE = 25  # frames a second: means nothing here, but a film has one
 FOREVER = 99999  # frames between key frames
+DOUBLING = 2.0  # dB of luma for twice the bytes, by which orders of views are compared: they differ in both
 PIXELS: dict[Chroma, str] = {"420": "yuv420p10le", "444": "yuv444p10le"}
 
 
@@ -37,8 +38,18 @@ PIXELS: dict[Chroma, str] = {"420": "yuv420p10le", "444": "yuv444p10le"}
 class VideoCodec:
     """One way to code a film.
 
-    name: key in results; label: for people. encoder: ffmpeg's name. rates: crf values, from large files to small ones.
-    options: of the encoder. container: ffmpeg's muxer, also the file's suffix. how: through PyAV or the program.
+    Attributes:
+        name: Key in results.
+        label: For people.
+        encoder: ffmpeg's name.
+        chroma: Sampling of the colours.
+        options: Of the encoder.
+        rates: Values of `parameter`, from large files to small ones.
+        container: ffmpeg's muxer, also the file's suffix.
+        how: Through PyAV or the ffmpeg program.
+        parameter: The encoder's option for the rate.
+        steps: Values of `parameter` that the encoder tells apart between two whole numbers.
+        patient: Whether the encoder takes so long that views are tried in one order alone.
     """
 
     name: str
@@ -49,14 +60,18 @@ class VideoCodec:
     rates: tuple[int, int, int, int]
     container: str
     how: Literal["pyav", "ffmpeg"] = "pyav"
+    parameter: str = "crf"
+    steps: int = 1
+    patient: bool = False
 
 
 def _svt(preset: int) -> VideoCodec:
     # tune 1 is PSNR, the encoder's default up to now, said in case that changes
     options = (("preset", str(preset)), ("svtav1-params", "keyint=-1:scd=0:tune=1"))
     return VideoCodec(
-        f"svt-av1-{preset}", f"SVT-AV1 preset {preset}, 4:2:0", "libsvtav1", "420", options, (30, 40, 50, 60), "obu"
-    )
+        f"svt-av1-{preset}", f"SVT-AV1 preset {preset}, 4:2:0", "libsvtav1", "420", options, (30, 40, 50, 60), "obu",
+        steps=4,
+    )  # fmt: skip
 
 
 def _x265(chroma: Chroma) -> VideoCodec:
@@ -71,11 +86,17 @@ AOM = (
     ("g", str(FOREVER)), ("keyint_min", str(FOREVER)),
 )  # fmt: skip
 
+# qpa 0: without the perceptual quantiser, as the others are tuned for PSNR
+VVENC = (("preset", "medium"), ("qpa", "0"), ("vvenc-params", "intraperiod=-1"))
+
 VIDEO = (
     _svt(2),
     _svt(6),
     _x265("420"),
     _x265("444"),
+    VideoCodec(
+        "vvenc", "VVenC medium, 4:2:0", "libvvenc", "420", VVENC, (22, 29, 36, 43), "vvc", "ffmpeg", "qp", patient=True
+    ),
     VideoCodec("libaom-444", "libaom cpu 6, 4:4:4", "libaom-av1", "444", AOM, (30, 40, 50, 60), "obu", "ffmpeg"),
 )
 
@@ -132,10 +153,26 @@ def orders(cameras: Sequence[Camera]) -> dict[str, list[int]]:
     return {name: [int(grid.index.flat[place]) for place in way] for name, way in ways.items()}
 
 
+def usual(ways: Mapping[str, Any]) -> str:
+    """The one of `orders` that is not tried but taken: to and fro where there is a grid."""
+    return "serpentine" if "serpentine" in ways else "nearest"
+
+
 def order(cameras: Sequence[Camera]) -> list[int]:
-    """The one of `orders` in which views are coded: to and fro where there is a grid."""
+    """The usual one of `orders`."""
     ways = orders(cameras)
-    return ways["serpentine" if "serpentine" in ways else "nearest"]
+    return ways[usual(ways)]
+
+
+def orders_of(codec: VideoCodec, cameras: Sequence[Camera]) -> dict[str, list[int]]:
+    """Those of `orders` that are tried with a codec: the usual one alone where the codec is patient."""
+    ways = orders(cameras)
+    return {usual(ways): ways[usual(ways)]} if codec.patient else ways
+
+
+def best_order(tried: Mapping[str, Mapping[str, Any]]) -> str:
+    """The order whose point has the most luma PSNR for its bytes."""
+    return max(tried, key=lambda name: tried[name]["psnr_luma"] - DOUBLING * np.log2(tried[name]["bytes"]))
 
 
 def _greedy(distances: NDArray[np.float64], first: int) -> list[int]:
@@ -152,25 +189,32 @@ def film_size(pictures: Sequence[Picture]) -> tuple[int, int]:
     return even(max(p.shape[0] for p in pictures), max(p.shape[1] for p in pictures))
 
 
-def encode(pictures: Sequence[Picture], codec: VideoCodec, crf: int, path: Path) -> float:
+def encode(pictures: Sequence[Picture], codec: VideoCodec, rate: float, path: Path) -> float:
     """Write the pictures, in the order given, as a film; the seconds that the encoder took.
 
-    pictures: (H, W, 3) uint8, of any sizes: smaller ones are padded by their edges. The conversion to Y'CbCr comes
-    first and is not in the seconds. RuntimeError with the encoder's words where the ffmpeg program fails.
+    The conversion to Y'CbCr comes first and is not in the seconds.
+
+    Args:
+        pictures: (H, W, 3) uint8, of any sizes: smaller ones are padded by their edges.
+        codec: The codec.
+        rate: Value of the codec's `parameter`, in 1 / `steps`.
+        path: Of the film.
+
+    Raises:
+        RuntimeError: The ffmpeg program fails; with its words.
     """
     height, width = film_size(pictures)
     film = [to_planes(pad(picture, height, width), codec.chroma) for picture in pictures]
     run = _encode_pyav if codec.how == "pyav" else _encode_program
-    return run(film, codec, crf, path)
+    return run(film, codec, rate, path)
 
 
-def _encode_pyav(film: Sequence[Planes], codec: VideoCodec, crf: int, path: Path) -> float:
+def _encode_pyav(film: Sequence[Planes], codec: VideoCodec, rate: float, path: Path) -> float:
     os.environ.setdefault("SVT_LOG", "1")  # errors alone: SVT-AV1 writes its settings to stderr otherwise
     frames = [_frame(planes, codec, number) for number, planes in enumerate(film)]
     start = time.perf_counter()
     with av.open(str(path), "w", format=codec.container) as container:
-        options = {**dict(codec.options), "crf": str(crf)}
-        stream: Any = container.add_stream(codec.encoder, rate=RATE, options=options)
+        stream: Any = container.add_stream(codec.encoder, rate=RATE, options=_options(codec, rate))
         stream.width, stream.height = frames[0].width, frames[0].height
         stream.pix_fmt = PIXELS[codec.chroma]
         context = stream.codec_context
@@ -183,6 +227,14 @@ def _encode_pyav(film: Sequence[Planes], codec: VideoCodec, crf: int, path: Path
             container.mux(stream.encode(frame))
         container.mux(stream.encode(None))
     return time.perf_counter() - start
+
+
+def _options(codec: VideoCodec, rate: float) -> dict[str, str]:
+    """Of the encoder, the rate among them. ffmpeg's crf is a whole number; SVT-AV1's own parameter takes quarters."""
+    options = dict(codec.options) | {codec.parameter: f"{rate:g}"}
+    if codec.encoder == "libsvtav1":
+        options["svtav1-params"] += f":crf={rate:g}"
+    return options
 
 
 def _frame(planes: Planes, codec: VideoCodec, number: int) -> Any:
@@ -200,13 +252,14 @@ def _samples(plane: Any) -> NDArray[np.uint16]:
     return np.frombuffer(plane, np.uint16).reshape(-1, plane.line_size // 2)[: plane.height]
 
 
-def _encode_program(film: Sequence[Planes], codec: VideoCodec, crf: int, path: Path) -> float:
+def _encode_program(film: Sequence[Planes], codec: VideoCodec, rate: float, path: Path) -> float:
     height, width = film[0][0].shape
     full = ["-color_range", "pc", "-colorspace", "bt709"]
     command = ["ffmpeg", "-hide_banner", "-loglevel", "error", "-y", "-f", "rawvideo"]
     command += ["-pix_fmt", PIXELS[codec.chroma], "-s", f"{width}x{height}", "-r", str(RATE), *full, "-i", "pipe:0"]
-    command += ["-c:v", codec.encoder, *(word for key, value in codec.options for word in (f"-{key}", value))]
-    command += ["-crf", str(crf), *full, "-threads", str(os.cpu_count() or 1), "-f", codec.container, str(path)]
+    options = (word for key, value in _options(codec, rate).items() for word in (f"-{key}", value))
+    command += ["-c:v", codec.encoder, *options]
+    command += [*full, "-threads", str(os.cpu_count() or 1), "-f", codec.container, str(path)]
     start = time.perf_counter()
     with tempfile.TemporaryFile() as words:  # a file, not a pipe: nobody reads while frames are being written
         with subprocess.Popen(command, stdin=subprocess.PIPE, stderr=words) as process:
@@ -280,7 +333,7 @@ def evict(path: Path) -> None:
 
 def measure_video(
     codec: VideoCodec,
-    crf: int,
+    rate: float,
     pictures: Sequence[Picture],
     names: Sequence[str],
     covered: Sequence[NDArray[np.bool_]],
@@ -290,10 +343,10 @@ def measure_video(
 
     pictures, names, covered: of the views, in the order in which they are to be coded; (H, W, 3) uint8 and (H, W). The
     film is written to `folder`, which must exist, and left there. Returns `rates.point`'s figures with "parameter" (the
-    crf), "bytes", "encode_seconds" (of the encoder alone) and "access_seconds" of the "middle" and the "last" view.
+    rate), "bytes", "encode_seconds" (of the encoder alone) and "access_seconds" of the "middle" and the "last" view.
     """
-    path = folder / f"{codec.name}-{crf}.{codec.container}"
-    seconds = encode(pictures, codec, crf, path)
+    path = folder / f"{codec.name}-{rate}.{codec.container}"
+    seconds = encode(pictures, codec, rate, path)
     sizes = [(picture.shape[0], picture.shape[1]) for picture in pictures]
     last = len(pictures) - 1
     reached = {
@@ -301,7 +354,7 @@ def measure_video(
         for place, position in (("middle", last // 2), ("last", last))
     }
     return {
-        "parameter": crf,
+        "parameter": rate,
         "bytes": path.stat().st_size,
         "encode_seconds": round(seconds, 2),
         "access_seconds": reached,

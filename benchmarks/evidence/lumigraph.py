@@ -9,7 +9,7 @@ does not see is told by depth maps. Without the penalty for differing resolution
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,11 @@ class Lumigraph:
         width, height = self.sizes[index]
         start = self.starts[index]
         return self.codes[3 * start : 3 * (start + width * height)].reshape(height, width, 3)
+
+    def of(self, pictures: Sequence[NDArray[np.uint8]]) -> Lumigraph:
+        """The same cameras with other pictures, of the same sizes, in place of the photographs."""
+        assert [picture.shape[:2] for picture in pictures] == [(height, width) for width, height in self.sizes]
+        return replace(self, codes=np.concatenate([picture.reshape(-1) for picture in pictures]))
 
 
 def make_lumigraph(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +26,7 @@ ERROR_GAIN = 5  # the paper's heat maps are drawn so
 WIDEST = 480  # pixels of a picture in the report
 CROP = 96  # pixels of a photograph
 ENLARGED = 2  # times, without a filter: pixels are what a crop shows
+STRIP = 20  # pixels: height of a line of words on a sheet
 WEBP = [cv2.IMWRITE_WEBP_QUALITY, 82]
 LOSSLESS = [cv2.IMWRITE_WEBP_QUALITY, 101]  # OpenCV's word for lossless
 
@@ -105,15 +107,29 @@ def busiest(
     where a judgement by eye has something to see. covered: (H, W), what counts; None: all."""
     error = sum(cv2.absdiff(a, b).astype(np.float32).mean(axis=2) for a, b in zip(photographs, others, strict=True))
     error = error if covered is None else error * covered
-    side = min(CROP, *np.shape(error))
-    score = cv2.boxFilter(np.asarray(error), -1, (side, side), anchor=(0, 0), borderType=cv2.BORDER_ISOLATED)
-    score = score[: score.shape[0] - side + 1, : score.shape[1] - side + 1].copy()
-    corners = []
+    score, side, corners = _squares(np.asarray(error, np.float32)), min(CROP, *np.shape(error)), []
     for _ in range(count):
-        row, column = (int(value) for value in np.unravel_index(np.argmax(score), score.shape))
+        _, (row, column) = _largest(score)
         corners.append((row, column))
         score[max(0, row - side) : row + side, max(0, column - side) : column + side] = -1
     return corners
+
+
+def largest_square(values: NDArray[np.float32]) -> tuple[float, tuple[int, int]]:
+    """The largest mean over a CROP square of (H, W) values, and the square's top-left corner."""
+    return _largest(_squares(values))
+
+
+def _squares(values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The mean over the CROP square at each top-left corner that it may have."""
+    side = min(CROP, *values.shape)
+    score = cv2.boxFilter(values, -1, (side, side), anchor=(0, 0), borderType=cv2.BORDER_ISOLATED)
+    return np.asarray(score, np.float32)[: values.shape[0] - side + 1, : values.shape[1] - side + 1].copy()
+
+
+def _largest(score: NDArray[np.float32]) -> tuple[float, tuple[int, int]]:
+    row, column = (int(value) for value in np.unravel_index(np.argmax(score), score.shape))
+    return float(score[row, column]), (row, column)
 
 
 def crop(picture: Picture, corner: tuple[int, int]) -> Picture:
@@ -122,6 +138,27 @@ def crop(picture: Picture, corner: tuple[int, int]) -> Picture:
     side = min(CROP, *picture.shape[:2])
     part = picture[row : row + side, column : column + side]
     return np.repeat(np.repeat(part, ENLARGED, axis=0), ENLARGED, axis=1)
+
+
+def write_sheet(heads: Sequence[str], rows: Sequence[tuple[str, Sequence[Picture]]], place: Path) -> Path:
+    """A PNG of pictures of one size in rows, each enlarged twice under its words, if any; heads: of the columns."""
+    parts = []
+    for words, row in rows:
+        line = np.concatenate([np.repeat(np.repeat(picture, 2, axis=0), 2, axis=1) for picture in row], axis=1)
+        parts += [_words(words, line.shape[1])] * bool(words) + [line]
+    width = parts[-1].shape[1] // len(heads)
+    head = np.concatenate([_words(text, width) for text in heads], axis=1)
+    done, data = cv2.imencode(".png", np.ascontiguousarray(np.concatenate([head, *parts])[..., ::-1]))
+    assert done
+    place.write_bytes(data.tobytes())
+    return place
+
+
+def _words(text: str, width: int) -> Picture:
+    """A strip of text."""
+    strip = np.full((STRIP, width, 3), 255, np.uint8)
+    cv2.putText(strip, text, (2, STRIP - 6), cv2.FONT_HERSHEY_SIMPLEX, 0.38, (0, 0, 0), 1, cv2.LINE_AA)
+    return strip
 
 
 def write(picture: Picture, folder: Path, name: str, exact: bool = False) -> str:

@@ -21,7 +21,8 @@ HEIGHT, WIDTH, COUNT = 66, 98, 13
 
 def quick(codec: VideoCodec) -> VideoCodec:
     """The same codec in a hurry."""
-    faster = {"libsvtav1": ("preset", "10"), "libx265": ("preset", "veryfast"), "libaom-av1": ("cpu-used", "8")}
+    faster = {"libsvtav1": ("preset", "10"), "libx265": ("preset", "veryfast"), "libaom-av1": ("cpu-used", "8"),
+              "libvvenc": ("preset", "faster")}  # fmt: skip
     name, value = faster[codec.encoder]
     return dataclasses.replace(codec, options=tuple((k, value if k == name else v) for k, v in codec.options))
 

@@ -84,7 +84,7 @@ def test_the_view_that_is_shown_is_of_the_film_in_the_chosen_order(tmp_path, mon
     covered = [np.ones(one.shape[:2], np.bool_) for one in photographs]
     backwards = [*views][::-1]  # tried last
     monkeypatch.setattr(codecs, "orders", lambda _: {"given": [*views], "backwards": backwards})
-    monkeypatch.setattr(rate, "DOUBLING", 0.0)
+    monkeypatch.setattr(codecs, "DOUBLING", 0.0)
     monkeypatch.setattr(rate, "CRF", (20, 30, 40))
     measured = codecs.measure_video
 
