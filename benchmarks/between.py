@@ -75,8 +75,8 @@ class Case:
 
 
 CASES = {
-    "antinous": Case("odd", 25),
-    "boxes": Case("odd", 99),
+    "antinous": Case("odd", 25.5),
+    "boxes": Case("odd", 100),
     "shop": Case("odd"),
     "tarot-5x4": Case("out_06_04.jpg,out_06_12.jpg,out_10_12.jpg"),
     "fern": Case("image000.png,image008.png,image016.png"),
