@@ -237,14 +237,17 @@ def crops(
 
 def caption(row: Mapping[str, Any]) -> str:
     """A way in words, for the head of its crops."""
-    size = f"{row['bytes'] / 1000:.1f} kB, " if "bytes" in row else ""
-    return f"{row['key']}: {size}{row['psnr']:.2f} / {row['psnr_luma']:.2f} dB"
+    return f"{row['key']}: {_size(row)}, {row['psnr']:.2f} / {row['psnr_luma']:.2f} dB"
+
+
+def _size(row: Mapping[str, Any]) -> str:
+    return f"{row['bytes'] / 1000:.1f} kB" if "bytes" in row else "all photographs"
 
 
 def table(figures: Mapping[str, Any]) -> str:
     """The rows as text."""
     lines = [
-        f"{row['key']:>10}  {row['bytes'] / 1000 if 'bytes' in row else float('nan'):8.1f} kB"
+        f"{row['key']:>10}  {_size(row):>15}"
         f"  {row['psnr']:.2f} / {row['psnr_luma']:.2f} dB"
         f"  worst {row['worst']['psnr']['value']:.2f} / {row['worst']['psnr_luma']['value']:.2f}"
         f"  SSIM {row['ssim']:.4f}  FLIP {row['flip']:.4f}  near depth edges {100 * row['edge_share']:.0f} %"
