@@ -46,7 +46,7 @@ FITS: tuple[ours.Fit, ...] = (
 )
 BEST: tuple[ours.Fit, ...] = ((EncodeOptions(preset="best", quality=88), (78, 84, 88, 91)),)
 CRF = (32, 40, 48, 56, 63)
-QP = (27, 32, 37, 42, 47)  # of VVC, whose scale is another
+QP = (20, 25, 30, 35, 40)  # of VVC: about the bytes of CRF
 KEYS = ("psnr", "psnr_luma", "ssim")
 
 

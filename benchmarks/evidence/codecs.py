@@ -95,7 +95,7 @@ VIDEO = (
     _x265("420"),
     _x265("444"),
     VideoCodec(
-        "vvenc", "VVenC medium, 4:2:0", "libvvenc", "420", VVENC, (22, 29, 36, 43), "vvc", "ffmpeg", "qp", patient=True
+        "vvenc", "VVenC medium, 4:2:0", "libvvenc", "420", VVENC, (19, 25, 31, 37), "vvc", "ffmpeg", "qp", patient=True
     ),
     VideoCodec("libaom-444", "libaom cpu 6, 4:4:4", "libaom-av1", "444", AOM, (30, 40, 50, 60), "obu", "ffmpeg"),
 )
