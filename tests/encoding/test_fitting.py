@@ -17,15 +17,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import Target
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.kernels import (
-    SHARE_ONE,
-    add_laplacian,
-    adjoint,
-    forward,
-    robust_weights,
-    squares_of,
-    target,
-)
+from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
 from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
@@ -62,7 +54,7 @@ def whole(drawn):
 
 def middles(data, index):
     """(h, w, 2) of a footprint: of each pixel's points the middle, -1 where there is none."""
-    counts, points, _ = data.footprint(index)
+    counts, points = data.footprint(index)
     pixels = np.repeat(np.arange(counts.size), counts.reshape(-1))
     sums = np.stack([np.bincount(pixels, points[:, k], counts.size) for k in range(2)], axis=1)
     found = np.where(counts.reshape(-1, 1) > 0, sums / np.maximum(counts.reshape(-1, 1), 1), -1)
@@ -104,9 +96,8 @@ def test_subsampled_pixels_are_some_of_all(world):
     with open_subsampled(data, 2) as some:
         assert len(some) == len(data)
         for index in range(len(data)):
-            (counts, points, shares), (fewer, left, weights) = data.footprint(index), some.footprint(index)
-            assert counts.sum() == len(points) == len(shares) and fewer.sum() == len(left) == len(weights)
-            assert shares.sum(dtype=float) == SHARE_ONE * (np.count_nonzero(counts == 1) + counts[counts > 1].sum() / 4)
+            (counts, points), (fewer, left) = data.footprint(index), some.footprint(index)
+            assert counts.sum() == len(points) and fewer.sum() == len(left)
             rows, columns = slice(7 * index // 2 % 2, None, 2), slice(index % 2, None, 2)
             codes = [one.observations.codes_of(index) for one in (some, data)]
             np.testing.assert_array_equal(codes[0], codes[1][rows, columns])
@@ -124,27 +115,24 @@ def test_drawing_and_its_transpose(height, width, channels, seed):
     size = (int(random.integers(2, 60)), int(random.integers(2, 60)))
     counts = random.choice(np.array([0, 1, 1, 2, 3, 4], np.uint8), (7, 9))
     points = random.uniform(0, 1, (int(counts.sum()), 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
-    shares = random.integers(0, SHARE_ONE // 4, len(points)).astype(np.uint16)
     covered = counts > 0
     texture = random.normal(size=(channels, height, width)).astype(np.float32)
     image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
     codes = random.integers(0, 256, (7, 9)).astype(np.uint8)
     weight = codes / np.float32(255)
     drawn, back = np.zeros_like(image), np.zeros_like(texture)
-    forward(counts, points, shares, size, texture, np.float32(1), drawn)
-    adjoint(counts, points, shares, size, image, codes, back)
+    forward(counts, points, size, texture, np.float32(1), drawn)
+    adjoint(counts, points, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
     squares, total = squares_of(counts, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
     ones = np.zeros_like(drawn)
-    forward(counts, points, shares, size, np.ones_like(texture), np.float32(1), ones)
-    owners = np.repeat(np.arange(counts.size), counts.reshape(-1))
-    part = np.bincount(owners, shares / SHARE_ONE, counts.size).reshape(counts.shape)
-    np.testing.assert_allclose(ones, np.broadcast_to(part, ones.shape), atol=1e-5)
+    forward(counts, points, size, np.ones_like(texture), np.float32(1), ones)
+    np.testing.assert_allclose(ones, np.broadcast_to(np.where(counts == 1, 4, counts) / 4, ones.shape), atol=1e-5)
     aimed = np.zeros((3, 7, 9), np.float32)
-    target(counts, points, shares, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
-    np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4, atol=1e-3)
+    target(counts, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
+    np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4)
 
 
 def test_the_laplacian_is_that_of_a_quadratic():

@@ -81,7 +81,7 @@ def test_observations_of_a_camera_share_its_footprint():
         with open_subsampled(data, 2) as some:
             assert len(some.footprints) == 3 and len(some) == 6
             for index in range(6):
-                counts, *_ = some.footprint(index)
+                counts, _ = some.footprint(index)
                 assert counts.shape == some.observations.codes_of(index).shape[:2]
                 assert some.observations.mask(index).shape == counts.shape
 

@@ -38,7 +38,7 @@ def encode_fitted(plan: EncodePlan, work: Path | None = None, progress: Progress
 
     Args:
         plan: Cameras, mesh and atlas, and the options.
-        work: Folder for scratch files of up to 19 bytes a pixel.
+        work: Folder for scratch files of up to 17 bytes a pixel.
         progress: Reports each stage.
 
     Raises:

@@ -69,7 +69,7 @@ def open_encoder(
 
     Args:
         plan: One whose options ask for a fit.
-        work: Folder for scratch files of up to 19 bytes a pixel.
+        work: Folder for scratch files of up to 17 bytes a pixel.
         progress: Reports each stage.
         warn: Whether photographs that do not show what the others do are named in a warning.
     """

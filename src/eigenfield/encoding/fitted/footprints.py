@@ -13,12 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.encoding.fitted.kernels import footprint_counts, footprint_points
+from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts
 from eigenfield.rendering.software.drawing import Framebuffer, Surface, rasterise_surface, smooth_edges
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map
 
-Footprint = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint16]]
+Footprint = tuple[NDArray[np.uint8], NDArray[np.float32]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,11 +27,10 @@ class Footprints:
 
     Attributes:
         shapes: (h, w) of each camera's picture.
-        counts: flat uint8, of how many points of the atlas each pixel is the weighted sum, camera by camera.
+        counts: flat uint8, of how many points of the atlas each pixel is the mean, 0 to 4, camera by camera.
         pixel_offsets: (Nc + 1,) where the counts of each camera begin.
         texel_coordinates: (n, 2) float32, columns and rows of these points, pixel by pixel, camera by camera.
-        shares: (n,) uint16 the weights of these points, see `kernels.share_of`.
-        offsets: (Nc + 1,) where the points of each camera begin.
+        offsets: (Nc + 1,) where the coordinates of each camera begin.
         surface: the mesh under the finest atlas.
         detail: texels for one pixel of the reference camera.
     """
@@ -40,7 +39,6 @@ class Footprints:
     counts: NDArray[np.uint8]
     pixel_offsets: NDArray[np.int64]
     texel_coordinates: NDArray[np.float32]
-    shares: NDArray[np.uint16]
     offsets: NDArray[np.int64]
     surface: Surface
     detail: float
@@ -49,11 +47,10 @@ class Footprints:
         return len(self.shapes)
 
     def of(self, camera: int) -> Footprint:
-        """(h, w) counts, (n, 2) texel coordinates and (n,) shares of a camera."""
+        """(h, w) counts and (n, 2) texel coordinates of a camera."""
         counts = self.counts[self.pixel_offsets[camera] : self.pixel_offsets[camera + 1]]
-        points = slice(self.offsets[camera], self.offsets[camera + 1])
-        coordinates, shares = self.texel_coordinates[points], self.shares[points]
-        return np.asarray(counts).reshape(self.shapes[camera]), np.asarray(coordinates), np.asarray(shares)
+        coordinates = self.texel_coordinates[self.offsets[camera] : self.offsets[camera + 1]]
+        return np.asarray(counts).reshape(self.shapes[camera]), np.asarray(coordinates)
 
 
 @contextlib.contextmanager
@@ -61,7 +58,7 @@ def open_footprints(
     surface: Surface, cameras: Sequence[Camera], detail: float, work: Path | None = None
 ) -> Iterator[Footprints]:
     """Rasterise a mesh in cameras, with smooth edges, as the renderer draws cameras as near as the reference; in those
-    of half its size and less it takes more samples. The scratch files have 11 bytes a pixel and some more at edges.
+    of half its size and less it takes more samples. The scratch files have 9 bytes a pixel and some more at edges.
 
     Each camera is rasterised twice, which costs less than room for four points of every pixel would.
 
@@ -86,27 +83,17 @@ def open_footprints(
 
     def put(camera: int) -> None:
         frame, part = covered(camera)
-        points = slice(offsets[camera], offsets[camera + 1])
-        footprint_points(
+        into = coordinates[offsets[camera] : offsets[camera + 1]]
+        footprint_coordinates(
             frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.multisampled, frame.subsamples,
-            *surface.size, part, coordinates[points], shares[points],
+            *surface.size, part, into,
         )  # fmt: skip
 
     with scratch_array((int(pixels[-1]),), np.uint8, work) as counts:
         offsets = offsets_of(parallel_map(count, range(len(cameras))))
-        with _open_points(int(offsets[-1]), work) as (coordinates, shares):
+        with scratch_array((int(offsets[-1]), 2), np.float32, work) as coordinates:
             parallel_map(put, range(len(cameras)))
-            yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, surface, detail)
-
-
-@contextlib.contextmanager
-def _open_points(count: int, work: Path | None) -> Iterator[tuple[NDArray[np.float32], NDArray[np.uint16]]]:
-    """(count, 2) coordinates and (count,) shares in scratch files."""
-    with (
-        scratch_array((count, 2), np.float32, work) as coordinates,
-        scratch_array((count,), np.uint16, work) as shares,
-    ):
-        yield coordinates, shares
+            yield Footprints(shapes, counts, pixels, coordinates, offsets, surface, detail)
 
 
 @contextlib.contextmanager
@@ -117,17 +104,16 @@ def subsampled_footprints(footprints: Footprints, step: int, work: Path | None =
     pixels, offsets = offsets_of([few.size for few in fewer]), offsets_of([int(few.sum()) for few in fewer])
     with (
         scratch_array((int(pixels[-1]),), np.uint8, work) as counts,
-        _open_points(int(offsets[-1]), work) as (coordinates, shares),
+        scratch_array((int(offsets[-1]), 2), np.float32, work) as coordinates,
     ):
         for camera in cameras:
             counts[pixels[camera] : pixels[camera + 1]] = fewer[camera].reshape(-1)
-            every, points, weights = footprints.of(camera)
+            every, points = footprints.of(camera)
             taken = np.zeros(every.shape, np.bool_)
             taken[sample_corner(camera, step)] = True
-            kept, into = np.repeat(taken.reshape(-1), every.reshape(-1)), slice(offsets[camera], offsets[camera + 1])
-            coordinates[into], shares[into] = points[kept], weights[kept]
+            coordinates[offsets[camera] : offsets[camera + 1]] = points[np.repeat(taken.reshape(-1), every.reshape(-1))]
         shapes = tuple(few.shape for few in fewer)
-        yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, footprints.surface, footprints.detail)
+        yield Footprints(shapes, counts, pixels, coordinates, offsets, footprints.surface, footprints.detail)
 
 
 def sample_corner(camera: int, step: int) -> tuple[slice, slice]:

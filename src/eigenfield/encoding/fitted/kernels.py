@@ -8,15 +8,14 @@ from __future__ import annotations
 import numpy as np
 
 from eigenfield.rendering.software.kernels import filter_weights
-from eigenfield.rendering.software.simd import EDGE_SAMPLES, gather_bicubic, scatter_bicubic
+from eigenfield.rendering.software.simd import gather_bicubic, scatter_bicubic
 from eigenfield.runtime.jit import kernel
 
 EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen edge-on, without a derivative
 
-# The footprint of a camera: `counts` (h, w) uint8 says of how many points of the atlas each pixel is the weighted sum;
-# `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel; `shares` (n,) uint16 are their
-# weights, in units of 1 / SHARE_ONE.
-SHARE_ONE = 1 << 14
+# The footprint of a camera: `counts` (h, w) uint8 is of how many points of the atlas each pixel is the mean, 0 to 4;
+# `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel. A single point is all that its
+# pixel shows, each of several is a quarter of it.
 
 
 @kernel()
@@ -48,15 +47,13 @@ def put_coordinates(near, column, row, right, bottom, coordinates, at):
 
 
 @kernel()
-def footprint_points(near, column_of, row_of, spans, multisampled, samples, height, width, counts, coordinates, shares):
-    """Fill `coordinates` and `shares`, for `counts` as `footprint_counts` makes it, in an atlas of height x width: a
-    single point is all that its pixel shows, each of several is a quarter of it."""
+def footprint_coordinates(near, column_of, row_of, spans, multisampled, samples, height, width, counts, coordinates):
+    """Fill `coordinates`, for `counts` as `footprint_counts` makes it, in an atlas of height x width."""
     right, bottom = np.float32(width - 1), np.float32(height - 1)
     count = 0
     for row in range(counts.shape[0]):
         at = spans[row, 0]
         for pixel in range(counts.shape[1]):
-            first, share = count, SHARE_ONE if counts[row, pixel] == 1 else SHARE_ONE // EDGE_SAMPLES
             if at < spans[row, 1] and multisampled[at] == pixel:
                 if counts[row, pixel]:
                     for s in range(4 * at, 4 * at + 4):
@@ -68,27 +65,21 @@ def footprint_points(near, column_of, row_of, spans, multisampled, samples, heig
                 count += put_coordinates(
                     near[row, pixel], column_of[row, pixel], row_of[row, pixel], right, bottom, coordinates, count
                 )  # fmt: skip
-            for point in range(first, count):
-                shares[point] = share
 
 
 @kernel(inline=True)
-def share_of(code):
-    """The weight of a point."""
-    return np.float32(code) * np.float32(1 / SHARE_ONE)
+def share_of(count):
+    """What each point of a pixel that has `count` is of it."""
+    return np.float32(1) if count == 1 else np.float32(0.25)
 
 
 @kernel()
-def target(counts, coordinates, shares, codes, matrix, image):
+def target(counts, codes, matrix, image):
     """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows the
     surface: what `forward` is to draw."""
-    at = 0
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
-            part = np.float32(0)
-            for _ in range(counts[row, pixel]):
-                part += share_of(shares[at])
-                at += 1
+            part = np.float32(counts[row, pixel]) * share_of(counts[row, pixel])
             for k in range(image.shape[0]):
                 value = np.float32(0)
                 if part > 0:
@@ -133,13 +124,12 @@ def tap_index(left, top, u, v, width, height):
 
 
 @kernel()
-def forward(counts, coordinates, shares, size, texture, sign, image):
+def forward(counts, coordinates, size, texture, sign, image):
     """image += sign G texture: the texture drawn by Catmull-Rom.
 
     Args:
         counts: (h, w) uint8, see above.
         coordinates: (n, 2) float32, in an atlas of `size`.
-        shares: (n,) uint16.
         size: (H, W), which need not be the texture's.
         texture: (C, rows, columns).
         sign: 1 or -1.
@@ -153,9 +143,8 @@ def forward(counts, coordinates, shares, size, texture, sign, image):
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
             count = counts[row, pixel]
-            into = row * wide + pixel
+            into, part = row * wide + pixel, sign * share_of(count)
             for _ in range(count):
-                part = sign * share_of(shares[at])
                 left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:
@@ -177,13 +166,12 @@ def part_of(weight, row, pixel):
 
 
 @kernel()
-def adjoint(counts, coordinates, shares, size, image, weight, out):
+def adjoint(counts, coordinates, size, image, weight, out):
     """The transpose of `forward`: out += G^T w image.
 
     Args:
         counts: As `forward`.
         coordinates: As `forward`.
-        shares: As `forward`.
         size: As `forward`.
         image: (C, h, w).
         weight: w, see `part_of`.
@@ -197,12 +185,11 @@ def adjoint(counts, coordinates, shares, size, image, weight, out):
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
             count = counts[row, pixel]
-            source, whole = row * wide + pixel, part_of(weight, row, pixel)
-            if whole <= 0:
+            source, w = row * wide + pixel, part_of(weight, row, pixel) * share_of(count)
+            if w <= 0:
                 at += count
                 continue
             for _ in range(count):
-                w = whole * share_of(shares[at])
                 left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:

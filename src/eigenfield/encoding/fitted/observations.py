@@ -93,7 +93,7 @@ class FitData:
         return self.footprints.surface.size
 
     def footprint(self, index: int) -> Footprint:
-        """(h, w) counts, (n, 2) texel coordinates and (n,) shares of the camera of an observation."""
+        """(h, w) counts and (n, 2) texel coordinates of the camera of an observation."""
         return self.footprints.of(self.observations.camera_of(index))
 
     def blank(self, index: int, channels: int) -> NDArray[np.float32]:
@@ -112,7 +112,7 @@ def open_fit_data(
     reference: int = 0,
 ) -> Iterator[FitData]:
     """Decode every photograph once, and rasterise the mesh in each camera, into scratch files of 4 bytes a pixel of the
-    photographs and about 11 a pixel of the cameras: memory does not grow with their number.
+    photographs and about 9 a pixel of the cameras: memory does not grow with their number.
 
     Args:
         cameras: Of the observations, which are as large as their cameras' pictures.

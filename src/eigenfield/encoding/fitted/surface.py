@@ -240,7 +240,7 @@ def _step_equations(
 
     def backproject(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
         footprint, weight, image = data.footprint(index), observations.weights(index), data.blank(index, 1)
-        target(*footprint, observations.codes_of(index), matrix, image)
+        target(footprint[0], observations.codes_of(index), matrix, image)
         forward(*footprint, data.size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
         adjoint(*footprint, data.size, image, weight, asked)
