@@ -238,7 +238,7 @@ class EncodeOptions:
         low, high = DENSITY_LIMITS
         if self.density is not None and not low <= self.density <= high:
             message = f"a density of {self.density:g} was asked for"
-            raise OptionError("density", message, remedy="ask for one between 0.1 and 4")
+            raise OptionError("density", message, remedy=f"ask for one between {low:g} and {high:g}")
         sides = (self.atlas,) if self.atlas is None or isinstance(self.atlas, int) else self.atlas
         if not all(side is None or 1 <= side <= ATLAS_MAX_SIDE_TEXELS for side in sides):
             remedy = f"ask for sides from 1 to {ATLAS_MAX_SIDE_TEXELS}"
