@@ -101,11 +101,7 @@ def main() -> None:
         raise SystemExit("name a capture, demo or a folder: EIGENFIELD_DATA names no folder that holds the shared ones")
     if options.before is not None and options.before.is_file() and len(names) > 1:
         raise SystemExit(f"{options.before} is the file of one capture: name that one alone")
-    chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
-    for codec in chosen:
-        if codecs.missing(codec):
-            print(f"left out: {codec.label}: {codecs.missing(codec)}", flush=True)
-    chosen = [codec for codec in chosen if codecs.missing(codec) is None]
+    chosen = [codec for codec in codecs.asked_for(options.peers) if codecs.missing(codec) is None]
     for name in names:
         capture = captures.named(name, out)
         usual = CASES.get(name, Case(capture.hold_out or "odd"))

@@ -63,10 +63,7 @@ def main() -> None:
     if not names:
         raise SystemExit("name a capture, demo or a folder: EIGENFIELD_DATA names no folder that holds the shared ones")
     some = [captures.named(name, out) for name in names]
-    chosen = [codec for codec in codecs.VIDEO if codec.name in options.peers.split(",")]
-    for codec in chosen:
-        if codecs.missing(codec):
-            print(f"left out: {codec.label}: {codecs.missing(codec)}", flush=True)
+    chosen = codecs.asked_for(options.peers)
     figures = {}
     for capture in some:
         name, work = capture.name, out / capture.name

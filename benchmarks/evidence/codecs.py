@@ -101,6 +101,15 @@ VIDEO = (
 )
 
 
+def asked_for(names: str) -> list[VideoCodec]:
+    """The codecs of some names, commas between; a line is printed for each that cannot run here."""
+    asked = [codec for codec in VIDEO if codec.name in names.split(",")]
+    for codec in asked:
+        if missing(codec):
+            print(f"left out: {codec.label}: {missing(codec)}", flush=True)
+    return asked
+
+
 @functools.cache
 def missing(codec: VideoCodec) -> str | None:
     """Why the codec cannot run here, in words; None when it can."""

@@ -18,15 +18,19 @@ from eigenfield.stereo.multiplane import (
     fit_multiplane,
     fit_sheets,
 )
-from eigenfield.stereo.multiplane.image import backpropagate, draw_layers, plane_homographies
-from eigenfield.stereo.multiplane.kernels import add_layer_gradient, add_priors, draw_layer, prolong, restrict
-from eigenfield.stereo.multiplane.pyramid import Pyramid, interpolation
-from eigenfield.stereo.multiplane.sheets import (
-    backpropagate_sheets,
-    draw_sheets,
-    label_parallax_maps,
-    sheets_of,
+from eigenfield.stereo.multiplane.drawing import NO_LABELS, backpropagate, draw_layers, view_rays
+from eigenfield.stereo.multiplane.fit import plane_homographies
+from eigenfield.stereo.multiplane.kernels import (
+    add_label_gradient,
+    add_layer_gradient,
+    add_priors,
+    draw_layer,
+    layer_places,
+    prolong,
+    restrict,
 )
+from eigenfield.stereo.multiplane.pyramid import Pyramid, interpolation
+from eigenfield.stereo.multiplane.sheets import sheets_of
 
 SHAPE = (20, 26)  # of a photograph
 FRAME = (28, 34)  # of the reference view, with a margin of 4
@@ -71,36 +75,44 @@ def test_a_homography_takes_a_view_to_the_plane_that_it_sees():
             assert_allclose(there[:, :2] / there[:, 2:], [[3, 5], [20, 11]], atol=1e-6)
 
 
+def places_by(base):
+    """Where a photograph's pixels read a plane, by an affine map of their coordinates."""
+    places = np.empty((*SHAPE, 2), np.float32)
+    layer_places(NO_LABELS, *FRAME, base, np.zeros((2, 3)), np.float32(0), 0, places)
+    return places
+
+
+def drawn_layers(labels, layers, matrix):
+    places, drawn = np.empty((len(layers), *SHAPE, 2), np.float32), np.empty((len(layers), *SHAPE, 4), np.float32)
+    draw_layers(labels, layers, view_rays(matrix), places, drawn)
+    return places, drawn
+
+
 def test_a_layer_is_read_bilinearly_and_is_nothing_beyond_its_border():
-    layer = random_layers()[0]
-    shifted = np.array([[1.0, 0, 2.25], [0, 1, 3.5], [0, 0, 1]])
-    drawn = np.empty((*SHAPE, 4), np.float32)
-    draw_layer(layer, shifted, drawn)
+    layer, drawn = random_layers()[0], np.empty((*SHAPE, 4), np.float32)
+    draw_layer(layer, places_by(np.array([[1.0, 0, 2.25], [0, 1, 3.5], [0, 0, 1]])), drawn)
     block = 0.75 * layer[:, :-1] + 0.25 * layer[:, 1:]
     block = 0.5 * (block[:-1] + block[1:])
     assert_allclose(drawn, block[3 : 3 + SHAPE[0], 2 : 2 + SHAPE[1]], rtol=1e-5, atol=1e-6)
-    draw_layer(layer, np.array([[1.0, 0, -5], [0, 1, 0], [0, 0, 1]]), drawn)
+    draw_layer(layer, places_by(np.array([[1.0, 0, -5], [0, 1, 0], [0, 0, 1]])), drawn)
     assert not drawn[:, :5].any() and drawn[:, 5:].any()
-    draw_layer(layer, -np.eye(3), drawn)  # the plane is behind the camera
+    draw_layer(layer, places_by(-np.eye(3)), drawn)  # the plane is behind the camera
     assert not drawn.any()
 
 
 def test_the_gradient_of_a_layer_is_the_transpose_of_drawing_it():
-    homography = plane_homographies(matrices()[2], LABELS)[1]
-    layer, picture = random_layers(1)[0], np.random.default_rng(2).random((*SHAPE, 4), np.float32)
-    drawn, back = np.empty_like(picture), np.zeros_like(layer)
-    draw_layer(layer, homography, drawn)
-    add_layer_gradient(picture, homography, back)
-    assert_allclose(np.vdot(drawn.astype(float), picture), np.vdot(layer.astype(float), back), rtol=1e-5)
+    layers, picture = random_layers(1), np.random.default_rng(2).random((*SHAPE, 4), np.float32)
+    places, drawn = drawn_layers(LABELS, layers, matrices()[2])
+    back = np.zeros_like(layers[1])
+    add_layer_gradient(picture, places[1], back)
+    assert_allclose(np.vdot(drawn[1].astype(float), picture), np.vdot(layers[1].astype(float), back), rtol=1e-5)
 
 
 def test_layers_are_composited_back_to_front():
     image = MultiplaneImage(LABELS, random_layers(3))
     matrix = matrices()[6]
-    drawn = np.empty((len(LABELS), *SHAPE, 4), np.float32)
-    draw_layers(image.layers, plane_homographies(matrix, LABELS), drawn)
     expected = np.zeros((*SHAPE, 3))
-    for layer in drawn.astype(float):
+    for layer in drawn_layers(LABELS, image.layers, matrix)[1].astype(float):
         expected = layer[..., 3:] * layer[..., :3] + (1 - layer[..., 3:]) * expected
     assert_allclose(image.draw(matrix, SHAPE), expected, atol=1e-6)
 
@@ -113,10 +125,9 @@ def test_the_gradient_of_the_error_agrees_with_differences():
         picture = MultiplaneImage(LABELS, changed).draw(matrix, SHAPE).astype(float)
         return np.square(picture - codes / 255).sum()
 
-    homographies, drawn = plane_homographies(matrix, LABELS), np.empty((len(LABELS), *SHAPE, 4), np.float32)
-    draw_layers(layers, homographies, drawn)
+    places, drawn = drawn_layers(LABELS, layers, matrix)
     gradient = np.zeros_like(layers)
-    assert backpropagate(codes, homographies, drawn, list(gradient)) == pytest.approx(error(layers), rel=1e-5)
+    assert backpropagate(codes, places, drawn, list(gradient)) == pytest.approx(error(layers), rel=1e-5)
     for direction in np.random.default_rng(6).standard_normal((3, *layers.shape)).astype(np.float32):
         step = np.float32(1e-3) * direction
         difference = (error(layers + step) - error(layers - step)) / 2e-3
@@ -250,8 +261,7 @@ def wavy_labels(seed=0):
 def test_a_pixel_reads_a_sheet_where_its_ray_meets_it():
     labels, view = wavy_labels(), reference()
     for camera, matrix in zip(cameras(), matrices(), strict=True):
-        places, drawn = np.zeros((2, *SHAPE, 2), np.float32), np.zeros((2, *SHAPE, 4), np.float32)
-        draw_sheets(labels, random_layers()[:2], matrix, places, drawn)
+        places, _ = drawn_layers(labels, random_layers()[:2], matrix)
         for sheet, there in zip(labels, places, strict=True):
             row, column = 8, 12
             u, v = there[row, column].astype(float)
@@ -269,16 +279,6 @@ def test_a_level_sheet_is_a_plane():
         assert_allclose(level.draw(matrix, SHAPE), MultiplaneImage(LABELS, layers).draw(matrix, SHAPE), atol=2e-5)
 
 
-def test_parallax_is_affine_in_the_label():
-    for matrix in matrices()[:3]:
-        base, slope = label_parallax_maps(matrix)
-        pixel = np.array([7.0, 5, 1])
-        for label, homography in zip(LABELS, plane_homographies(matrix, LABELS), strict=True):
-            exact = homography @ pixel
-            found = ((base @ pixel)[:2] + label * (slope @ pixel)) / (base @ pixel)[2]
-            assert_allclose(found, exact[:2] / exact[2], atol=1e-9)
-
-
 def test_the_gradient_of_sheets_agrees_with_differences():
     """Labels move smoothly: the derivative is that of a fixed place's texels, which cross no texel's middle here."""
     rows, columns = np.indices(FRAME)
@@ -291,10 +291,11 @@ def test_the_gradient_of_sheets_agrees_with_differences():
         picture = SoftSheets(changed_labels, changed_layers).draw(matrix, SHAPE).astype(float)
         return np.square(picture - codes / 255).sum()
 
-    places, drawn = np.zeros((2, *SHAPE, 2), np.float32), np.zeros((2, *SHAPE, 4), np.float32)
-    draw_sheets(labels, layers, matrix, places, drawn)
+    places, drawn = drawn_layers(labels, layers, matrix)
     by_layer, by_label = np.zeros_like(layers), np.zeros_like(labels)
-    total = backpropagate_sheets(codes, layers, matrix, places, drawn, list(by_layer), list(by_label))
+    total = backpropagate(codes, places, drawn, list(by_layer))
+    for k in range(2):
+        add_label_gradient(drawn[k], places[k], layers[k], *view_rays(matrix), by_label[k])
     assert total == pytest.approx(error(labels, layers), rel=1e-5)
     step = np.float32(1e-3) * np.random.default_rng(6).standard_normal(layers.shape).astype(np.float32)
     change = error(labels, layers + step) - error(labels, layers - step)

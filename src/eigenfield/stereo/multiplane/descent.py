@@ -7,14 +7,15 @@ price for opacity, which empties what no photograph asks for.
 from __future__ import annotations
 
 import logging
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map
+from eigenfield.stereo.multiplane.drawing import Labels, Rays, backpropagate, draw_layers, view_rays
 from eigenfield.stereo.multiplane.kernels import add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
 from eigenfield.stereo.views import unpack_pictures
@@ -54,22 +55,24 @@ class DescentTuning:
     colour_margin: float = 0.2
 
 
-class Descent(ABC):
+class Descent:
     """Steps of all layers, which are changed in place. The first is the farthest, and is kept opaque.
 
     Attributes:
+        labels: (D,) of planes, or (D, h, w) of height fields.
         layers: (D, h, w, 4) float32.
         tuning: Constants.
     """
 
-    def __init__(self, layers: NDArray[np.float32], tuning: DescentTuning) -> None:
+    def __init__(self, labels: Labels, layers: NDArray[np.float32], tuning: DescentTuning) -> None:
         """Prepare the first step.
 
         Args:
+            labels: (D,) of planes, or (D, h, w) of height fields.
             layers: (D, h, w, 4) float32, contiguous.
             tuning: Constants.
         """
-        self.layers, self.tuning = layers, tuning
+        self.labels, self.layers, self.tuning = labels, layers, tuning
         _, height, width, channels = layers.shape
         self._pyramids = [Pyramid((height, width), channels, tuning.levels) for _ in layers]
         texels = height * width
@@ -90,40 +93,47 @@ class Descent(ABC):
             tick: Is called after each step with its number, from 1 on.
         """
         order, waiting, tuning = np.random.default_rng(0), np.zeros(0, np.int64), self.tuning
-        drawn = np.empty((len(self.layers), *pictures.shape[1:], CHANNELS), np.float32)
-        numbers = 3 * pictures[0].size
+        shape = len(self.layers), *pictures.shape[1:]
+        places, drawn = np.empty((*shape, 2), np.float32), np.empty((*shape, CHANNELS), np.float32)
+        gradients, numbers = [pyramid.gradient for pyramid in self._pyramids], 3 * pictures[0].size
         for number in range(1, tuning.steps + 1):
             if not len(waiting):
                 waiting = order.permutation(len(pictures))
             view, waiting = int(waiting[-1]), waiting[:-1]
-            gradients = [pyramid.gradient for pyramid in self._pyramids]
-            error = self._backpropagate(unpack_pictures(pictures[view]), matrices[view], drawn, gradients)
+            rays = view_rays(matrices[view])
+            draw_layers(self.labels, self.layers, rays, places, drawn)
+            error = backpropagate(unpack_pictures(pictures[view]), places, drawn, gradients)
             falling = tuning.last_rate_ratio ** ((number - 1) / tuning.steps)
-            parallel_map(lambda k: self._move(k, number, falling, np.float32(1 / numbers)), range(len(self.layers)))  # noqa: B023
+            parallel_map(
+                partial(self._move, number, falling, np.float32(1 / numbers), rays, places, drawn),
+                range(len(self.layers)),
+            )
             if number % LOG_STEPS == 0:
                 log.debug("step %d: %.2f dB", number, -10 * np.log10(max(error / numbers, 1e-12)))
             if tick is not None:
                 tick(number)
 
-    @abstractmethod
-    def _backpropagate(
+    def _move(
         self,
-        codes: NDArray[np.uint8],
-        matrix: NDArray[np.float64],
+        number: int,
+        falling: float,
+        scale: np.float32,
+        rays: Rays,
+        places: NDArray[np.float32],
         drawn: NDArray[np.float32],
-        gradients: Sequence[NDArray[np.float32]],
-    ) -> float:
-        """Add the gradient of a photograph's squared error to that of the layers; return this error.
+        index: int,
+    ) -> None:
+        """Turn a layer's gradient into a step, and take it.
 
         Args:
-            codes: (H, W, 3) the photograph.
-            matrix: (3, 4) of its view.
-            drawn: (D, H, W, 4) scratch.
-            gradients: D of (h, w, 4), added to.
+            number: Of the step.
+            falling: Part of the rates that is left.
+            scale: Of the gradient.
+            rays: Of the photograph's view.
+            places: Of `draw_layers`.
+            drawn: The gradient of the drawn layers, see `backpropagate`.
+            index: Of the layer.
         """
-
-    def _move(self, index: int, number: int, falling: float, scale: np.float32) -> None:
-        """Turn a layer's gradient, times `scale`, into a step, and take it."""
         tuning, width = self.tuning, self.layers.shape[2]
         layer, pyramid = self.layers[index].reshape(-1, CHANNELS * width), self._pyramids[index]
         step = pyramid.gradient.reshape(layer.shape)

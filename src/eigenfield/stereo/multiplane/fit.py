@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.multiplane.descent import Descent, DescentTuning
-from eigenfield.stereo.multiplane.image import MultiplaneImage, backpropagate, draw_layers, plane_homographies
-from eigenfield.stereo.multiplane.kernels import add_priors, move
+from eigenfield.stereo.multiplane.drawing import Rays, view_rays
+from eigenfield.stereo.multiplane.image import MultiplaneImage
+from eigenfield.stereo.multiplane.kernels import add_label_gradient, add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
-from eigenfield.stereo.multiplane.sheets import SoftSheets, backpropagate_sheets, draw_sheets, sheets_of
+from eigenfield.stereo.multiplane.sheets import SoftSheets, sheets_of
 from eigenfield.stereo.views import (
     Pictures,
     check_matrices,
@@ -99,7 +100,7 @@ def fit_multiplane(
     if labels.ndim != 1 or len(labels) < 2 or not (np.diff(labels) > 0).all():
         raise ValueError("labels must be at least two, ascending")
     layers = start_layers(packed, matrices, shape, labels, tuning)
-    _PlaneDescent(layers, labels, tuning).run(packed, matrices, _ticker(progress, "planes", tuning.steps))
+    Descent(labels, layers, tuning).run(packed, matrices, _ticker(progress, "planes", tuning.steps))
     return MultiplaneImage(labels, layers)
 
 
@@ -160,27 +161,10 @@ def _ticker(progress: Progress | None, stage: str, total: int) -> Callable[[int]
     return None if progress is None else lambda done: progress(stage, done, total)
 
 
-class _PlaneDescent(Descent):
-    """Of the layers of a multiplane image."""
-
-    def __init__(self, layers: NDArray[np.float32], labels: NDArray[np.float64], tuning: DescentTuning) -> None:
-        super().__init__(layers, tuning)
-        self._labels = labels
-
-    def _backpropagate(
-        self,
-        codes: NDArray[np.uint8],
-        matrix: NDArray[np.float64],
-        drawn: NDArray[np.float32],
-        gradients: Sequence[NDArray[np.float32]],
-    ) -> float:
-        homographies = plane_homographies(matrix, self._labels)
-        draw_layers(self.layers, homographies, drawn)
-        return backpropagate(codes, homographies, drawn, gradients)
-
-
 class _SheetDescent(Descent):
     """Of soft sheets: their layers, and their labels."""
+
+    tuning: SheetTuning
 
     def __init__(self, sheets: SoftSheets, spacing: float, tuning: SheetTuning) -> None:
         """Prepare the first step.
@@ -190,38 +174,46 @@ class _SheetDescent(Descent):
             spacing: Distance of the planes, in labels.
             tuning: Constants.
         """
-        super().__init__(sheets.layers, tuning)
-        self._labels, self._spacing, self._sheet_tuning = sheets.labels, spacing, tuning
+        super().__init__(sheets.labels, sheets.layers, tuning)
+        self._spacing = spacing
         height, width = sheets.labels.shape[1:]
         self._label_pyramids = [Pyramid((height, width), 1, tuning.levels) for _ in sheets.labels]
-        variation = tuning.label_variation / (spacing * height * width)
-        self._label_variation = np.full(width, variation, np.float32)
+        self._label_variation = np.full(width, tuning.label_variation / (spacing * height * width), np.float32)
         self._nothing, self._anything = np.zeros(width, np.float32), np.full(width, np.inf, np.float32)
-        self._places = np.zeros((0, 0, 0, 2), np.float32)
 
-    def _backpropagate(
+    def _move(
         self,
-        codes: NDArray[np.uint8],
-        matrix: NDArray[np.float64],
+        number: int,
+        falling: float,
+        scale: np.float32,
+        rays: Rays,
+        places: NDArray[np.float32],
         drawn: NDArray[np.float32],
-        gradients: Sequence[NDArray[np.float32]],
-    ) -> float:
-        if self._places.shape[:3] != drawn.shape[:3]:
-            self._places = np.empty((*drawn.shape[:3], 2), np.float32)
-        draw_sheets(self._labels, self.layers, matrix, self._places, drawn)
-        label_gradients = [pyramid.gradient[..., 0] for pyramid in self._label_pyramids]
-        return backpropagate_sheets(codes, self.layers, matrix, self._places, drawn, gradients, label_gradients)
-
-    def _move(self, index: int, number: int, falling: float, scale: np.float32) -> None:
-        super()._move(index, number, falling, scale)
-        labels, pyramid, tuning = self._labels[index], self._label_pyramids[index], self._sheet_tuning
+        index: int,
+    ) -> None:
+        labels, pyramid, tuning = self.labels[index], self._label_pyramids[index], self.tuning
         step = pyramid.gradient[..., 0]
+        add_label_gradient(drawn[index], places[index], self.layers[index], *rays, step)  # of the layer as it was drawn
+        super()._move(number, falling, scale, rays, places, drawn, index)
         narrow = np.float32(1 / (tuning.label_huber_width * self._spacing))
         add_priors(labels, 1, scale, self._label_variation, self._nothing, narrow, step)
         pyramid.step(number)
         rate = np.full(labels.shape[1], tuning.label_rate * self._spacing * falling, np.float32)
         move(labels, step, rate, -self._anything, self._anything)
         step[:] = 0
+
+
+def plane_homographies(matrix: NDArray[np.float64], labels: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(D, 3, 3) from a view's index coordinates to those of the reference view, by the plane of each label.
+
+    Args:
+        matrix: (3, 4) of the view, see `view_matrices`.
+        labels: (D,).
+    """
+    base, slope = view_rays(matrix)
+    homographies = np.repeat(base[None], len(labels), axis=0)
+    homographies[:, :2] += labels[:, None, None] * slope
+    return homographies
 
 
 def start_layers(

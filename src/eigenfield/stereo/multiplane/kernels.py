@@ -10,81 +10,22 @@ from eigenfield.imaging.texels import gather_bilinear, scatter_bilinear
 from eigenfield.runtime.jit import kernel
 
 
-@kernel(inline=True)
-def place_in_layer(homography, row, column, width, height):
-    """Column and row of a photograph's pixel in a layer of width x height texels; -1, -1 beyond its texels' centres."""
-    x, y = np.float64(column), np.float64(row)
-    across = homography[0, 0] * x + homography[0, 1] * y + homography[0, 2]
-    down = homography[1, 0] * x + homography[1, 1] * y + homography[1, 2]
-    scale = homography[2, 0] * x + homography[2, 1] * y + homography[2, 2]
-    over = 1 / scale
-    u, v = np.float32(across * over), np.float32(down * over)
-    inside = scale > 0 and u >= 0 and v >= 0 and u < width - 1 and v < height - 1
-    return (u, v) if inside else (np.float32(-1), np.float32(-1))
-
-
 @kernel()
-def draw_layer(layer, homography, picture):
-    """picture (H, W, 4) = the layer (h, w, 4) read bilinearly where a photograph sees it; 0 beyond its border.
+def layer_places(labels, height, width, base, slope, start, iterations, places):
+    """places (H, W, 2) = column and row in a layer of what a photograph's pixels see of it; -1, -1 beyond its border.
+
+    A pixel sees (u, v) + d (s, t) on the plane of label d. On a height field d is that of the place itself, which a
+    fixed point finds while d changes by less than one over the parallax (s, t) from texel to texel.
 
     Args:
-        layer: Contiguous float32.
-        homography: (3, 3) from the photograph's index coordinates to the layer's.
-        picture: Contiguous float32, written.
-    """
-    height, width = layer.shape[:2]
-    flat, drawn, line = layer.reshape(-1), picture.reshape(-1), np.int64(4 * width)
-    at = np.int64(0)
-    for row in range(picture.shape[0]):
-        for column in range(picture.shape[1]):
-            u, v = place_in_layer(homography, row, column, width, height)
-            if u >= 0:
-                left, top = np.int64(u), np.int64(v)
-                right, below = u - np.float32(left), v - np.float32(top)
-                gather_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
-            else:
-                drawn[at : at + 4] = 0
-            at += 4
-
-
-@kernel()
-def add_layer_gradient(gradient, homography, layer_gradient):
-    """The transpose of `draw_layer`: adds what a picture's gradient (H, W, 4) is for the layer (h, w, 4).
-
-    Args:
-        gradient: Contiguous float32.
-        homography: As of `draw_layer`.
-        layer_gradient: Contiguous float32, added to.
-    """
-    height, width = layer_gradient.shape[:2]
-    flat, drawn, line = layer_gradient.reshape(-1), gradient.reshape(-1), np.int64(4 * width)
-    at = np.int64(0)
-    for row in range(gradient.shape[0]):
-        for column in range(gradient.shape[1]):
-            u, v = place_in_layer(homography, row, column, width, height)
-            if u >= 0:
-                left, top = np.int64(u), np.int64(v)
-                right, below = u - np.float32(left), v - np.float32(top)
-                scatter_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
-            at += 4
-
-
-@kernel()
-def sheet_places(labels, base, slope, start, iterations, places):
-    """places (H, W, 2) = column and row in a sheet of what a photograph's pixels see of it; -1, -1 beyond its border.
-
-    A pixel sees (u, v) + d (s, t) on the plane of label d. On a sheet d is that of the place itself,
-    which a fixed point finds while d changes by less than one over the parallax (s, t) from texel to texel.
-
-    Args:
-        labels: (h, w) float32 of the sheet.
+        labels: (height, width) float32 of a height field; is not read where there are no iterations.
+        height, width: Of the layer.
         base: (3, 3) float64, from the pixel (x, y, 1) to (u, v, 1), homogeneous.
         slope: (2, 3) float64, from the pixel to (s, t) times that scale.
-        start: The label to begin with.
-        iterations: Of the fixed point.
+        start: float32 label to begin with.
+        iterations: Of the fixed point; 0 for the plane of label `start`.
         places: Written.
     """
-    height, width = labels.shape
     right, bottom = np.float32(width - 1.001), np.float32(height - 1.001)
     for row in range(places.shape[0]):
         for column in range(places.shape[1]):
@@ -110,65 +51,74 @@ def sheet_places(labels, base, slope, start, iterations, places):
 
 
 @kernel()
-def draw_sheet(layer, places, picture):
-    """picture (H, W, 4) = the layer (h, w, 4) read bilinearly at `places`; 0 where these are negative."""
-    width = layer.shape[1]
-    flat, drawn, line = layer.reshape(-1), picture.reshape(-1), np.int64(4 * width)
+def draw_layer(layer, places, picture):
+    """picture (H, W, 4) = the layer (h, w, 4) read bilinearly at `places` (H, W, 2); 0 where these are negative."""
+    flat, drawn, line = layer.reshape(-1), picture.reshape(-1), np.int64(4 * layer.shape[1])
     at = np.int64(0)
     for row in range(picture.shape[0]):
         for column in range(picture.shape[1]):
             u, v = places[row, column, 0], places[row, column, 1]
             if u >= 0:
                 left, top = np.int64(u), np.int64(v)
-                gather_bilinear(flat, top * line + 4 * left, line, u - np.float32(left), v - np.float32(top), drawn, at)
+                right, below = u - np.float32(left), v - np.float32(top)
+                gather_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
             else:
                 drawn[at : at + 4] = 0
             at += 4
 
 
 @kernel()
-def add_sheet_gradient(gradient, places, layer, base, slope, layer_gradient, label_gradient):
-    """Add what a picture's gradient is for a sheet's layer, and for its labels.
-
-    A label moves the place at which a pixel reads the layer along (s, t), see `sheet_places`: its gradient is that of
-    the pixel times the layer's slope along (s, t).
-
-    Args:
-        gradient: (H, W, 4) contiguous.
-        places: (H, W, 2).
-        layer: (h, w, 4).
-        base, slope: As of `sheet_places`.
-        layer_gradient: (h, w, 4) contiguous, added to.
-        label_gradient: (h, w), added to.
-    """
-    width = layer.shape[1]
-    flat, drawn, line = layer_gradient.reshape(-1), gradient.reshape(-1), np.int64(4 * width)
+def add_layer_gradient(gradient, places, layer_gradient):
+    """The transpose of `draw_layer`: adds what a picture's gradient (H, W, 4) is for the layer (h, w, 4)."""
+    flat, drawn, line = layer_gradient.reshape(-1), gradient.reshape(-1), np.int64(4 * layer_gradient.shape[1])
     at = np.int64(0)
     for row in range(gradient.shape[0]):
         for column in range(gradient.shape[1]):
             u, v = places[row, column, 0], places[row, column, 1]
-            asked = drawn[at] != 0 or drawn[at + 1] != 0 or drawn[at + 2] != 0 or drawn[at + 3] != 0
-            if u >= 0 and asked:
+            if u >= 0:
                 left, top = np.int64(u), np.int64(v)
-                f, g = u - np.float32(left), v - np.float32(top)
-                scatter_bilinear(flat, top * line + 4 * left, line, f, g, drawn, at)
-                across, down = np.float32(0), np.float32(0)
-                for k in range(4):
-                    a, b = layer[top, left, k], layer[top, left + 1, k]
-                    c, d = layer[top + 1, left, k], layer[top + 1, left + 1, k]
-                    twist = a - b - c + d
-                    across += drawn[at + k] * (b - a + g * twist)
-                    down += drawn[at + k] * (c - a + f * twist)
-                x, y = np.float64(column), np.float64(row)
-                over = 1 / (base[2, 0] * x + base[2, 1] * y + base[2, 2])
-                s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
-                t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
-                moved = across * s + down * t
-                label_gradient[top, left] += (np.float32(1) - f) * (np.float32(1) - g) * moved
-                label_gradient[top, left + 1] += f * (np.float32(1) - g) * moved
-                label_gradient[top + 1, left] += (np.float32(1) - f) * g * moved
-                label_gradient[top + 1, left + 1] += f * g * moved
+                right, below = u - np.float32(left), v - np.float32(top)
+                scatter_bilinear(flat, top * line + 4 * left, line, right, below, drawn, at)
             at += 4
+
+
+@kernel()
+def add_label_gradient(gradient, places, layer, base, slope, label_gradient):
+    """Add what a picture's gradient (H, W, 4) is for the labels (h, w) of a height field.
+
+    A label moves the place at which a pixel reads the layer along (s, t), see `layer_places`: its gradient is that of
+    the pixel times the layer's slope along (s, t).
+
+    Args:
+        gradient: (H, W, 4).
+        places: (H, W, 2).
+        layer: (h, w, 4).
+        base, slope: As of `layer_places`.
+        label_gradient: (h, w), added to.
+    """
+    for row in range(gradient.shape[0]):
+        for column in range(gradient.shape[1]):
+            u, v = places[row, column, 0], places[row, column, 1]
+            if u < 0:
+                continue
+            left, top = np.int64(u), np.int64(v)
+            f, g = u - np.float32(left), v - np.float32(top)
+            across, down = np.float32(0), np.float32(0)
+            for k in range(4):
+                a, b = layer[top, left, k], layer[top, left + 1, k]
+                c, d = layer[top + 1, left, k], layer[top + 1, left + 1, k]
+                twist = a - b - c + d
+                across += gradient[row, column, k] * (b - a + g * twist)
+                down += gradient[row, column, k] * (c - a + f * twist)
+            x, y = np.float64(column), np.float64(row)
+            over = 1 / (base[2, 0] * x + base[2, 1] * y + base[2, 2])
+            s = np.float32((slope[0, 0] * x + slope[0, 1] * y + slope[0, 2]) * over)
+            t = np.float32((slope[1, 0] * x + slope[1, 1] * y + slope[1, 2]) * over)
+            moved = across * s + down * t
+            label_gradient[top, left] += (np.float32(1) - f) * (np.float32(1) - g) * moved
+            label_gradient[top, left + 1] += f * (np.float32(1) - g) * moved
+            label_gradient[top + 1, left] += (np.float32(1) - f) * g * moved
+            label_gradient[top + 1, left + 1] += f * g * moved
 
 
 @kernel()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -10,11 +9,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.runtime.parallel import parallel_map, pieces
-from eigenfield.stereo.multiplane.image import BAND_ROWS, MultiplaneImage, composite_error
-from eigenfield.stereo.multiplane.kernels import add_sheet_gradient, composite, draw_sheet, sheet_places
+from eigenfield.stereo.multiplane.drawing import draw_picture
+from eigenfield.stereo.multiplane.image import MultiplaneImage
 
-PLACE_ITERATIONS = 6
 UNSEEN_WEIGHT = 0.1  # of an opaque texel that others hide from the reference view, when planes are shared out
 MIN_OPACITY = 0.02  # a texel with less has no colour or label of its own
 SMOOTHING_TEXELS = 3.0  # standard deviation of the window in which labels are first averaged
@@ -35,81 +32,8 @@ class SoftSheets:
     layers: NDArray[np.float32]
 
     def draw(self, matrix: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float32]:
-        """(H, W, 3) what a view sees; black where no sheet is.
-
-        Args:
-            matrix: (3, 4) of the view, see `view_matrices`.
-            shape: (H, W) of its picture.
-        """
-        places = np.empty((len(self.labels), *shape, 2), np.float32)
-        drawn = np.empty((len(self.labels), *shape, 4), np.float32)
-        draw_sheets(self.labels, self.layers, matrix, places, drawn)
-        picture = np.empty((*shape, 3), np.float32)
-        parallel_map(lambda band: composite(drawn, *band, picture), pieces(shape[0], BAND_ROWS))
-        return picture
-
-
-def label_parallax_maps(matrix: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """`base` (3, 3) and `slope` (2, 3) of the kernels, for a view.
-
-    The plane of label d maps the reference view to a photograph by H + d m e3', with m a column of the view's matrix.
-    Its inverse, by Sherman and Morrison, is H^-1 + d (c_3 I - c e3') H^-1 but for a scale, with c = H^-1 m.
-
-    Args:
-        matrix: (3, 4) of the view, see `view_matrices`.
-    """
-    base = np.asarray(np.linalg.inv(matrix[:, [0, 1, 3]]), np.float64)
-    centre = base @ matrix[:, 2]
-    turn = centre[2] * np.eye(3) - np.outer(centre, [0, 0, 1])
-    return base, np.ascontiguousarray((turn @ base)[:2])
-
-
-def draw_sheets(
-    labels: NDArray[np.float32],
-    layers: NDArray[np.float32],
-    matrix: NDArray[np.float64],
-    places: NDArray[np.float32],
-    drawn: NDArray[np.float32],
-) -> None:
-    """drawn (K, H, W, 4) = each sheet as a view sees it, and places (K, H, W, 2) where it reads them."""
-    base, slope = label_parallax_maps(matrix)
-
-    def one(k: int) -> None:
-        sheet_places(labels[k], base, slope, np.float32(np.median(labels[k])), PLACE_ITERATIONS, places[k])
-        draw_sheet(layers[k], places[k], drawn[k])
-
-    parallel_map(one, range(len(labels)))
-
-
-def backpropagate_sheets(
-    codes: NDArray[np.uint8],
-    layers: NDArray[np.float32],
-    matrix: NDArray[np.float64],
-    places: NDArray[np.float32],
-    drawn: NDArray[np.float32],
-    layer_gradients: Sequence[NDArray[np.float32]],
-    label_gradients: Sequence[NDArray[np.float32]],
-) -> float:
-    """Add the gradient of a photograph's squared error to those of layers and labels; returns this error.
-
-    Args:
-        codes: (H, W, 3) the photograph.
-        layers: (K, h, w, 4) as they were drawn.
-        matrix: (3, 4) of the view.
-        places: Of `draw_sheets`.
-        drawn: Of `draw_sheets`, overwritten.
-        layer_gradients: K of (h, w, 4), added to.
-        label_gradients: K of (h, w), added to.
-    """
-    error = composite_error(drawn, codes)
-    base, slope = label_parallax_maps(matrix)
-    parallel_map(
-        lambda k: add_sheet_gradient(
-            drawn[k], places[k], layers[k], base, slope, layer_gradients[k], label_gradients[k]
-        ),
-        range(len(drawn)),
-    )
-    return error
+        """As `draw_picture`."""
+        return draw_picture(self.labels, self.layers, matrix, shape)
 
 
 def sheets_of(image: MultiplaneImage, count: int) -> SoftSheets:
