@@ -312,7 +312,7 @@ function named(e, codec = null) {
   e.cameras.coded = { bufferView: e.cameras.coded, codec: codec ?? "cameras-1" };
   e.viewPlane.codedTriangles = { bufferView: e.viewPlane.codedTriangles, codec: codec ?? "triangles-1" };
   basis.codedWeights = { bufferView: basis.codedWeights, codec: codec ?? "weights-1" };
-  plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-1";
+  plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-2";
 }
 
 const STREAMS = {

@@ -29,9 +29,11 @@ from typing import Any
 from eigenfield.coding.arrays.names import code_names, decode_names
 from eigenfield.coding.pictures import pictures_8bit as eight
 from eigenfield.coding.pictures import pictures_10bit as ten
+from eigenfield.coding.pictures.av1_units import frame_size
 from eigenfield.coding.video.av1 import decode_video, encode_video
 
 AVIF = "image/avif"
+AV1 = "video/AV1"
 
 
 @dataclass(frozen=True)
@@ -118,8 +120,12 @@ CODECS: dict[str, Codec] = {
     "avif": _picture_8bit(AVIF, eight.encode_avif, False),
     "jpeg": _picture_8bit("image/jpeg", None, False),
     "av1-10bit-1": PictureCodec(
-        "picture", ten.encode_10bit, ten.decode_10bit, "bits", "1.2", PICTURE_LIMITS,
+        "picture", None, ten.decode_avif_10bit, "bits", "1.2", PICTURE_LIMITS,
         partial(eight.header_size, mime=AVIF), AVIF, ten.PICTURE_BITS,
+    ),
+    "av1-10bit-2": PictureCodec(
+        "picture", ten.encode_10bit, ten.decode_10bit, "av1-10bit-2", "1.8", PICTURE_LIMITS,
+        frame_size, AV1, ten.PICTURE_BITS,
     ),
     "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

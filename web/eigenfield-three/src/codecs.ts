@@ -1,6 +1,7 @@
 // How each kind of stream may be coded: docs/coding.md. A new codec is a decoder, an entry here, and its name in the
 // schema. The compiler wants an entry for each name there.
 
+import { asAvif } from "./av1-picture.js";
 import { decodeCameras, type CodedCameras } from "./camera-decoder.js";
 import { SceneError } from "./errors.js";
 import type { Value } from "./json.js";
@@ -68,6 +69,13 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
   avif: eightBits("image/avif"),
   jpeg: eightBits("image/jpeg"),
   "av1-10bit-1": { ...eightBits("image/avif"), bits: 10, decode: decodeTenBits, needs: "bits" },
+  "av1-10bit-2": {
+    ...eightBits("video/AV1"),
+    bits: 10,
+    decode: (bytes, picture, size, down) => decodeTenBits(asAvif(bytes, picture.where), picture, size, down),
+    bitmaps: (bytes, picture, size, down) => decodeBitmaps(asAvif(bytes, picture.where), picture, size, down),
+    needs: "av1-10bit-2",
+  },
 };
 
 /** The codec of a stream that names none; that of a picture follows from its type. */
@@ -88,12 +96,12 @@ export function codecOf<K extends Kind>(kind: K, named: Value, usual: Names[Kind
   throw new SceneError("codec-unknown", `${text}; take a newer viewer.`, named.where);
 }
 
-/** The name of the codec of pictures of this type and so many bits, if there is one. */
-export function pictureCodec(mimeType: string, bits: number): schema.PictureCodec | undefined {
+/** The name of the codec of pictures of this type and so many bits, or of any, if there is one. */
+export function pictureCodec(mimeType: string, bits?: number): schema.PictureCodec | undefined {
   const names = Object.keys(CODECS) as Names[Kind][];
   const fits = (name: Names[Kind]): name is schema.PictureCodec => {
     const codec = CODECS[name];
-    return codec.kind === "picture" && codec.mimeType === mimeType && codec.bits === bits;
+    return codec.kind === "picture" && codec.mimeType === mimeType && (bits ?? codec.bits) === codec.bits;
   };
   return names.find(fits);
 }

@@ -35,6 +35,7 @@ export interface SceneJson {
 
 /** What `needs` may name. */
 export type Feature =
+  | "av1-10bit-2"
   | "bits"
   | "codedCameras"
   | "codedMesh"
@@ -65,7 +66,7 @@ export type TrianglesCodec = "triangles-1";
 export type WeightsCodec = "weights-1";
 
 /** Codecs of pictures. */
-export type PictureCodec = "av1-10bit-1" | "avif" | "webp" | "png" | "jpeg";
+export type PictureCodec = "av1-10bit-1" | "av1-10bit-2" | "avif" | "webp" | "png" | "jpeg";
 
 /** Codecs of a residual. */
 export type VideoCodec = "video-1";
@@ -153,7 +154,7 @@ export interface MeanJson {
 }
 
 /** Type of a picture. */
-export type MimeType = "image/png" | "image/jpeg" | "image/webp" | "image/avif";
+export type MimeType = "image/png" | "image/jpeg" | "image/webp" | "image/avif" | "video/AV1";
 
 /** Bits of a sample. */
 export type Bits = 8 | 10;
