@@ -26,11 +26,13 @@ from eigenfield.gltf.container import parse_glb, read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout import read_layout
+from eigenfield.gltf.packed import unpack
 from eigenfield.proxy.atlas.unwrap import unwrap_mesh
 from eigenfield.proxy.relief.find_lattice import _column_spacing, relief_lattice, relief_proxy
 from support.coded_scenes import coded
 from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
+from support.schema import extension_of
 from support.surfaces import ball, relief
 
 
@@ -168,7 +170,7 @@ def test_streams_of_another_mesh_or_other_cameras_are_not_written(tmp_path):
         assert cameras_key(cameras) not in scene.payloads
     path = tmp_path / "other.glb"
     save(replace(scene, proxy=Proxy(bumpy_square(12)), rig=replace(scene.rig, cameras=turned)), path)
-    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    extension = extension_of(read_file(path))
     assert extension["needs"] == ["av1-10bit-2", "codedWeights", "stacks"] and "mesh" not in extension
     assert len(ef.load(path).proxy.mesh.faces) == len(bumpy_square(12).faces)
 
@@ -216,13 +218,13 @@ def measured_scene() -> EncodedScene:
 def test_names_with_measured_positions_are_coded(tmp_path):
     path = tmp_path / "measured.glb"
     save(measured_scene(), path)
-    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    extension = extension_of(read_file(path))
     assert extension["version"] >= "1.6" and "codedNames" in extension["needs"]
     assert "names" not in extension["cameras"] and "pattern" not in extension["cameras"]
     assert ef.load(path).rig.names == measured_scene().rig.names
     assert not [finding for finding in validate(path) if finding.severity == "error"]
     save(coded_scene(), path, overwrite=True)
-    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    extension = extension_of(read_file(path))
     assert "codedNames" not in extension["needs"] and "pattern" in extension["cameras"]
 
 
@@ -239,7 +241,7 @@ def test_names_with_measured_positions_are_coded(tmp_path):
 def test_coded_names_that_cannot_be_are_refused(tmp_path, change, codes):
     path = tmp_path / "measured.glb"
     save(measured_scene(), path)
-    glb = parse_glb(read_file(path))
+    glb = unpack(parse_glb(read_file(path)))
     change(glb.json["extensions"]["EIGENFIELD_eigen_textures"]["cameras"])
     with pytest.raises(FormatError) as caught:
         read_layout(Document(glb), Findings(strict=True))
@@ -263,7 +265,7 @@ def test_coded_names_that_cannot_be_are_refused(tmp_path, change, codes):
 def test_streams_that_do_not_belong_are_refused(tmp_path, change, codes):
     path = tmp_path / "coded.glb"
     save(coded_scene(), path)
-    glb = parse_glb(read_file(path))
+    glb = unpack(parse_glb(read_file(path)))
     change(glb.json["extensions"]["EIGENFIELD_eigen_textures"])
     with pytest.raises(FormatError) as caught:
         read_layout(Document(glb), Findings(strict=True))
@@ -300,7 +302,7 @@ def test_what_pictures_of_several_textures_share_is_said_once(tmp_path):
     scene = coded(replace(tiny_scene(3, 24, 9, 64), proxy=Proxy(bumpy_square(40))), np.arange(9).reshape(3, 3))
     path = tmp_path / "shared.glb"
     save(scene, path)
-    extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
+    extension = extension_of(read_file(path))
     (basis,) = extension["planes"][0]["bases"]
     assert "sharedPicture" in extension["needs"] and validate(path) == []
     assert len(basis["textures"]) > 1 and all("mimeType" not in entry for entry in basis["textures"])

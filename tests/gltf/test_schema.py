@@ -57,7 +57,7 @@ def test_the_schema_is_one():
 
 def test_files_of_every_kind_keep_to_it(files):
     needed = {need for data in files.values() for need in extension_of(data)["needs"]}
-    assert needed >= FEATURES.keys() - {"bits", "codedNames"}  # the first is of files before 1.8
+    assert needed >= FEATURES.keys() - {"bits", "codedNames", "packed"}  # bits: of files before 1.8
     for kind, data in files.items():
         assert violation(extension_of(data)) is None, kind
 
@@ -279,6 +279,7 @@ def test_the_document_names_the_same_keys():
     stream = {"codec"}  # said once, of all streams
     assert tables("key") == {
         "The root extension": set(SCHEMA["properties"]),
+        "packed": {"packed"},
         "stream": keys_of("codedMesh"),
         "plane": keys_of("plane"),
         "basis": keys_of("basis"),

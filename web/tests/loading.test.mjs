@@ -391,6 +391,34 @@ test("coded parts with any byte changed load or are refused, and nothing else", 
   await close();
 });
 
+test("a damaged packed extension is refused by name, and any byte of it changed loads or is refused", async () => {
+  const { page, close } = await lab.open();
+  const data = sceneBytes("coded.glb");
+  const length = data.readUInt32LE(12);
+  const json = JSON.parse(data.toString("utf8", 20, 20 + length));
+  const { byteOffset } = json.bufferViews[find(json).packed];
+  const start = 28 + length + byteOffset; // the length of the JSON, then the JSON
+  const size = data.readUInt32LE(start);
+  for (const value of [0, size - 2, size + 1, 2 ** 31]) {
+    const other = Buffer.from(data);
+    other.writeUInt32LE(value, start);
+    routes["/packed.glb"] = { body: other };
+    const { code, where } = await tryLoad(page, "packed.glb");
+    assert.deepEqual([code, where], ["damaged", `/extensions/${EXTENSION}/packed`], `${value} bytes`);
+  }
+  for (let k = 0; k < 24; k++) {
+    const other = Buffer.from(data);
+    other[start + 4 + Math.floor((k * size) / 24)] ^= 1 << k % 8;
+    routes["/packed.glb"] = { body: other };
+    const { code = "loaded" } = await tryLoad(page, "packed.glb");
+    assert.match(code, /^(loaded|damaged|truncated|needs|version|unsupported|codec-unknown)$/);
+  }
+  find(json).needs.push("repacked");
+  routes["/packed.glb"] = { body: writeGlb({ json, binary: readGlb(data).binary }) };
+  assert.equal((await tryLoad(page, "packed.glb")).code, "needs");
+  await close();
+});
+
 test("a damaged precision is refused by name", async () => {
   const { page, close } = await lab.open();
   const { json, binary } = readGlb(sceneBytes("precise.glb"));

@@ -33,6 +33,15 @@ export interface SceneJson {
   generator?: string;
 }
 
+/** The root extension of a packed file; what it holds is then as this schema says. */
+export interface PackedJson {
+  version: string;
+  /** More is in what is packed. */
+  needs: "packed"[];
+  /** Index of a buffer view. */
+  packed: number;
+}
+
 /** What `needs` may name. */
 export type Feature =
   | "av1-10bit-2"
@@ -43,6 +52,7 @@ export type Feature =
   | "codedTriangles"
   | "codedWeights"
   | "namePattern"
+  | "packed"
   | "precision"
   | "regions"
   | "sharedPicture"

@@ -158,7 +158,7 @@ function N(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/limits.ts
-var ue = "EIGENFIELD_eigen_textures", de = 64 * 2 ** 20, fe = 16384, pe = 16384, me = 1024, he = 2 ** 27, ge = 4096, _e = 8 * 2 ** 30, P = 1e5, ve = 65535, ye = 2 ** 29, F = 1024, be = 2 ** 25, xe = 2 ** 26, Se = 2 ** 27, Ce = 2 ** 28, we = 1e30, I = 65536, Te = 126, L = 64, Ee = 0, De = 1, Oe = 2, ke = 24, Ae = 44, je = 21, Me = 26214, Ne = 4, Pe = Float64Array.from({ length: 4095 }, (e, t) => Math.round(I / (1 + Math.exp((2047 - t) / 256)))), Fe = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Ie = Float64Array.from({ length: 127 }, (e, t) => Math.round(I / (t + 1.5)));
+var ue = "EIGENFIELD_eigen_textures", de = 64 * 2 ** 20, P = 16384, fe = 16384, pe = 1024, me = 2 ** 27, he = 4096, ge = 8 * 2 ** 30, _e = 1e5, ve = 65535, ye = 2 ** 29, F = 1024, be = 2 ** 25, xe = 2 ** 26, Se = 2 ** 27, Ce = 2 ** 28, we = 1e30, I = 65536, Te = 126, L = 64, Ee = 0, De = 1, Oe = 2, ke = 24, Ae = 44, je = 21, Me = 26214, Ne = 4, Pe = Float64Array.from({ length: 4095 }, (e, t) => Math.round(I / (1 + Math.exp((2047 - t) / 256)))), Fe = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Ie = Float64Array.from({ length: 127 }, (e, t) => Math.round(I / (t + 1.5)));
 function R(e) {
 	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
 }
@@ -222,26 +222,26 @@ var Le = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function z(e, t, n) {
+function Re(e, t, n) {
 	if (e.length < t) throw ie(n);
 	if (e[0] !== 1) throw A(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function Re(e, t, n, r) {
+function ze(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw A(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var ze = 12, Be = 3, Ve = 312, He = Be * Ve, Ue = 938, We = 24, Ge = 16, Ke = 1722, qe = 1726, Je = 4, Ye = 5;
-function Xe(e) {
-	return new Le(e, qe, 21);
-}
+var Be = 12, Ve = 3, He = 312, Ue = Ve * He, We = 938, Ge = 24, Ke = 16, qe = 1722, Je = 1726, Ye = 4, Xe = 5;
 function Ze(e) {
-	return e.flag(He, He, He, Be) ? 2 : +!!e.flag(937, 937, 937, Be);
+	return new Le(e, Je, 21);
 }
 function Qe(e) {
+	return e.flag(Ue, Ue, Ue, Ve) ? 2 : +!!e.flag(937, 937, 937, Ve);
+}
+function $e(e) {
 	return Math.min(R(e), 11);
 }
-function $e(e, t, n, r) {
+function et(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -250,31 +250,31 @@ function $e(e, t, n, r) {
 			s
 		];
 		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Ve, y = e.integer(v + Qe(m) * ze + Qe(g), v + 144 + Qe(m + h), v + 144 + 24 + _ * ze + Qe(g + Math.abs(l)), r);
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * He, y = e.integer(v + $e(m) * Be + $e(g), v + 144 + $e(m + h), v + 144 + 24 + _ * Be + $e(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function et(e, t, n, r) {
+function tt(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(Ue + l * We + u, Ue + (Ge + l) * We + d, 1706 + l, Ye + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(We + l * Ge + u, We + (Ke + l) * Ge + d, 1706 + l, Xe + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function tt(e, t, n, r) {
+function nt(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(Ke + s, Ke + s, 1724, Je), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, Je);
+		if (s = +!!e.flag(qe + s, qe + s, 1724, Ye), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, Ye);
 		if (!(t >= 0 && t < n) || a[t]) throw A(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -282,15 +282,15 @@ function tt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var nt = 130, B = 11, rt = 1, it = 2;
-function at(e, t) {
-	let n = z(e, nt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & rt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+var rt = 130, z = 11, it = 1, at = 2;
+function ot(e, t) {
+	let n = Re(e, rt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & it) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw A(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw A(t, `${i} cameras`);
-	Re(e, Math.max(B * i, o * s), B * P, t);
-	let l = nt + (a ? 132 : 0);
-	z(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(nt + 4 * (e * B + t), !0) : 0, d = Xe(e.subarray(l)), f = a ? tt(d, o * s, i, t) : null, p = et(d, i, B, (r & it) !== 0);
+	ze(e, Math.max(z * i, o * s), z * _e, t);
+	let l = rt + (a ? 132 : 0);
+	Re(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(rt + 4 * (e * z + t), !0) : 0, d = Ze(e.subarray(l)), f = a ? nt(d, o * s, i, t) : null, p = tt(d, i, z, (r & at) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -301,27 +301,27 @@ function at(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = st(c[3], c[4], c[5], c[6]), _ = new Float64Array(B), v = 0;
+	], g = ct(c[3], c[4], c[5], c[6]), _ = new Float64Array(z), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < B; e++) {
+		for (let e = 0; e < z; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * B + e] * t + h[e] + i;
+			_[e] = p[v * z + e] * t + h[e] + i;
 		}
-		ot(_, g, m, t), v += 1;
+		st(_, g, m, t), v += 1;
 	}
 	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw A(t, "cameras that are not finite");
 	return m;
 }
-function ot(e, t, n, r) {
+function st(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = st(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = ct(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -332,7 +332,7 @@ function ot(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function st(e, t, n, r) {
+function ct(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -351,7 +351,7 @@ function st(e, t, n, r) {
 		]
 	].flat();
 }
-var ct = 2 ** 24, lt = class {
+var lt = 2 ** 24, ut = class {
 	points;
 	start;
 	end;
@@ -418,7 +418,7 @@ var ct = 2 ** 24, lt = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * ct + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * lt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -426,57 +426,57 @@ var ct = 2 ** 24, lt = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, ut = 2 ** 20, dt = .8, ft = 44, pt = 385, mt = 897, ht = 1086, gt = 1095, [_t, vt, yt, bt, xt] = [
+}, dt = 2 ** 20, ft = .8, pt = 44, mt = 385, ht = 897, gt = 1086, _t = 1095, [vt, yt, bt, xt, St] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function St(e) {
-	return Math.floor(Math.min(Math.max(e, -ut), ut) + .5);
+function Ct(e) {
+	return Math.floor(Math.min(Math.max(e, -dt), dt) + .5);
 }
-function Ct(e, t, n) {
+function wt(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function wt(e, t, n, r, i) {
-	i.flat ? Tt(e, t, n, r, i.fine) : Et(e, t, n, r);
-}
 function Tt(e, t, n, r, i) {
+	i.flat ? Et(e, t, n, r, i.fine) : Dt(e, t, n, r);
+}
+function Et(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? dt : -.8, _ = 1 << i >> 1, v = St((l + d) * .5 + g * m) + _ >> i, y = St((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, _t), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), te = e.integer(pt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, vt);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? ft : -.8, _ = 1 << i >> 1, v = Ct((l + d) * .5 + g * m) + _ >> i, y = Ct((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, vt), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), te = e.integer(mt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, yt);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + te << i, i === 0) return;
-	let O = Ct(t, a, i) + 4 * Ct(t, o, i);
-	if (e.flag(mt + O, 913 + Ct(t, s, i), 917 + c, xt)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	let O = wt(t, a, i) + 4 * wt(t, o, i);
+	if (e.flag(ht + O, 913 + wt(t, s, i), 917 + c, St)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Et(e, t, n, { a: r, b: i, o: a }) {
+function Dt(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
 	let s = Math.min(R(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = St(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, ft + o * 24 + c, 116 + o * ft + s, yt);
+		let l = Ct(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, pt + o * 24 + c, 116 + o * pt + s, bt);
 		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
 	}
 }
-function Dt(e, t, n, r, i) {
+function Ot(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -ut), ut) : 0, o = ht + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, bt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -dt), dt) : 0, o = gt + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, xt);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var Ot = 13, kt = 11, At = 12, V = 169, jt = 8, Mt = gt, Nt = Mt + V + 104 + 26, Pt = Nt + V + 104 + Ot, Ft = Pt + 64 + 64 + V, It = Ft + V + 4 + 1, Lt = It + 6, [Rt, zt, Bt, Vt, Ht] = [
+var kt = 13, At = 11, jt = 12, B = 169, Mt = 8, Nt = _t, Pt = Nt + B + 104 + 26, Ft = Pt + B + 104 + kt, It = Ft + 64 + 64 + B, Lt = It + B + 4 + 1, Rt = Lt + 6, [zt, Bt, Vt, Ht, Ut] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], Ut = [
+], Wt = [
 	-1,
 	-.4,
 	0,
@@ -487,12 +487,12 @@ var Ot = 13, kt = 11, At = 12, V = 169, jt = 8, Mt = gt, Nt = Mt + V + 104 + 26,
 	2,
 	4
 ];
-function Wt(e, t, n, r, i) {
+function Gt(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new lt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new ut(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -516,44 +516,44 @@ function Wt(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(It + n, It + 3 + n, It + n, Ht)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Lt + n, Lt + 3 + n, Lt + n, Ut)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Dt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			Ot(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
 		if (n === o || o === s || s === n) throw A(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? At : c.status[t] !== 1 || n === i || t === e ? kt : Gt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? jt : c.status[t] !== 1 || n === i || t === e ? At : Kt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * Ot + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Mt + V + 104 + 2 * y + +(_ === v);
-		if (y < kt && e.flag(Mt + x, Mt + V + y * jt + S, w, Rt)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * kt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Nt + B + 104 + 2 * y + +(_ === v);
+		if (y < At && e.flag(Nt + x, Nt + B + y * Mt + S, w, zt)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < kt && (v !== _ || y >= kt) && e.flag(Nt + x, Nt + V + b * jt + C, Nt + V + 104 + b, zt)) {
+		if (b < At && (v !== _ || y >= At) && e.flag(Pt + x, Pt + B + b * Mt + C, Pt + B + 104 + b, Bt)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === At) + (b === At ? 2 : 0), E = Ct(a, n, r.fine) + 4 * Ct(a, l, r.fine), ee = Pt + 64 + S * jt + C;
-		if (e.flag(Pt + T * 16 + E, ee, Pt + 64 + 64 + x, Bt)) {
+		let T = +(y === jt) + (b === jt ? 2 : 0), E = wt(a, n, r.fine) + 4 * wt(a, l, r.fine), ee = Ft + 64 + S * Mt + C;
+		if (e.flag(Ft + T * 16 + E, ee, Ft + 64 + 64 + x, Vt)) {
 			c.status[t] = 2;
 			continue;
 		}
 		let D;
-		if (e.flag(Ft + x, Ft + V + T, Ft + V + 4, Vt)) {
+		if (e.flag(It + x, It + B + T, It + B + 4, Ht)) {
 			D = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), wt(e, a, D, {
+			], 3 * D), Tt(e, a, D, {
 				a: n,
 				b: l,
 				o: i,
@@ -565,7 +565,7 @@ function Wt(e, t, n, r, i) {
 	if (l !== t) throw A(i, "fewer places than announced");
 	return o;
 }
-function Gt(e, t, n, r, i, a) {
+function Kt(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -588,21 +588,21 @@ function Gt(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Ut.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Wt.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var Kt = 32, qt = 4, [Jt, Yt, Xt, Zt] = [
+var qt = 32, Jt = 4, [Yt, Xt, Zt, Qt] = [
 	0,
 	1,
 	2,
 	3
-], Qt = Lt, $t = Qt + 64 + 12 + 16, H = $t + qt + 1, en = H + 4, [tn, nn, rn] = [
+], $t = Rt, en = $t + 64 + 12 + 16, V = en + Jt + 1, tn = V + 4, [nn, rn, an] = [
 	9,
 	10,
 	11
 ];
-function an(e, t) {
+function on(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -612,7 +612,7 @@ function an(e, t) {
 		corners: i
 	};
 }
-function on(e, t, n, r, i, a) {
+function sn(e, t, n, r, i, a) {
 	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
 		faces: new Int32Array(3 * o),
 		place: new Int32Array(n),
@@ -627,7 +627,7 @@ function on(e, t, n, r, i, a) {
 		0,
 		0,
 		0
-	], p = new Int32Array(qt), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], p = new Int32Array(Jt), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
 		0,
 		0,
 		-1
@@ -636,7 +636,7 @@ function on(e, t, n, r, i, a) {
 		return -1;
 	}, y = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Kt); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + qt); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (v(n, o) >= 0) return n;
@@ -645,41 +645,41 @@ function on(e, t, n, r, i, a) {
 	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
 		let i = t.faces[3 * n + r], o = l[i];
 		if (o < 0) return -1;
-		m.fill(Zt);
+		m.fill(Qt);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (d[e] < 0) continue;
 			let t = b(d[e], i);
 			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
 		}
-		for (let e = 0; e < Kt && s < qt && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		for (let e = 0; e < qt && s < Jt && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
 		let g = -1;
 		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = Qt + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(Qt + t * 16 + n * 4 + i, Qt + 64 + t * 3 + r, a, tn) && (g = p[t]);
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = $t + 76 + Math.min(s, 3) * 4 + n;
+			e.flag($t + t * 16 + n * 4 + i, $t + 64 + t * 3 + r, a, nn) && (g = p[t]);
 		}
 		if (g < 0) {
-			if (e.flag($t + s, $t + s, $t + qt, nn)) return -1;
+			if (e.flag(en + s, en + s, en + Jt, rn)) return -1;
 			if (g = e.raw(R(h - 1)), g >= h || c.place[g] !== i) throw A(a, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Yt : Xt);
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Xt : Zt);
 		return g;
 	}, S = () => {
 		let t = g++;
-		if (!e.flag(H, H, H, rn)) return c.kinds[t] = e.flag(H + 1, H + 1, H + 1, rn) ? 2 : 0, t;
+		if (!e.flag(V, V, V, an)) return c.kinds[t] = e.flag(V + 1, V + 1, V + 1, an) ? 2 : 0, t;
 		c.kinds[t] = 1;
 		let n = _;
-		if (_ = t, n >= 0 && e.flag(H + 2, H + 2, H + 2, rn)) {
+		if (_ = t, n >= 0 && e.flag(V + 2, V + 2, V + 2, an)) {
 			let n = e.raw(R(t - 1));
 			if (n >= t || c.kinds[n] !== 1) throw A(a, "a map that is not there");
 			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(H + 3, H + 3, H + 3, rn);
+		let r = n >= 0 && e.flag(V + 3, V + 3, V + 3, an);
 		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
 		return t;
 	};
 	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Jt;
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Yt;
 		let r = -1, i = [];
 		for (let o = 0; o < 3; o++) {
 			let s = x(e, o);
@@ -699,7 +699,7 @@ function on(e, t, n, r, i, a) {
 	return c;
 }
 // eigenfield-three/src/mesh-values.ts
-var sn = 16, cn = 6, ln = 13, un = 14, dn = 20, fn = en, pn = fn + 169 + 280 + 182, mn = pn + 144 + 576 + 48, [hn, gn] = [12, 13], _n = [
+var cn = 16, ln = 6, un = 13, dn = 14, fn = 20, pn = tn, mn = pn + 169 + 280 + 182, hn = mn + 144 + 576 + 48, [gn, _n] = [12, 13], vn = [
 	.5,
 	1.5,
 	3,
@@ -707,14 +707,14 @@ var sn = 16, cn = 6, ln = 13, un = 14, dn = 20, fn = en, pn = fn + 169 + 280 + 1
 	12,
 	30
 ];
-function vn(e, t) {
-	return St(Number.isNaN(e) ? t : e);
+function yn(e, t) {
+	return Ct(Number.isNaN(e) ? t : e);
 }
-function yn(e) {
-	let t = _n.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? cn - t : cn + t;
+function bn(e) {
+	let t = vn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? ln - t : ln + t;
 }
-function bn(e, t, n, r) {
+function xn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -735,18 +735,18 @@ function bn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + sn); e++) for (let i = 1; i < 3; i++) {
-			let o = xn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + cn); e++) for (let i = 1; i < 3; i++) {
+			let o = Sn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + sn); e++) for (let n = 1; n < 3; n++) {
-				let i = xn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + cn); e++) for (let n = 1; n < 3; n++) {
+				let i = Sn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max(Sn(s), p), m));
+		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max(Cn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -764,15 +764,15 @@ function bn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = vn(x, b), [ee, D] = [yn(S - E), yn(b - E)], te = e.integer(fn + ee * ln + D, fn + 169 + y * dn + f, fn + 169 + 280 + ee * un + y, hn), O = E + te;
+		let E = yn(x, b), [ee, D] = [bn(S - E), bn(b - E)], te = e.integer(pn + ee * un + D, pn + 169 + y * fn + f, pn + 169 + 280 + ee * dn + y, gn), O = E + te;
 		i[3 * t + 2] = O, f = Math.min(R(Math.abs(te)), 19), p = t === 0 ? O : Math.min(p, O), m = t === 0 ? O : Math.max(m, O);
 	}
 }
-function xn(e, t, n) {
+function Sn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function Sn(e) {
+function Cn(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -792,7 +792,7 @@ function Sn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function Cn(e, t, n, r, i) {
+function wn(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -804,25 +804,25 @@ function Cn(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + sn); e++) {
-			let [r, s] = [xn(a, i[e], 1), xn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + cn); e++) {
+			let [r, s] = [Sn(a, i[e], 1), Sn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = wn(n, c, l, t, r, s, f === 2);
+			let [u, d] = Tn(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
 			_ = Math.max(_, R(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = pn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = mn + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(pn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], gn + n);
-			l[2 * t + n] = vn(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
+			let r = e.integer(mn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], _n + n);
+			l[2 * t + n] = yn(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function wn(e, t, n, r, i, a, o) {
+function Tn(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -836,9 +836,9 @@ function wn(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Tn = 144, En = 18, Dn = 8;
-function On(e, t) {
-	let n = z(e, Tn, t), [r, i, a] = [
+var En = 144, Dn = 18, On = 8;
+function kn(e, t) {
+	let n = Re(e, En, t), [r, i, a] = [
 		n.getUint8(1),
 		n.getUint8(2),
 		n.getUint8(3)
@@ -848,18 +848,18 @@ function On(e, t) {
 		12
 	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
 	if (o > xe || c > xe || s > Se) throw A(t, `${c} vertices and ${s} faces`);
-	if (Re(e, Math.max(o, s, c), Se, t), r > 1 || a > Dn * r || i < 1 || i > En || !l.every(Number.isFinite)) throw A(t, "a lattice that cannot be");
-	let u = new Le(e.subarray(Tn), mn, 16), d = Wt(u, o, s, {
+	if (ze(e, Math.max(o, s, c), Se, t), r > 1 || a > On * r || i < 1 || i > Dn || !l.every(Number.isFinite)) throw A(t, "a lattice that cannot be");
+	let u = new Le(e.subarray(En), hn, 16), d = Gt(u, o, s, {
 		flat: r === 1,
 		fine: a
 	}, t);
 	u.checkEnd(t);
-	let f = an(d.faces, o);
-	r && bn(u, d, f.first, f.corners);
-	let p = on(u, d, c, f.first, f.corners, t), m = kn(d.points, l), h = an(p.faces, c), g = Cn(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), jn(An(d, p, m, g, 2 ** i), t);
+	let f = on(d.faces, o);
+	r && xn(u, d, f.first, f.corners);
+	let p = sn(u, d, c, f.first, f.corners, t), m = An(d.points, l), h = on(p.faces, c), g = wn(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), Mn(jn(d, p, m, g, 2 ** i), t);
 }
-function kn(e, t) {
+function An(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -867,7 +867,7 @@ function kn(e, t) {
 	}
 	return n;
 }
-function An(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+function jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -882,55 +882,56 @@ function An(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 		indices: new Uint32Array(t)
 	};
 }
-function jn(e, t) {
+function Mn(e, t) {
 	let n = (e) => Math.abs(e) <= we;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw A(t, "positions or texture coordinates that are not finite");
 	return e;
 }
+// eigenfield-three/src/inflate.ts
+async function Nn(e, t, n, r) {
+	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
+	try {
+		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
+	} catch {
+		throw A(r, "it does not inflate");
+	}
+	if (a > n) throw await o.cancel(), A(r, `more than ${n} bytes`);
+	let s = new Uint8Array(a), c = 0;
+	for (let e of i) s.set(e, c), c += e.length;
+	return s;
+}
 // eigenfield-three/src/name-decoder.ts
-var Mn = 4 * F;
-async function Nn(e, t, n) {
-	let r = await Pn(e, Math.min(be, Mn * t), n), i = r.length / t;
-	if (i === 0 || !Number.isInteger(i)) throw A(n, `${r.length} bytes of ${t} names`);
-	let a = new TextDecoder("utf-8", {
+var Pn = 4 * F;
+async function Fn(e, t, n) {
+	let r = Math.min(be, Pn * t), i = await Nn(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw A(n, `${i.length} bytes of ${t} names`);
+	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
-	}), o = new Uint8Array(i), s = [];
+	}), s = new Uint8Array(a), c = [];
 	for (let e = 0; e < t; e++) {
-		for (let n = 0; n < i; n++) o[n] = r[n * t + e];
-		let c = i;
-		for (; c > 0 && o[c - 1] === 0;) --c;
+		for (let n = 0; n < a; n++) s[n] = i[n * t + e];
+		let r = a;
+		for (; r > 0 && s[r - 1] === 0;) --r;
 		try {
-			s.push(a.decode(o.subarray(0, c)));
+			c.push(o.decode(s.subarray(0, r)));
 		} catch {
 			throw A(n, "names that are not UTF-8");
 		}
 	}
-	return s;
-}
-async function Pn(e, t, n) {
-	let r = [], i = 0, a = new Blob([Uint8Array.from(e)]).stream().pipeThrough(new DecompressionStream("deflate")).getReader();
-	try {
-		for (let e = await a.read(); !e.done && i <= t; e = await a.read()) r.push(e.value), i += e.value.length;
-	} catch {
-		throw A(n, "names that do not inflate");
-	}
-	if (i > t) throw await a.cancel(), A(n, `more than ${t} bytes of names`);
-	let o = new Uint8Array(i), s = 0;
-	for (let e of r) o.set(e, s), s += e.length;
-	return o;
+	return c;
 }
 // eigenfield-three/src/headers.ts
-function Fn(e) {
+function In(e) {
 	let t = new DataView(e);
 	try {
-		return In(t) ?? Ln(t) ?? Rn(t) ?? zn(t);
+		return Ln(t) ?? Rn(t) ?? zn(t) ?? Bn(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function U(e, t) {
+function H(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -938,15 +939,15 @@ function U(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function In(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || U(e, 12) !== "IHDR" ? null : {
+function Ln(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || H(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Ln(e) {
+function Rn(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -969,12 +970,12 @@ function Ln(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function Rn(e) {
-	if (U(e, 0) !== "RIFF" || U(e, 8) !== "WEBP") return null;
+function zn(e) {
+	if (H(e, 0) !== "RIFF" || H(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = U(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = H(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -994,11 +995,11 @@ function Rn(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function zn(e) {
-	if (U(e, 4) !== "ftyp") return null;
+function Bn(e) {
+	if (H(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = U(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = H(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1021,42 +1022,42 @@ function zn(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Bn = {
+var Vn = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Vn = {
+}, Hn = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Hn(e, t, n) {
-	let r = Fn(e);
+function Un(e, t, n) {
+	let r = In(e);
 	if (!r) throw A(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw A(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw A(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > he) throw A(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > me) throw A(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Un(e, t, n, r) {
-	let [i, a] = Hn(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Wn(e, t, n, r) {
+	let [i, a] = Un(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = Fn(e)?.type ?? t.codec.mimeType, u;
+	}, l = In(e)?.type ?? t.codec.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Bn,
+			...Vn,
 			...c
 		});
 	} catch (e) {
-		throw await Gn(l) ? A(t.where, "it cannot be decoded") : Kn(l, t, e);
+		throw await Kn(l) ? A(t.where, "it cannot be decoded") : qn(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), A(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-var Wn = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Hn(e, t, n && [n[0], i * n[1]]), s = await Un(e, t, [a, o], i === 1 ? r : 1);
+var Gn = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Un(e, t, n && [n[0], i * n[1]]), s = await Wn(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1069,7 +1070,7 @@ var Wn = async (e, t, n, r = 1) => {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Bn,
+		...Vn,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1080,8 +1081,8 @@ var Wn = async (e, t, n, r = 1) => {
 		rows: d
 	}));
 };
-async function Gn(e) {
-	let t = Vn[e];
+async function Kn(e) {
+	let t = Hn[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1090,17 +1091,17 @@ async function Gn(e) {
 		return !1;
 	}
 }
-function Kn(e, t, n) {
+function qn(e, t, n) {
 	return new k("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var qn = /* @__PURE__ */ new Set([
+var Jn = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Jn = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Hn(e, t, n && [n[0], i * n[1]]), s = await Yn(e, a, o);
-	if (!s) return Wn(e, t, n, r);
+]), Yn = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Un(e, t, n && [n[0], i * n[1]]), s = await Xn(e, a, o);
+	if (!s) return Gn(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1108,7 +1109,7 @@ var qn = /* @__PURE__ */ new Set([
 			row: t * c,
 			rows: c
 		};
-		let n = Xn(s, t * c, c, r);
+		let n = Zn(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1116,7 +1117,7 @@ var qn = /* @__PURE__ */ new Set([
 		};
 	});
 };
-async function Yn(e, t, n) {
+async function Xn(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1125,7 +1126,7 @@ async function Yn(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!qn.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!Jn.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1139,7 +1140,7 @@ async function Yn(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function Xn(e, t, n, r) {
+function Zn(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1158,36 +1159,36 @@ function Xn(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/triangle-decoder.ts
-var Zn = 5;
-function Qn(e, t) {
-	let n = z(e, Zn, t).getUint32(1, !0);
-	Re(e, 3 * n, 6 * P, t);
-	let r = Xe(e.subarray(Zn)), i = et(r, n, 3, !0);
+var Qn = 5;
+function $n(e, t) {
+	let n = Re(e, Qn, t).getUint32(1, !0);
+	ze(e, 3 * n, 6 * _e, t);
+	let r = Ze(e.subarray(Qn)), i = tt(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw A(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var $n = 14, er = 2 ** 20;
-function tr(e, t) {
-	let n = z(e, $n, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var er = 14, tr = 2 ** 20;
+function nr(e, t) {
+	let n = Re(e, er, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw A(t, "weights of no camera, or of an unknown kind");
-	Re(e, o * s * Math.max(a, 1), Ce, t), z(e, $n + 4 * a, t);
+	ze(e, o * s * Math.max(a, 1), Ce, t), Re(e, er + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw A(t, "a grid with too few cells");
-	let l = Xe(e.subarray($n + 4 * a)), u = r ? tt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = Ze(e.subarray(er + 4 * a)), u = r ? nt(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * er * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * tr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32($n + 4 * e, !0);
+		let r = n.getFloat32(er + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw A(t, "a step that is not positive");
-		let i = Ze(l), h = $e(l, s, f[i], i);
+		let i = Qe(l), h = et(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw A(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? nr(h, o, s) : h;
+		let g = i === 2 ? rr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1201,14 +1202,14 @@ function tr(e, t) {
 		values: p
 	};
 }
-function nr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = rr(n);
+function rr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = ir(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = rr(t);
+	let o = ir(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1216,13 +1217,13 @@ function nr(e, t, n) {
 	}
 	return i;
 }
-function rr(e) {
+function ir(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function W(e) {
-	let [t, n] = [Wn, Wn];
+function U(e) {
+	let [t, n] = [Gn, Gn];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1237,74 +1238,74 @@ function W(e) {
 		bits: 8
 	};
 }
-var G = {
+var W = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: On,
+		decode: kn,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: at,
+		decode: ot,
 		needs: "codedCameras",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
 		kind: "names",
-		decode: Nn,
+		decode: Fn,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: Qn,
+		decode: $n,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: tr,
+		decode: nr,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: W("image/png"),
-	webp: W("image/webp"),
-	avif: W("image/avif"),
-	jpeg: W("image/jpeg"),
+	png: U("image/png"),
+	webp: U("image/webp"),
+	avif: U("image/avif"),
+	jpeg: U("image/jpeg"),
 	"av1-10bit-1": {
-		...W("image/avif"),
+		...U("image/avif"),
 		bits: 10,
-		decode: Jn,
+		decode: Yn,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...W("video/AV1"),
+		...U("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => Jn(ce(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => Wn(ce(e, t.where), t, n, r),
+		decode: (e, t, n, r) => Yn(ce(e, t.where), t, n, r),
+		bitmaps: (e, t, n, r) => Gn(ce(e, t.where), t, n, r),
 		needs: "av1-10bit-2"
 	}
-}, ir = {
+}, ar = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function ar(e, t, n) {
-	let r = t.exists ? t.text(F) : n, i = Object.hasOwn(G, r) ? G[r] : null;
+function or(e, t, n) {
+	let r = t.exists ? t.text(F) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
 	throw new k("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function or(e, t) {
-	return Object.keys(G).find((n) => {
-		let r = G[n];
+function sr(e, t) {
+	return Object.keys(W).find((n) => {
+		let r = W[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var sr = class e {
+var G = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1379,7 +1380,7 @@ function mr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(fe).map((e) => {
+	return e.key("bufferViews").items(P).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1395,7 +1396,7 @@ function hr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function gr(e, t) {
-	let n = e.key("accessors").items(fe);
+	let n = e.key("accessors").items(P);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1424,7 +1425,7 @@ function gr(e, t) {
 	};
 }
 function _r(e, t, n) {
-	let r = typeof t.raw == "number" && fr.has(e), i = ar(e, r ? new sr(void 0, t.where) : t.key("codec"), ir[e]);
+	let r = typeof t.raw == "number" && fr.has(e), i = or(e, r ? new G(void 0, t.where) : t.key("codec"), ar[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
@@ -1446,10 +1447,10 @@ var q = 8, br = 16;
 function xr(e, t) {
 	return new k("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Sr(e, t = pe) {
+function Sr(e, t = fe) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > he) throw e.wrong(`more than ${he} texels`);
+	if (n * r > me) throw e.wrong(`more than ${me} texels`);
 	return [n, r];
 }
 function Cr(e, t, n, r, i) {
@@ -1470,8 +1471,8 @@ function Cr(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${ge} textures`);
-	if (s > _e) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${he} textures`);
+	if (s > ge) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function wr(e, t) {
@@ -1529,10 +1530,10 @@ function Tr(e, t, n, r, i, a = !1) {
 }
 function Er(e) {
 	let t = e.key("mimeType").text(F);
-	if (!or(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, br) : q, i = or(t, r);
+	if (!sr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, br) : q, i = sr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = ar("picture", a, i);
+	let a = e.key("codec"), o = or("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
@@ -1561,7 +1562,7 @@ function jr(e, t, n, r) {
 		return {
 			mean: {
 				view: n,
-				codec: G.png,
+				codec: W.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
@@ -1581,8 +1582,8 @@ function jr(e, t, n, r) {
 function Mr(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === q) throw e.wrong(`of a mean of ${q} bits`);
-	let r = Sr(e.key("size"), me), i = ar("picture", e.key("codec"), "png");
-	if (i !== G.png) throw e.key("codec").wrong("no PNG");
+	let r = Sr(e.key("size"), pe), i = or("picture", e.key("codec"), "png");
+	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1593,17 +1594,17 @@ function Mr(e, t, n) {
 	};
 }
 function Nr(e, t, n, r, i) {
-	let a = Sr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Sr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, pe) : [];
+	let a = Sr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Sr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
-	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(ge).map((e) => {
-		let n = new sr({
+	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(he).map((e) => {
+		let n = new G({
 			...p,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, ge) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, he) : 1;
 		return d += o, Tr(n, t, o, a, i);
 	});
-	if (d > 4096) throw e.wrong(`more than ${ge} textures`);
+	if (d > 4096) throw e.wrong(`more than ${he} textures`);
 	let h = e.key("codedWeights"), g = d ? h.exists ? _r("weights", h, i) : r(e.key("weights"), "SCALAR", [K], n * d) : null;
 	return {
 		size: a,
@@ -1618,19 +1619,20 @@ function Nr(e, t, n, r, i) {
 function Pr(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > he) throw e.wrong(`more than ${he} texels`);
+	if (n * i > me) throw e.wrong(`more than ${me} texels`);
 }
 // eigenfield-three/src/document.ts
 var Fr = [
 	"namePattern",
+	"packed",
 	"precision",
 	"regions",
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-], Ir = Object.values(G).flatMap(({ needs: e }) => e ?? []), Lr = /* @__PURE__ */ new Set([...Fr, ...Ir]), Rr = 64, zr = 9, Br = 10 ** zr;
+], Ir = Object.values(W).flatMap(({ needs: e }) => e ?? []), Lr = /* @__PURE__ */ new Set([...Fr, ...Ir]), Rr = 64, zr = 9, Br = 10 ** zr;
 function Vr(e) {
-	let t = new sr(e, "");
+	let t = new G(e, "");
 	try {
 		return t.key("extensions").key(ue).exists;
 	} catch {
@@ -1638,7 +1640,7 @@ function Vr(e) {
 	}
 }
 function Hr(e) {
-	let t = new sr(e, ""), n = t.key("extensions").key(ue), r = Ur(n), i = mr(t), a = gr(t, i), o = hr(i);
+	let t = new G(e, ""), n = t.key("extensions").key(ue), r = Ur(n), i = mr(t), a = gr(t, i), o = hr(i);
 	Wr(t);
 	let s = qr(t, o), c = n.key("cameras"), { count: l, names: u } = Jr(c, o), d = Zr(c, l), f = d.filter((e) => !e).length, p = Cr(n, f, s, a, o), m = wr(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
@@ -1657,7 +1659,7 @@ function Hr(e) {
 		sizes: $r(c, l, a),
 		colour: h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
 		...ei(g),
-		triangles: v.exists ? _r("triangles", v, o) : _.exists ? Kr(a(_, "SCALAR", [lr, ur], null), 2 * P) : null,
+		triangles: v.exists ? _r("triangles", v, o) : _.exists ? Kr(a(_, "SCALAR", [lr, ur], null), 2 * _e) : null,
 		settings: ti(n.key("settings")),
 		scores: ti(n.key("scores")),
 		views: i,
@@ -1676,14 +1678,14 @@ function Ur(e) {
 	let t = e.key("version").text(F);
 	if (!/^1\.\d+$/.test(t)) throw new k("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(fe) : []) {
+	for (let e of n.exists ? n.items(P) : []) {
 		let t = e.text(F);
 		if (!Lr.has(t)) throw new k("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Wr(e) {
-	let t = e.key("nodes").items(fe), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(P), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1692,7 +1694,7 @@ function Wr(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(fe)) {
+	for (let r of e.key("scenes").items(P)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
@@ -1714,10 +1716,10 @@ function qr(e, t) {
 function Jr(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, P),
+		count: n.key("count").integer(1, _e),
 		names: _r("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Xr(r) : i.items(P).map((e) => e.text(F));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Xr(r) : i.items(_e).map((e) => e.text(F));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = Yr(a);
 	if (o) throw i.wrong(o);
@@ -1730,7 +1732,7 @@ function Yr(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function Xr(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, P));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, _e));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(Rr).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(F))];
@@ -2842,7 +2844,7 @@ async function Qa(e, t, n = 1) {
 	};
 }
 async function $a(e, t) {
-	let { type: n } = Fn(e) ?? {}, { mimeType: r } = t.codec;
+	let { type: n } = In(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw A(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw A(t.where, "no picture");
@@ -3297,7 +3299,7 @@ async function _o(e) {
 	return {
 		length: i,
 		text: s,
-		json: bo(s),
+		json: bo(s, "20"),
 		binary: () => vo(e, 20 + o, i)
 	};
 }
@@ -3318,12 +3320,12 @@ function yo(e) {
 		throw A("20", "its JSON is not UTF-8");
 	}
 }
-function bo(e) {
-	if (xo(e) > 64) throw A("20", "its JSON is nested too deep");
+function bo(e, t) {
+	if (xo(e) > 64) throw A(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw A("20", "its JSON cannot be read");
+		throw A(t, "its JSON cannot be read");
 	}
 }
 function xo(e) {
@@ -3340,9 +3342,63 @@ function xo(e) {
 function So(e) {
 	return new k("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
+// eigenfield-three/src/packed.ts
+var Co = "\"texts\":[\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"codedCameras\",\"codedMesh\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":4},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":5,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":6,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":7,\"textures\":[{\"bufferView\":12,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":8,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":13},{\"bufferView\":14}]}]},{\"channels\":2,\"mean\":{\"bufferView\":8,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":6,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"names\":[\"heldOut\":[1,2,\"coded\":9,\"size\":[1024,512]},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", wo = 4;
+async function To(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
+	if (!i.exists) return e;
+	Ur(r);
+	let a = mr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < wo) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, wo)).getUint32(0, !0);
+	if (wo + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(bo(await Do(await t(o.offset + wo, s), i.where), i.where), i.where).object(), u = Eo(new G(c, `${i.where}/lengths`), o, wo + s), { packed: d, ...f } = r.object();
+	return {
+		...e,
+		bufferViews: [...n.key("bufferViews").items(P).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		extensions: {
+			...n.key("extensions").object(),
+			[ue]: {
+				...f,
+				...l
+			}
+		}
+	};
+}
+function Eo(e, t, n) {
+	let r = n, i = e.items(P).map((e) => {
+		let n = e.integer(1, t.length);
+		return r += n, {
+			buffer: 0,
+			byteOffset: t.offset + r - n,
+			byteLength: n
+		};
+	});
+	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
+	return i;
+}
+async function Do(e, t) {
+	let n = new TextEncoder().encode(Co), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+	a.set([
+		0,
+		r,
+		i,
+		~r,
+		~i
+	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
+	let o = await Nn(a, "deflate-raw", n.length + de, t);
+	try {
+		return new TextDecoder("utf-8", {
+			fatal: !0,
+			ignoreBOM: !0
+		}).decode(o.subarray(n.length));
+	} catch {
+		throw A(t, "its JSON is not UTF-8");
+	}
+}
 // eigenfield-three/src/proxy.ts
-var Co = 65535;
-function wo(e, t) {
+var Oo = 65535;
+function ko(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new k("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw A(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3352,46 +3408,46 @@ function wo(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw A(t.indices.where, `no vertex ${e}`);
 }
-async function To({ view: n, codec: r, where: i }, a) {
+async function Ao({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw A(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Co;
+	let u = o.length / 3 <= Oo;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Eo(e) {
+function jo(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Do(e) {
+function Mo(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Oo(e, n, r) ?? (n === r ? null : Oo(e, r, n));
+		let r = t / n, i = No(e, n, r) ?? (n === r ? null : No(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Oo(e, t, n) {
-	let [r, i] = [Ao(e, 0), Ao(e, 1)];
-	if (t === 1 && jo(i) > 0 || n === 1 && jo(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Mo(i, e) - Mo(i, t));
+function No(e, t, n) {
+	let [r, i] = [Fo(e, 0), Fo(e, 1)];
+	if (t === 1 && Io(i) > 0 || n === 1 && Io(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Lo(i, e) - Lo(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Mo(r, e) - Mo(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Lo(r, e) - Lo(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return ko(n, t, (e, t) => Mo(r, o(t, e))) && ko(t, n, (e, t) => Mo(i, o(e, t))) ? {
+	return Po(n, t, (e, t) => Lo(r, o(t, e))) && Po(t, n, (e, t) => Lo(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function ko(e, t, n) {
+function Po(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3401,33 +3457,33 @@ function ko(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Ao(e, t) {
+function Fo(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function jo(e) {
+function Io(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Mo = (e, t) => e[t] ?? 0, No = 1e-6, Po = 32, Fo = class {
+var Lo = (e, t) => e[t] ?? 0, Ro = 1e-6, zo = 32, Bo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Do(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Mo(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Io(e), this.isLine ? 0 : Io(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Vo(e), this.isLine ? 0 : Vo(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Ko(e, t, this.places) : e === "bilinear" && this.grid ? Jo(this.places, this.grid) : zo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Zo(e, t, this.places) : e === "bilinear" && this.grid ? $o(this.places, this.grid) : Wo(this.places, this.triangles);
 	}
 };
-function Io(e) {
+function Vo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Lo(e) {
+function Ho(e) {
 	let t = {
 		camera: [
 			0,
@@ -3447,7 +3503,7 @@ function Lo(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Ro(e, t, n, r, i, a) {
+function Uo(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3455,49 +3511,49 @@ function Ro(e, t, n, r, i, a) {
 		m
 	];
 }
-function zo(e, t) {
+function Wo(e, t) {
 	if (!t.length) {
-		let t = Go(e, Wo(e));
-		return (n, r) => Uo(n, r, e, t);
+		let t = Xo(e, Yo(e));
+		return (n, r) => Jo(n, r, e, t);
 	}
-	let n = Vo(e, t, 3), r = Ho(t);
+	let n = Ko(e, t, 3), r = qo(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Po + $(i)] ?? []) {
+		for (let r of n[$(a) * zo + $(i)] ?? []) {
 			let [n, l, u] = [
-				Bo(t, r, 0),
-				Bo(t, r, 1),
-				Bo(t, r, 2)
-			], d = Ro(i, a, e, n, l, u), f = Math.min(...d);
+				Go(t, r, 0),
+				Go(t, r, 1),
+				Go(t, r, 2)
+			], d = Uo(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Uo(i, a, e, r) : Lo(c.map((e, n) => [Bo(t, o, n), e]));
+		return s < -1e-9 ? Jo(i, a, e, r) : Ho(c.map((e, n) => [Go(t, o, n), e]));
 	};
 }
-var Bo = (e, t, n) => e[3 * t + n] ?? 0;
+var Go = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Po)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * zo)));
 }
-function Vo(e, t, n) {
+function Ko(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Po + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * zo + t]?.push(i);
 	}
 	return r;
 }
-function Ho(e) {
+function qo(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Bo(e, n, r), Bo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Go(e, n, r), Go(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3506,7 +3562,7 @@ function Ho(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Uo(e, t, n, r) {
+function Jo(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3521,12 +3577,12 @@ function Uo(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Lo([[o, 1 - c], [s, c]]);
+	return Ho([[o, 1 - c], [s, c]]);
 }
-function Wo(e) {
+function Yo(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Go(e, t) {
+function Xo(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3547,7 +3603,7 @@ function Go(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Ko(e, t, n) {
+function Zo(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3561,12 +3617,12 @@ function Ko(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || qo(n, r, i, a) <= No) return Uo(e, t, n, Go(n, [
+	if (a < 0 || Qo(n, r, i, a) <= Ro) return Jo(e, t, n, Xo(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Ro(e, t, n, r, i, a);
+	let [l, u, d] = Uo(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3582,15 +3638,15 @@ function Ko(e, t, n) {
 		]
 	};
 }
-function qo(e, t, n, r) {
+function Qo(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Jo(e, t) {
+function $o(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Go(e, Wo(e));
-		return (n, r) => Uo(n, r, e, t);
+		let t = Xo(e, Yo(e));
+		return (n, r) => Jo(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3599,7 +3655,7 @@ function Jo(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Vo(e, o.flat(), 4), c = [];
+	let s = Ko(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3607,12 +3663,12 @@ function Jo(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Po + $(t)] ?? []) {
-			let s = o[a], c = s ? Yo(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * zo + $(t)] ?? []) {
+			let s = o[a], c = s ? es(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Uo(t, n, e, l);
-		let [a, c] = Xo(t, n, e, r);
+		if (!r || i < -1e-9) return Jo(t, n, e, l);
+		let [a, c] = ts(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3624,7 +3680,7 @@ function Jo(e, t) {
 		};
 	};
 }
-function Yo(e, t, n, r) {
+function es(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3632,7 +3688,7 @@ function Yo(e, t, n, r) {
 	}
 	return i;
 }
-function Xo(e, t, n, r) {
+function ts(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3650,14 +3706,14 @@ function Xo(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Zo(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Zo(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ns(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [ns(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Zo(e) {
+function ns(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Qo = class {
+var rs = class {
 	parser;
 	options;
 	name = ue;
@@ -3667,7 +3723,15 @@ var Qo = class {
 		this.parser = e, this.options = t, this.ours = Vr(e.json);
 	}
 	async beforeRoot() {
-		this.ours && (this.scene = Hr(this.parser.json));
+		if (!this.ours) return;
+		let { json: e } = this.parser;
+		Object.assign(e, await To(e, (e, t) => this.read(e, t))), this.scene = Hr(e);
+	}
+	async read(e, t) {
+		if (this.options.stream) return this.options.stream.read(e, t);
+		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
+		if (n.byteLength < t) throw ie("/buffers/0");
+		return n;
 	}
 	loadMaterial(e) {
 		let t = this.scene && this.parser.json.meshes[0].primitives[0];
@@ -3682,14 +3746,14 @@ var Qo = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = $o(e, this.parser), [r] = n;
+		let n = is(e, this.parser), [r] = n;
 		if (!r) throw A("/meshes/0", "no node shows it");
-		wo(r.geometry, t);
+		ko(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ie(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await To(t.mesh, i);
+		}, a = t.mesh && await Ao(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
@@ -3699,7 +3763,7 @@ var Qo = class {
 			ri(t, i),
 			ui(t, i),
 			mi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Fo(Float64Array.from(u.flatMap((e) => vi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = gi(t, s, f, d.grid, this.fileBytes(), Eo(r.geometry)), m = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Bo(Float64Array.from(u.flatMap((e) => vi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = gi(t, s, f, d.grid, this.fileBytes(), jo(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3718,32 +3782,32 @@ var Qo = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function $o(e, t) {
+function is(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		es(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		as(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function es(e) {
+function as(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function ts(e, t = {}) {
+async function os(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
 	let r = new po(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = is(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = ls(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
 		let e = await _o(r);
 		if (!Vr(e.json)) return {
-			gltf: await rs(r, e, o),
+			gltf: await cs(r, e, o),
 			field: null
 		};
-		let i = await ns(r, e, t);
+		let i = await ss(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
@@ -3754,7 +3818,7 @@ async function ts(e, t = {}) {
 		throw i.abort(), n?.throwIfAborted(), ae(e);
 	}
 }
-async function ns(e, t, n) {
+async function ss(e, t, n) {
 	let r = new ne(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3764,12 +3828,12 @@ async function ns(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Qo(e, {
+	return r.register((e) => new rs(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function rs(e, t, n) {
+async function cs(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3779,25 +3843,25 @@ async function rs(e, t, n) {
 		throw new k("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function is(e, t, n, r) {
+async function ls(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? as(e) : await os(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? us(e) : await ds(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : ss(t.received, e);
+			throw n.aborted ? e : fs(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function as(e) {
+function us(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function os(e, t) {
+async function ds(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new k("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3808,7 +3872,7 @@ async function os(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function ss(e, t) {
+function fs(e, t) {
 	return new k("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { ao as EigenField, Qo as EigenfieldPlugin, k as SceneError, Li as defaultMemory, ts as loadEigenfield, bi as novelCamera, wi as placeCamera };
+export { ao as EigenField, rs as EigenfieldPlugin, k as SceneError, Li as defaultMemory, os as loadEigenfield, bi as novelCamera, wi as placeCamera };
