@@ -58,7 +58,7 @@ def naming(place, codec=None):
             usual = PLACES[place].codec or {8: entry.get("mimeType", "image/png").removeprefix("image/")}.get(
                 entry.get("bits", 8), "av1-10bit-2"
             )
-            holder[key] = {**entry, "codec": usual if codec is None else codec}
+            holder[key] = {**entry, "codec": entry.get("codec", usual) if codec is None else codec}
 
     return change
 

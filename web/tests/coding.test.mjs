@@ -6,6 +6,7 @@ import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { deflateRawSync } from "node:zlib";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { build } from "vite";
 import { python } from "./command.mjs";
@@ -121,6 +122,20 @@ test("names decode to the same names, damaged ones too or to an error of ours", 
     }
   }
   assert.ok(read >= 3 && refused > 20, `${read} read, ${refused} refused`);
+});
+
+test("deflated cameras are the same cameras, and damaged ones an error of ours", async () => {
+  const { decode } = built.CODECS["cameras-2"];
+  for (const name of ["cameras-line", "cameras-grid"]) {
+    const { expected } = await vector(name);
+    const plain = await readFile(join(folder, `${name}.bin`));
+    const bytes = Buffer.concat([Buffer.from([2]), deflateRawSync(plain.subarray(1))]);
+    assertAlike(await decode(new Uint8Array(bytes), "here"), expected, name);
+    const huge = Buffer.concat([Buffer.from([2]), deflateRawSync(Buffer.alloc(2 ** 23))]);
+    for (const wrong of [plain, bytes.subarray(0, -9), Buffer.from([2]), huge]) {
+      await assert.rejects(decode(new Uint8Array(wrong), "here"), { name: "SceneError" });
+    }
+  }
 });
 
 test("large numbers in few bytes allocate nothing", async () => {

@@ -297,7 +297,7 @@ const PRECISE_CHANGES = {
 /** First byte and length of each coded part within the binary chunk. */
 function streamsOf(json) {
   const { mesh, cameras, planes } = find(json);
-  const views = { mesh: mesh.bufferView, coded: cameras.coded, codedWeights: planes[0].bases[0].codedWeights };
+  const views = { mesh: mesh.bufferView, coded: cameras.coded.bufferView, codedWeights: planes[0].bases[0].codedWeights };
   return Object.entries(views).map(([name, view]) => {
     const { byteOffset, byteLength } = json.bufferViews[view];
     return { name, view, start: byteOffset, length: byteLength };
@@ -309,7 +309,7 @@ function named(e, codec = null) {
   const [plane] = e.planes;
   const [basis] = plane.bases;
   e.mesh.codec = codec ?? "mesh-1";
-  e.cameras.coded = { bufferView: e.cameras.coded, codec: codec ?? "cameras-1" };
+  e.cameras.coded.codec = codec ?? "cameras-2";
   e.viewPlane.codedTriangles = { bufferView: e.viewPlane.codedTriangles, codec: codec ?? "triangles-1" };
   basis.codedWeights = { bufferView: basis.codedWeights, codec: codec ?? "weights-1" };
   plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-2";
@@ -355,7 +355,7 @@ test("damaged coded parts are refused by name", async () => {
   const { page, close } = await lab.open();
   const { json, binary } = readGlb(sceneBytes("coded.glb"));
   for (const { name, view, start, length } of streamsOf(json)) {
-    for (const [byte, value] of [[0, 2], [1, 255]]) {
+    for (const [byte, value] of [[0, 3], [1, 255]]) {
       const data = Buffer.from(binary);
       data[start + byte] = value;
       routes["/stream.glb"] = { body: writeGlb({ json, binary: data }) };

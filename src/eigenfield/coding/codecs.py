@@ -106,6 +106,10 @@ CODECS: dict[str, Codec] = {
         "cameras", _later("arrays.cameras", "code_cameras"), _later("arrays.cameras", "decode_cameras"),
         "codedCameras", "1.2", ("MAX_CAMERAS",),
     ),
+    "cameras-2": Codec(
+        "cameras", _later("arrays.cameras", "code_deflated"), _later("arrays.cameras", "decode_deflated"),
+        "cameras-2", "1.8", ("MAX_CAMERAS",),
+    ),
     "names-1": Codec("names", code_names, decode_names, "codedNames", "1.6", ("MAX_NAMES", "MAX_CAMERAS")),
     "triangles-1": Codec(
         "triangles", _later("arrays.triangles", "code_triangles"), _later("arrays.triangles", "decode_triangles"),

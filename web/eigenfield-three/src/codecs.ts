@@ -2,7 +2,7 @@
 // schema. The compiler wants an entry for each name there.
 
 import { asAvif } from "./av1-picture.js";
-import { decodeCameras, type CodedCameras } from "./camera-decoder.js";
+import { decodeCameras, inflateCameras, type CodedCameras } from "./camera-decoder.js";
 import { SceneError } from "./errors.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
@@ -18,7 +18,7 @@ import { decodeWeights, type CodedWeights } from "./weight-decoder.js";
 /** What decodes each kind of stream; `where` is the place that a SceneError names. */
 interface Decoders {
   mesh: (bytes: Uint8Array, where: string) => DecodedMesh;
-  cameras: (bytes: Uint8Array, where: string) => CodedCameras;
+  cameras: (bytes: Uint8Array, where: string) => CodedCameras | Promise<CodedCameras>;
   names: (bytes: Uint8Array, count: number, where: string) => Promise<string[]>;
   triangles: (bytes: Uint8Array, where: string) => CodedTriangles;
   weights: (bytes: Uint8Array, where: string) => CodedWeights;
@@ -61,6 +61,7 @@ function eightBits(mimeType: schema.MimeType): BitmapCodec {
 export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
   "mesh-1": { kind: "mesh", decode: decodeMesh, needs: "codedMesh", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
   "cameras-1": { kind: "cameras", decode: decodeCameras, needs: "codedCameras", limits: ["MAX_CAMERAS"] },
+  "cameras-2": { kind: "cameras", decode: inflateCameras, needs: "cameras-2", limits: ["MAX_CAMERAS"] },
   "names-1": { kind: "names", decode: decodeNames, needs: "codedNames", limits: ["MAX_NAMES", "MAX_CAMERAS"] },
   "triangles-1": { kind: "triangles", decode: decodeTriangles, needs: "codedTriangles", limits: ["MAX_CAMERAS"] },
   "weights-1": { kind: "weights", decode: decodeWeights, needs: "codedWeights", limits: ["MAX_WEIGHTS"] },

@@ -46,6 +46,7 @@ export interface PackedJson {
 export type Feature =
   | "av1-10bit-2"
   | "bits"
+  | "cameras-2"
   | "codedCameras"
   | "codedMesh"
   | "codedNames"
@@ -64,7 +65,7 @@ export type Feature =
 export type MeshCodec = "mesh-1";
 
 /** Codecs of intrinsics and poses. */
-export type CamerasCodec = "cameras-1";
+export type CamerasCodec = "cameras-1" | "cameras-2";
 
 /** Codecs of the cameras' names. */
 export type NamesCodec = "names-1";

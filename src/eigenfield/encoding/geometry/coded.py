@@ -25,7 +25,7 @@ WORLD_STEP_PX = 0.1  # in the reference camera at the median depth, of a mesh th
 CAMERA_STEP_PX = 0.04
 UV_BITS = 12
 MESH_CODEC = "mesh-1"
-CAMERAS_CODEC = "cameras-1"
+CAMERAS_CODEC = "cameras-2"
 
 
 def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:

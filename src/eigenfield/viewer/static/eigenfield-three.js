@@ -1,7 +1,7 @@
-import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DoubleSide as c, EventDispatcher as l, ExternalTexture as u, FrontSide as d, GLSL3 as f, HalfFloatType as p, InstancedBufferGeometry as m, LinearFilter as h, LinearMipmapLinearFilter as g, Matrix4 as _, Mesh as v, MeshBasicMaterial as y, NearestFilter as b, NoBlending as x, OneFactor as S, RGBAFormat as C, RawShaderMaterial as w, Scene as T, Sphere as E, Vector2 as ee, Vector3 as D, Vector4 as te, WebGLRenderTarget as O } from "three";
-import { GLTFLoader as ne } from "three/addons/loaders/GLTFLoader.js";
+import { BufferAttribute as e, BufferGeometry as t, Camera as n, ClampToEdgeWrapping as r, Color as i, CustomBlending as a, DataArrayTexture as o, DataUtils as s, DoubleSide as c, EventDispatcher as l, ExternalTexture as u, FrontSide as d, GLSL3 as f, HalfFloatType as p, InstancedBufferGeometry as m, LinearFilter as h, LinearMipmapLinearFilter as g, Matrix4 as _, Mesh as v, MeshBasicMaterial as y, NearestFilter as b, NoBlending as x, OneFactor as S, RGBAFormat as C, RawShaderMaterial as w, Scene as T, Sphere as E, Vector2 as D, Vector3 as O, Vector4 as ee, WebGLRenderTarget as k } from "three";
+import { GLTFLoader as te } from "three/addons/loaders/GLTFLoader.js";
 // eigenfield-three/src/errors.ts
-var k = class extends Error {
+var A = class extends Error {
 	code;
 	where;
 	name = "SceneError";
@@ -9,42 +9,42 @@ var k = class extends Error {
 		super(t, r), this.code = e, this.where = n;
 	}
 };
-function A(e, t) {
-	return new k("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
+function j(e, t) {
+	return new A("damaged", `The file is damaged (${e}: ${t}); make or download it again.`, e);
 }
-function re(e, t) {
-	return new k("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
+function ne(e, t) {
+	return new A("truncated", `The file is cut off after ${e} of ${t} bytes; download or copy it again.`, String(e));
 }
-function ie(e) {
-	return new k("truncated", `The file is cut off (${e}); download or copy it again.`, e);
+function re(e) {
+	return new A("truncated", `The file is cut off (${e}); download or copy it again.`, e);
 }
-function ae(e, t = "") {
-	return e instanceof k ? e : new k("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
+function ie(e, t = "") {
+	return e instanceof A ? e : new A("damaged", `The file cannot be read (${(e instanceof Error ? e.message : String(e)).replace(/^THREE\.GLTFLoader: /, "")}); make or download it again.`, t, { cause: e });
 }
 // eigenfield-three/src/av1-picture.ts
-var oe = 1, se = 7;
-function ce(e, t) {
-	let { level: n, tier: r, width: i, height: a } = le(new Uint8Array(e), t), o = r << 7 | 76, s = j("ipco", [
-		...j("ispe", [
-			...M(0),
-			...M(i),
-			...M(a)
+var ae = 1, oe = 7;
+function se(e, t) {
+	let { level: n, tier: r, width: i, height: a } = ce(new Uint8Array(e), t), o = r << 7 | 76, s = M("ipco", [
+		...M("ispe", [
+			...N(0),
+			...N(i),
+			...N(a)
 		]),
-		...j("pixi", [
-			...M(0),
+		...M("pixi", [
+			...N(0),
 			3,
 			10,
 			10,
 			10
 		]),
-		...j("av1C", [
+		...M("av1C", [
 			129,
 			n,
 			o,
 			0
 		]),
-		...j("colr", [
-			...N("nclx"),
+		...M("colr", [
+			...P("nclx"),
 			0,
 			2,
 			0,
@@ -53,25 +53,25 @@ function ce(e, t) {
 			2,
 			128
 		])
-	]), c = j("ftyp", [
-		...N("avif"),
-		...M(0),
-		...N("avifmif1miafMA1B")
-	]), l = (t) => j("meta", [
-		...M(0),
-		...j("hdlr", [
-			...M(0),
-			...M(0),
-			...N("pict"),
+	]), c = M("ftyp", [
+		...P("avif"),
+		...N(0),
+		...P("avifmif1miafMA1B")
+	]), l = (t) => M("meta", [
+		...N(0),
+		...M("hdlr", [
+			...N(0),
+			...N(0),
+			...P("pict"),
 			...Array(13).fill(0)
 		]),
-		...j("pitm", [
-			...M(0),
+		...M("pitm", [
+			...N(0),
 			0,
 			1
 		]),
-		...j("iloc", [
-			...M(0),
+		...M("iloc", [
+			...N(0),
 			68,
 			0,
 			0,
@@ -82,14 +82,14 @@ function ce(e, t) {
 			0,
 			0,
 			1,
-			...M(t),
-			...M(e.byteLength)
+			...N(t),
+			...N(e.byteLength)
 		]),
-		...j("iinf", [
-			...M(0),
+		...M("iinf", [
+			...N(0),
 			0,
 			1,
-			...j("infe", [
+			...M("infe", [
 				2,
 				0,
 				0,
@@ -98,13 +98,13 @@ function ce(e, t) {
 				1,
 				0,
 				0,
-				...N("av01"),
+				...P("av01"),
 				0
 			])
 		]),
-		...j("iprp", [...s, ...j("ipma", [
-			...M(0),
-			...M(1),
+		...M("iprp", [...s, ...M("ipma", [
+			...N(0),
+			...N(1),
 			0,
 			1,
 			4,
@@ -116,12 +116,12 @@ function ce(e, t) {
 	]), u = c.length + l(0).length + 8, d = [
 		...c,
 		...l(u),
-		...M(8 + e.byteLength),
-		...N("mdat")
+		...N(8 + e.byteLength),
+		...P("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
-function le(e, t) {
+function ce(e, t) {
 	let n = e[0] ?? 0, r = 8 * (1 + (n >> 2 & 1) + (n >> 1 & 1)), i = (t) => {
 		let n = 0;
 		for (let i = r + t; r < i; r++) n = 2 * n + ((e[r >> 3] ?? 0) >> 7 - (r & 7) & 1);
@@ -130,8 +130,8 @@ function le(e, t) {
 	i(4);
 	let a = i(1) === 1, o = !a && i(7) !== 0;
 	a || i(12);
-	let s = i(5), c = !a && s > se ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
-	if (n >> 3 !== oe || o || r > 8 * e.length) throw A(t, "no AV1 sequence header");
+	let s = i(5), c = !a && s > oe ? i(1) : 0, [l, u] = [i(4) + 1, i(4) + 1], [d, f] = [i(l) + 1, i(u) + 1];
+	if (n >> 3 !== ae || o || r > 8 * e.length) throw j(t, "no AV1 sequence header");
 	return {
 		level: s,
 		tier: c,
@@ -139,14 +139,14 @@ function le(e, t) {
 		height: f
 	};
 }
-function j(e, t) {
+function M(e, t) {
 	return [
-		...M(8 + t.length),
-		...N(e),
+		...N(8 + t.length),
+		...P(e),
 		...t
 	];
 }
-function M(e) {
+function N(e) {
 	return [
 		24,
 		16,
@@ -154,15 +154,28 @@ function M(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function N(e) {
+function P(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
-// eigenfield-three/src/limits.ts
-var ue = "EIGENFIELD_eigen_textures", de = 64 * 2 ** 20, P = 16384, fe = 16384, pe = 1024, me = 2 ** 27, he = 4096, ge = 8 * 2 ** 30, _e = 1e5, ve = 65535, ye = 2 ** 29, F = 1024, be = 2 ** 25, xe = 2 ** 26, Se = 2 ** 27, Ce = 2 ** 28, we = 1e30, I = 65536, Te = 126, L = 64, Ee = 0, De = 1, Oe = 2, ke = 24, Ae = 44, je = 21, Me = 26214, Ne = 4, Pe = Float64Array.from({ length: 4095 }, (e, t) => Math.round(I / (1 + Math.exp((2047 - t) / 256)))), Fe = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Ie = Float64Array.from({ length: 127 }, (e, t) => Math.round(I / (t + 1.5)));
-function R(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + R(Math.floor(e / 4294967296));
+// eigenfield-three/src/inflate.ts
+async function le(e, t, n, r) {
+	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
+	try {
+		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
+	} catch {
+		throw j(r, "it does not inflate");
+	}
+	if (a > n) throw await o.cancel(), j(r, `more than ${n} bytes`);
+	let s = new Uint8Array(a), c = 0;
+	for (let e of i) s.set(e, c), c += e.length;
+	return s;
 }
-var Le = class {
+// eigenfield-three/src/limits.ts
+var ue = "EIGENFIELD_eigen_textures", de = 64 * 2 ** 20, F = 16384, fe = 16384, pe = 1024, me = 2 ** 27, he = 4096, ge = 8 * 2 ** 30, I = 1e5, _e = 65535, ve = 2 ** 29, L = 1024, ye = 2 ** 25, be = 2 ** 26, xe = 2 ** 27, Se = 2 ** 28, Ce = 1e30, R = 65536, we = 126, z = 64, Te = 0, Ee = 1, De = 2, Oe = 24, ke = 44, Ae = 21, je = 26214, Me = 4, Ne = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), Pe = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), Fe = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
+function B(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
+}
+var Ie = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -172,49 +185,49 @@ var Le = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * L).fill(I / 2), this.seen = new Uint8Array(t * L), this.weights = new Float64Array(n * L * 3).fill(Me);
-		for (let e = 0; e < Ne; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * z).fill(R / 2), this.seen = new Uint8Array(t * z), this.weights = new Float64Array(n * z * 3).fill(je);
+		for (let e = 0; e < Me; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + Ne) throw ie(e);
+		if (this.at > this.bytes.length + Me) throw re(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(I / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, De) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Ee) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Ee)) return 0;
+		if (!this.node(e, t, n, r, Te)) return 0;
 		let i = 0;
-		for (; i < je && this.node(e, t, n, r, Oe + i);) i += 1;
+		for (; i < Ae && this.node(e, t, n, r, De + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, ke + i) : o === i - 3 ? this.node(e, t, n, r, Ae + 2 * Math.min(i, 9) + (a & 1)) : this.split(I / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Oe + i) : o === i - 3 ? this.node(e, t, n, r, ke + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * L + i, t * L + i, n * L + i, (r * L + i) * 3);
+		return this.bit(e * z + i, t * z + i, n * z + i, (r * z + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = Fe[i[e] >> 4], s = Fe[i[t] >> 4], c = Fe[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / I), u = Pe[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? I - u : -u;
+		let { probability: i, weights: a } = this, o = Pe[i[e] >> 4], s = Pe[i[t] >> 4], c = Pe[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = Ne[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Ie[r] / I), r < Te && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * Fe[r] / R), r < we && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / I), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -222,26 +235,26 @@ var Le = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function Re(e, t, n) {
-	if (e.length < t) throw ie(n);
-	if (e[0] !== 1) throw A(n, `coded numbers of version ${e[0]}`);
+function V(e, t, n) {
+	if (e.length < t) throw re(n);
+	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function ze(e, t, n, r) {
-	if (t > n || t > 16 * e.length + 1024) throw A(r, `${t} numbers announced`);
+function Le(e, t, n, r) {
+	if (t > n || t > 16 * e.length + 1024) throw j(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var Be = 12, Ve = 3, He = 312, Ue = Ve * He, We = 938, Ge = 24, Ke = 16, qe = 1722, Je = 1726, Ye = 4, Xe = 5;
+var Re = 12, ze = 3, Be = 312, Ve = ze * Be, He = 938, Ue = 24, We = 16, Ge = 1722, Ke = 1726, qe = 4, Je = 5;
+function Ye(e) {
+	return new Ie(e, Ke, 21);
+}
+function Xe(e) {
+	return e.flag(Ve, Ve, Ve, ze) ? 2 : +!!e.flag(937, 937, 937, ze);
+}
 function Ze(e) {
-	return new Le(e, Je, 21);
+	return Math.min(B(e), 11);
 }
-function Qe(e) {
-	return e.flag(Ue, Ue, Ue, Ve) ? 2 : +!!e.flag(937, 937, 937, Ve);
-}
-function $e(e) {
-	return Math.min(R(e), 11);
-}
-function et(e, t, n, r) {
+function Qe(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -250,47 +263,52 @@ function et(e, t, n, r) {
 			s
 		];
 		r === 1 ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * He, y = e.integer(v + $e(m) * Be + $e(g), v + 144 + $e(m + h), v + 144 + 24 + _ * Be + $e(g + Math.abs(l)), r);
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * Be, y = e.integer(v + Ze(m) * Re + Ze(g), v + 144 + Ze(m + h), v + 144 + 24 + _ * Re + Ze(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function tt(e, t, n, r) {
+function $e(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(R(a[s]), 23), d = Math.min(R(t), 23), f = e.integer(We + l * Ge + u, We + (Ke + l) * Ge + d, 1706 + l, Xe + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(He + l * Ue + u, He + (We + l) * Ue + d, 1706 + l, Je + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function nt(e, t, n, r) {
+function et(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(qe + s, qe + s, 1724, Ye), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, Ye);
-		if (!(t >= 0 && t < n) || a[t]) throw A(r, "a grid with a camera out of place");
+		if (s = +!!e.flag(Ge + s, Ge + s, 1724, qe), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, qe);
+		if (!(t >= 0 && t < n) || a[t]) throw j(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
-	if (c !== n) throw A(r, "a grid without all cameras");
+	if (c !== n) throw j(r, "a grid without all cameras");
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var rt = 130, z = 11, it = 1, at = 2;
-function ot(e, t) {
-	let n = Re(e, rt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & it) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
-	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw A(t, "cameras that cannot be");
-	if (i > 1e5 || a && o * s < i) throw A(t, `${i} cameras`);
-	ze(e, Math.max(z * i, o * s), z * _e, t);
-	let l = rt + (a ? 132 : 0);
-	Re(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(rt + 4 * (e * z + t), !0) : 0, d = Ze(e.subarray(l)), f = a ? nt(d, o * s, i, t) : null, p = tt(d, i, z, (r & at) !== 0);
+var tt = 130, H = 11, nt = 1, rt = 2, it = 2, at = 44 * I + 1024;
+async function ot(e, t) {
+	if (e[0] !== it) throw j(t, `version ${e[0]}`);
+	let n = await le(Uint8Array.from(e.subarray(1)), "deflate-raw", at, t);
+	return st(Uint8Array.from([1, ...n]), t);
+}
+function st(e, t) {
+	let n = V(e, tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & nt) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw j(t, "cameras that cannot be");
+	if (i > 1e5 || a && o * s < i) throw j(t, `${i} cameras`);
+	Le(e, Math.max(H * i, o * s), H * I, t);
+	let l = tt + (a ? 132 : 0);
+	V(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(tt + 4 * (e * H + t), !0) : 0, d = Ye(e.subarray(l)), f = a ? et(d, o * s, i, t) : null, p = $e(d, i, H, (r & rt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -301,27 +319,27 @@ function ot(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = ct(c[3], c[4], c[5], c[6]), _ = new Float64Array(z), v = 0;
+	], g = lt(c[3], c[4], c[5], c[6]), _ = new Float64Array(H), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < z; e++) {
+		for (let e = 0; e < H; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * z + e] * t + h[e] + i;
+			_[e] = p[v * H + e] * t + h[e] + i;
 		}
-		st(_, g, m, t), v += 1;
+		ct(_, g, m, t), v += 1;
 	}
-	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw A(t, "cameras that are not finite");
+	if (!m.intrinsics.every(Number.isFinite) || !m.poses.every(Number.isFinite)) throw j(t, "cameras that are not finite");
 	return m;
 }
-function st(e, t, n, r) {
+function ct(e, t, n, r) {
 	n.intrinsics.set(e.subarray(0, 5), 5 * r);
 	let [i, a, o] = [
 		e[5],
 		e[6],
 		e[7]
-	], s = i * i + a * a + o * o, c = 1 + s, l = ct(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
+	], s = i * i + a * a + o * o, c = 1 + s, l = lt(2 * i / c, 2 * a / c, 2 * o / c, (1 - s) / c);
 	for (let i = 0; i < 3; i++) {
 		let a = 0;
 		for (let o = 0; o < 3; o++) {
@@ -332,7 +350,7 @@ function st(e, t, n, r) {
 		n.poses[12 * r + 4 * i + 3] = a;
 	}
 }
-function ct(e, t, n, r) {
+function lt(e, t, n, r) {
 	return [
 		[
 			1 - 2 * (t * t + n * n),
@@ -351,7 +369,7 @@ function ct(e, t, n, r) {
 		]
 	].flat();
 }
-var lt = 2 ** 24, ut = class {
+var ut = 2 ** 24, dt = class {
 	points;
 	start;
 	end;
@@ -418,7 +436,7 @@ var lt = 2 ** 24, ut = class {
 	add(e, t, n) {
 		let { heap: r, key: i, points: a } = this, o = this.gates++;
 		this.start[o] = e, this.end[o] = t, this.opposite[o] = n, this.status[o] = 1, this.into[t] = o;
-		let s = (a[3 * e] + a[3 * t]) * lt + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
+		let s = (a[3 * e] + a[3 * t]) * ut + a[3 * e + 1] + a[3 * t + 1], c = this.waiting++;
 		for (; c > 0;) {
 			let e = c - 1 >> 1;
 			if (i[e] <= s) break;
@@ -426,57 +444,57 @@ var lt = 2 ** 24, ut = class {
 		}
 		return r[c] = o, i[c] = s, o;
 	}
-}, dt = 2 ** 20, ft = .8, pt = 44, mt = 385, ht = 897, gt = 1086, _t = 1095, [vt, yt, bt, xt, St] = [
+}, ft = 2 ** 20, pt = .8, mt = 44, ht = 385, gt = 897, _t = 1086, vt = 1095, [yt, bt, xt, St, Ct] = [
 	0,
 	1,
 	2,
 	3,
 	15
 ];
-function Ct(e) {
-	return Math.floor(Math.min(Math.max(e, -dt), dt) + .5);
+function wt(e) {
+	return Math.floor(Math.min(Math.max(e, -ft), ft) + .5);
 }
-function wt(e, t, n) {
+function Tt(e, t, n) {
 	let r = Math.max((1 << n) - 1, 1);
 	return (e[3 * t] & r ? 1 : 0) + (e[3 * t + 1] & r ? 2 : 0);
 }
-function Tt(e, t, n, r, i) {
-	i.flat ? Et(e, t, n, r, i.fine) : Dt(e, t, n, r);
-}
 function Et(e, t, n, r, i) {
+	i.flat ? Dt(e, t, n, r, i.fine) : Ot(e, t, n, r);
+}
+function Dt(e, t, n, r, i) {
 	let { a, b: o, o: s, pair: c } = r, [l, u, d, f] = [
 		t[3 * a],
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? ft : -.8, _ = 1 << i >> 1, v = Ct((l + d) * .5 + g * m) + _ >> i, y = Ct((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(R(Math.floor((p * p + m * m) / b)), 23), S = Math.min(R(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, vt), T = Math.min(R(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), te = e.integer(mt + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, yt);
-	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + te << i, i === 0) return;
-	let O = wt(t, a, i) + 4 * wt(t, o, i);
-	if (e.flag(ht + O, 913 + wt(t, s, i), 917 + c, St)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? pt : -.8, _ = 1 << i >> 1, v = wt((l + d) * .5 + g * m) + _ >> i, y = wt((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, yt), T = Math.min(B(Math.abs(w)), 7), [E, D] = [577, 705], O = T * 2 + +(w > 0), ee = e.integer(ht + x * 8 + C, E + O * 8 + C, D + S * 8 + T, bt);
+	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + ee << i, i === 0) return;
+	let k = Tt(t, a, i) + 4 * Tt(t, o, i);
+	if (e.flag(gt + k, 913 + Tt(t, s, i), 917 + c, Ct)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
 }
-function Dt(e, t, n, { a: r, b: i, o: a }) {
+function Ot(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(R(o), 43), c = 0;
+	let s = Math.min(B(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
-		let l = Ct(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, pt + o * 24 + c, 116 + o * pt + s, bt);
-		t[3 * n + o] = l + u, c = Math.min(R(Math.abs(u)), 23);
+		let l = wt(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, mt + o * 24 + c, 116 + o * mt + s, xt);
+		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
 	}
 }
-function Ot(e, t, n, r, i) {
+function kt(e, t, n, r, i) {
 	for (let a = 0; a < (i ? 2 : 3); a++) {
-		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -dt), dt) : 0, o = gt + a;
-		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, xt);
+		let i = r >= 0 ? Math.min(Math.max(t[3 * r + a], -ft), ft) : 0, o = _t + a;
+		t[3 * n + a] = i + e.integer(o, o + 3, o + 6, St);
 	}
 }
 // eigenfield-three/src/mesh-faces.ts
-var kt = 13, At = 11, jt = 12, B = 169, Mt = 8, Nt = _t, Pt = Nt + B + 104 + 26, Ft = Pt + B + 104 + kt, It = Ft + 64 + 64 + B, Lt = It + B + 4 + 1, Rt = Lt + 6, [zt, Bt, Vt, Ht, Ut] = [
+var At = 13, jt = 11, Mt = 12, U = 169, Nt = 8, Pt = vt, Ft = Pt + U + 104 + 26, It = Ft + U + 104 + At, Lt = It + 64 + 64 + U, Rt = Lt + U + 4 + 1, zt = Rt + 6, [Bt, Vt, Ht, Ut, Wt] = [
 	4,
 	5,
 	6,
 	7,
 	8
-], Wt = [
+], Gt = [
 	-1,
 	-.4,
 	0,
@@ -487,12 +505,12 @@ var kt = 13, At = 11, jt = 12, B = 169, Mt = 8, Nt = _t, Pt = Nt + B + 104 + 26,
 	2,
 	4
 ];
-function Gt(e, t, n, r, i) {
+function Kt(e, t, n, r, i) {
 	let a = new Int32Array(3 * t), o = {
 		points: a,
 		faces: new Int32Array(3 * n),
 		parents: new Int32Array(3 * t).fill(-1)
-	}, s = new Int32Array(t), c = new ut(a, n), [l, u] = [0, 0], d = (e, t, n) => {
+	}, s = new Int32Array(t), c = new dt(a, n), [l, u] = [0, 0], d = (e, t, n) => {
 		o.faces.set([
 			e,
 			t,
@@ -504,11 +522,11 @@ function Gt(e, t, n, r, i) {
 			n
 		]) s[r] += 1;
 	}, f = () => {
-		if (l >= t) throw A(i, "more places than announced");
+		if (l >= t) throw j(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(R(l - 1));
-		if (t >= l) throw A(i, "a place that is not there yet");
+		let t = e.raw(B(l - 1));
+		if (t >= l) throw j(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
 		let t = [
@@ -516,56 +534,56 @@ function Gt(e, t, n, r, i) {
 			-1,
 			-1
 		];
-		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Lt + n, Lt + 3 + n, Lt + n, Ut)) t[n] = p();
+		for (let n = 0; n < 3; n++) if (l > 0 && e.flag(Rt + n, Rt + 3 + n, Rt + n, Wt)) t[n] = p();
 		else {
 			let i = t[n] = f();
-			Ot(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
+			kt(e, a, i, n > 0 ? t[n - 1] : i - 1, r.flat);
 		}
 		let [n, o, s] = t;
-		if (n === o || o === s || s === n) throw A(i, "a face of two corners");
+		if (n === o || o === s || s === n) throw j(i, "a face of two corners");
 		d(n, o, s), c.seed(t);
-	}, h = (e, t, n, i) => c.status[t] === 2 ? jt : c.status[t] !== 1 || n === i || t === e ? At : Kt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
+	}, h = (e, t, n, i) => c.status[t] === 2 ? Mt : c.status[t] !== 1 || n === i || t === e ? jt : qt(a, c.start[e], c.end[e], n, c.opposite[e], r.flat);
 	for (; u < n;) {
 		let t = c.next();
 		if (t < 0) {
 			m();
 			continue;
 		}
-		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * kt + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Nt + B + 104 + 2 * y + +(_ === v);
-		if (y < At && e.flag(Nt + x, Nt + B + y * Mt + S, w, zt)) {
+		let [n, l] = [c.start[t], c.end[t]], [u, g] = [c.before[t], c.after[t]], [_, v] = [c.start[u], c.end[g]], [y, b] = [h(t, u, _, l), h(t, g, v, n)], x = y * At + b, [S, C] = [Math.min(s[n], 7), Math.min(s[l], 7)], w = Pt + U + 104 + 2 * y + +(_ === v);
+		if (y < jt && e.flag(Pt + x, Pt + U + y * Nt + S, w, Bt)) {
 			d(l, n, _), c.closeLeft(t);
 			continue;
 		}
-		if (b < At && (v !== _ || y >= At) && e.flag(Pt + x, Pt + B + b * Mt + C, Pt + B + 104 + b, Bt)) {
+		if (b < jt && (v !== _ || y >= jt) && e.flag(Ft + x, Ft + U + b * Nt + C, Ft + U + 104 + b, Vt)) {
 			d(l, n, v), c.closeRight(t);
 			continue;
 		}
-		let T = +(y === jt) + (b === jt ? 2 : 0), E = wt(a, n, r.fine) + 4 * wt(a, l, r.fine), ee = Ft + 64 + S * Mt + C;
-		if (e.flag(Ft + T * 16 + E, ee, Ft + 64 + 64 + x, Vt)) {
+		let T = +(y === Mt) + (b === Mt ? 2 : 0), E = Tt(a, n, r.fine) + 4 * Tt(a, l, r.fine), D = It + 64 + S * Nt + C;
+		if (e.flag(It + T * 16 + E, D, It + 64 + 64 + x, Ht)) {
 			c.status[t] = 2;
 			continue;
 		}
-		let D;
-		if (e.flag(It + x, It + B + T, It + B + 4, Ht)) {
-			D = f();
+		let O;
+		if (e.flag(Lt + x, Lt + U + T, Lt + U + 4, Ut)) {
+			O = f();
 			let i = c.opposite[t];
 			o.parents.set([
 				n,
 				l,
 				i
-			], 3 * D), Tt(e, a, D, {
+			], 3 * O), Et(e, a, O, {
 				a: n,
 				b: l,
 				o: i,
 				pair: x
 			}, r);
-		} else if (D = p(), D === n || D === l) throw A(i, "a face of two corners");
-		d(l, n, D), c.openOut(t, D);
+		} else if (O = p(), O === n || O === l) throw j(i, "a face of two corners");
+		d(l, n, O), c.openOut(t, O);
 	}
-	if (l !== t) throw A(i, "fewer places than announced");
+	if (l !== t) throw j(i, "fewer places than announced");
 	return o;
 }
-function Kt(e, t, n, r, i, a) {
+function qt(e, t, n, r, i, a) {
 	let o = (n, r) => a && r === 2 ? 0 : e[3 * n + r] - e[3 * t + r], [s, c, l] = [
 		o(n, 0),
 		o(n, 1),
@@ -588,21 +606,21 @@ function Kt(e, t, n, r, i, a) {
 		s * m - c * p
 	], S = Math.sqrt(g * g + _ * _ + v * v);
 	if (S === 0 || g * y + _ * b + v * x > 0) return 0;
-	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Wt.findIndex((e) => C < e);
+	let C = (u * (u - s) + d * (d - c) + f * (f - l)) / S, w = Gt.findIndex((e) => C < e);
 	return w < 0 ? 10 : w + 1;
 }
 // eigenfield-three/src/mesh-corners.ts
-var qt = 32, Jt = 4, [Yt, Xt, Zt, Qt] = [
+var Jt = 32, Yt = 4, [Xt, Zt, Qt, $t] = [
 	0,
 	1,
 	2,
 	3
-], $t = Rt, en = $t + 64 + 12 + 16, V = en + Jt + 1, tn = V + 4, [nn, rn, an] = [
+], en = zt, tn = en + 64 + 12 + 16, W = tn + Yt + 1, nn = W + 4, [rn, an, on] = [
 	9,
 	10,
 	11
 ];
-function on(e, t) {
+function sn(e, t) {
 	let n = new Int32Array(t + 1);
 	for (let t of e) n[t + 1] += 1;
 	for (let e = 0; e < t; e++) n[e + 1] += n[e];
@@ -612,7 +630,7 @@ function on(e, t) {
 		corners: i
 	};
 }
-function sn(e, t, n, r, i, a) {
+function cn(e, t, n, r, i, a) {
 	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
 		faces: new Int32Array(3 * o),
 		place: new Int32Array(n),
@@ -627,7 +645,7 @@ function sn(e, t, n, r, i, a) {
 		0,
 		0,
 		0
-	], p = new Int32Array(Jt), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], p = new Int32Array(Yt), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
 		0,
 		0,
 		-1
@@ -636,7 +654,7 @@ function sn(e, t, n, r, i, a) {
 		return -1;
 	}, y = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
-		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + qt); t++) {
+		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Jt); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
 			if (v(n, o) >= 0) return n;
@@ -645,47 +663,47 @@ function sn(e, t, n, r, i, a) {
 	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
 		let i = t.faces[3 * n + r], o = l[i];
 		if (o < 0) return -1;
-		m.fill(Qt);
+		m.fill($t);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
 			if (d[e] < 0) continue;
 			let t = b(d[e], i);
 			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
 		}
-		for (let e = 0; e < qt && s < Jt && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
+		for (let e = 0; e < Jt && s < Yt && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
 		let g = -1;
 		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = $t + 76 + Math.min(s, 3) * 4 + n;
-			e.flag($t + t * 16 + n * 4 + i, $t + 64 + t * 3 + r, a, nn) && (g = p[t]);
+			let [n, i] = [m[2 * t], m[2 * t + 1]], a = en + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(en + t * 16 + n * 4 + i, en + 64 + t * 3 + r, a, rn) && (g = p[t]);
 		}
 		if (g < 0) {
-			if (e.flag(en + s, en + s, en + Jt, rn)) return -1;
-			if (g = e.raw(R(h - 1)), g >= h || c.place[g] !== i) throw A(a, "a corner that is elsewhere");
+			if (e.flag(tn + s, tn + s, tn + Yt, an)) return -1;
+			if (g = e.raw(B(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Xt : Zt);
+		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Zt : Qt);
 		return g;
 	}, S = () => {
 		let t = g++;
-		if (!e.flag(V, V, V, an)) return c.kinds[t] = e.flag(V + 1, V + 1, V + 1, an) ? 2 : 0, t;
+		if (!e.flag(W, W, W, on)) return c.kinds[t] = e.flag(W + 1, W + 1, W + 1, on) ? 2 : 0, t;
 		c.kinds[t] = 1;
 		let n = _;
-		if (_ = t, n >= 0 && e.flag(V + 2, V + 2, V + 2, an)) {
-			let n = e.raw(R(t - 1));
-			if (n >= t || c.kinds[n] !== 1) throw A(a, "a map that is not there");
+		if (_ = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, on)) {
+			let n = e.raw(B(t - 1));
+			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
 			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
-		let r = n >= 0 && e.flag(V + 3, V + 3, V + 3, an);
+		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, on);
 		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
 		return t;
 	};
 	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Yt;
+		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Xt;
 		let r = -1, i = [];
 		for (let o = 0; o < 3; o++) {
 			let s = x(e, o);
 			if (s >= 0) r = c.chart[s];
 			else {
-				if (h >= n) throw A(a, "more vertices than announced");
+				if (h >= n) throw j(a, "more vertices than announced");
 				s = h++;
 				let r = t.faces[3 * e + o];
 				c.place[s] = r, u[s] = l[r], l[r] = s, i.push(s);
@@ -695,11 +713,11 @@ function sn(e, t, n, r, i, a) {
 		r < 0 && (r = S());
 		for (let e of i) c.chart[e] = r;
 	}
-	if (h !== n) throw A(a, "fewer vertices than announced");
+	if (h !== n) throw j(a, "fewer vertices than announced");
 	return c;
 }
 // eigenfield-three/src/mesh-values.ts
-var cn = 16, ln = 6, un = 13, dn = 14, fn = 20, pn = tn, mn = pn + 169 + 280 + 182, hn = mn + 144 + 576 + 48, [gn, _n] = [12, 13], vn = [
+var ln = 16, un = 6, dn = 13, fn = 14, pn = 20, mn = nn, hn = mn + 169 + 280 + 182, gn = hn + 144 + 576 + 48, [_n, vn] = [12, 13], yn = [
 	.5,
 	1.5,
 	3,
@@ -707,14 +725,14 @@ var cn = 16, ln = 6, un = 13, dn = 14, fn = 20, pn = tn, mn = pn + 169 + 280 + 1
 	12,
 	30
 ];
-function yn(e, t) {
-	return Ct(Number.isNaN(e) ? t : e);
+function bn(e, t) {
+	return wt(Number.isNaN(e) ? t : e);
 }
-function bn(e) {
-	let t = vn.filter((t) => Math.abs(e) >= t).length;
-	return e < 0 ? ln - t : ln + t;
+function xn(e) {
+	let t = yn.filter((t) => Math.abs(e) >= t).length;
+	return e < 0 ? un - t : un + t;
 }
-function xn(e, t, n, r) {
+function Sn(e, t, n, r) {
 	let { points: i, faces: a, parents: o } = t, s = /* @__PURE__ */ new Float64Array(9), c = (e) => i[3 * e], l = (e) => i[3 * e + 1], u = (e) => i[3 * e + 2], d = (e, t) => {
 		let [n, r, i] = [
 			c(t) - c(e),
@@ -735,18 +753,18 @@ function xn(e, t, n, r) {
 			Infinity,
 			-Infinity
 		];
-		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + cn); e++) for (let i = 1; i < 3; i++) {
-			let o = Sn(a, r[e], i);
+		for (let e = n[t]; e < Math.min(n[t + 1], n[t] + ln); e++) for (let i = 1; i < 3; i++) {
+			let o = Cn(a, r[e], i);
 			if (o >= t) continue;
 			let s = d(t, o);
 			h += s * u(o), g += s, _ = Math.min(_, u(o)), v = Math.max(v, u(o));
-			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + cn); e++) for (let n = 1; n < 3; n++) {
-				let i = Sn(a, r[e], n);
+			for (let e = n[o]; e < Math.min(n[o + 1], n[o] + ln); e++) for (let n = 1; n < 3; n++) {
+				let i = Cn(a, r[e], n);
 				i < t && d(t, i);
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(R(v - _), 12), b = h / g, x = Math.min(Math.max(Cn(s), p), m));
+		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(wn(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -764,15 +782,15 @@ function xn(e, t, n, r) {
 				S = Math.min(Math.max(u(C) + t * (u(w) - u(C)) + c * (u(T) - u(C)), p), m);
 			}
 		}
-		let E = yn(x, b), [ee, D] = [bn(S - E), bn(b - E)], te = e.integer(pn + ee * un + D, pn + 169 + y * fn + f, pn + 169 + 280 + ee * dn + y, gn), O = E + te;
-		i[3 * t + 2] = O, f = Math.min(R(Math.abs(te)), 19), p = t === 0 ? O : Math.min(p, O), m = t === 0 ? O : Math.max(m, O);
+		let E = bn(x, b), [D, O] = [xn(S - E), xn(b - E)], ee = e.integer(mn + D * dn + O, mn + 169 + y * pn + f, mn + 169 + 280 + D * fn + y, _n), k = E + ee;
+		i[3 * t + 2] = k, f = Math.min(B(Math.abs(ee)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
-function Sn(e, t, n) {
+function Cn(e, t, n) {
 	let r = t % 3;
 	return e[t - r + (r + n) % 3];
 }
-function Cn(e) {
+function wn(e) {
 	let [t, n, r] = [
 		e[0],
 		e[1],
@@ -792,7 +810,7 @@ function Cn(e) {
 	];
 	return (s * u - c * d + l * f) / (t * u - n * d + r * f);
 }
-function wn(e, t, n, r, i) {
+function Tn(e, t, n, r, i) {
 	let { faces: a, chart: o, kinds: s, place: c } = t, l = new Int32Array(2 * c.length), u = [0, 0], d = -1;
 	for (let t = 0; t < c.length; t++) {
 		let f = s[o[t]];
@@ -804,25 +822,25 @@ function wn(e, t, n, r, i) {
 			-1,
 			0
 		];
-		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + cn); e++) {
-			let [r, s] = [Sn(a, i[e], 1), Sn(a, i[e], 2)];
+		for (let e = r[t]; e < Math.min(r[t + 1], r[t] + ln); e++) {
+			let [r, s] = [Cn(a, i[e], 1), Cn(a, i[e], 2)];
 			if (r < t && o[r] === o[t] && (g = Math.max(g, r)), s < t && o[s] === o[t] && (g = Math.max(g, s)), r >= t || s >= t) continue;
-			let [u, d] = Tn(n, c, l, t, r, s, f === 2);
+			let [u, d] = En(n, c, l, t, r, s, f === 2);
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, R(v));
+			_ = Math.max(_, B(v));
 		}
 		g < 0 && (g = d), d = t;
-		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = mn + 144;
+		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = hn + 144;
 		for (let n = 0; n < 2; n++) {
-			let r = e.integer(mn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], _n + n);
-			l[2 * t + n] = yn(y[n], 0) + r, u[n] = Math.min(R(Math.abs(r)), 23);
+			let r = e.integer(hn + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], vn + n);
+			l[2 * t + n] = bn(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
 		}
 	}
 	return l;
 }
-function Tn(e, t, n, r, i, a, o) {
+function En(e, t, n, r, i, a, o) {
 	let [s, c, l] = [
 		0,
 		0,
@@ -836,9 +854,9 @@ function Tn(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var En = 144, Dn = 18, On = 8;
-function kn(e, t) {
-	let n = Re(e, En, t), [r, i, a] = [
+var Dn = 144, On = 18, kn = 8;
+function An(e, t) {
+	let n = V(e, Dn, t), [r, i, a] = [
 		n.getUint8(1),
 		n.getUint8(2),
 		n.getUint8(3)
@@ -847,19 +865,19 @@ function kn(e, t) {
 		8,
 		12
 	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
-	if (o > xe || c > xe || s > Se) throw A(t, `${c} vertices and ${s} faces`);
-	if (ze(e, Math.max(o, s, c), Se, t), r > 1 || a > On * r || i < 1 || i > Dn || !l.every(Number.isFinite)) throw A(t, "a lattice that cannot be");
-	let u = new Le(e.subarray(En), hn, 16), d = Gt(u, o, s, {
+	if (o > be || c > be || s > xe) throw j(t, `${c} vertices and ${s} faces`);
+	if (Le(e, Math.max(o, s, c), xe, t), r > 1 || a > kn * r || i < 1 || i > On || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let u = new Ie(e.subarray(Dn), gn, 16), d = Kt(u, o, s, {
 		flat: r === 1,
 		fine: a
 	}, t);
 	u.checkEnd(t);
-	let f = on(d.faces, o);
-	r && xn(u, d, f.first, f.corners);
-	let p = sn(u, d, c, f.first, f.corners, t), m = An(d.points, l), h = on(p.faces, c), g = wn(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), Mn(jn(d, p, m, g, 2 ** i), t);
+	let f = sn(d.faces, o);
+	r && Sn(u, d, f.first, f.corners);
+	let p = cn(u, d, c, f.first, f.corners, t), m = jn(d.points, l), h = sn(p.faces, c), g = Tn(u, p, m, h.first, h.corners);
+	return u.checkEnd(t), Nn(Mn(d, p, m, g, 2 ** i), t);
 }
-function An(e, t) {
+function jn(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -867,7 +885,7 @@ function An(e, t) {
 	}
 	return n;
 }
-function jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
+function Mn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
 		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
@@ -882,29 +900,16 @@ function jn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
 		indices: new Uint32Array(t)
 	};
 }
-function Mn(e, t) {
-	let n = (e) => Math.abs(e) <= we;
-	if (!e.positions.every(n) || !e.uv.every(n)) throw A(t, "positions or texture coordinates that are not finite");
+function Nn(e, t) {
+	let n = (e) => Math.abs(e) <= Ce;
+	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
 	return e;
 }
-// eigenfield-three/src/inflate.ts
-async function Nn(e, t, n, r) {
-	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
-	try {
-		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
-	} catch {
-		throw A(r, "it does not inflate");
-	}
-	if (a > n) throw await o.cancel(), A(r, `more than ${n} bytes`);
-	let s = new Uint8Array(a), c = 0;
-	for (let e of i) s.set(e, c), c += e.length;
-	return s;
-}
 // eigenfield-three/src/name-decoder.ts
-var Pn = 4 * F;
+var Pn = 4 * L;
 async function Fn(e, t, n) {
-	let r = Math.min(be, Pn * t), i = await Nn(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
-	if (a === 0 || !Number.isInteger(a)) throw A(n, `${i.length} bytes of ${t} names`);
+	let r = Math.min(ye, Pn * t), i = await le(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	if (a === 0 || !Number.isInteger(a)) throw j(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
 		ignoreBOM: !0
@@ -916,7 +921,7 @@ async function Fn(e, t, n) {
 		try {
 			c.push(o.decode(s.subarray(0, r)));
 		} catch {
-			throw A(n, "names that are not UTF-8");
+			throw j(n, "names that are not UTF-8");
 		}
 	}
 	return c;
@@ -931,7 +936,7 @@ function In(e) {
 		throw e;
 	}
 }
-function H(e, t) {
+function G(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -940,7 +945,7 @@ function H(e, t) {
 	].map((n) => e.getUint8(t + n)));
 }
 function Ln(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || H(e, 12) !== "IHDR" ? null : {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || G(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
@@ -971,11 +976,11 @@ function Rn(e) {
 	}
 }
 function zn(e) {
-	if (H(e, 0) !== "RIFF" || H(e, 8) !== "WEBP") return null;
+	if (G(e, 0) !== "RIFF" || G(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = H(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = G(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -996,10 +1001,10 @@ function zn(e) {
 	} : null;
 }
 function Bn(e) {
-	if (H(e, 4) !== "ftyp") return null;
+	if (G(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = H(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = G(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1031,12 +1036,12 @@ var Vn = {
 };
 function Un(e, t, n) {
 	let r = In(e);
-	if (!r) throw A(t.where, "no picture");
+	if (!r) throw j(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
-	if (n && (i !== n[0] || a !== n[1])) throw A(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
-	if (t.codec.bits !== 8 && t.codec.bits !== o) throw A(t.where, `no picture of ${t.codec.bits} bits`);
+	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
+	if (t.codec.bits !== 8 && t.codec.bits !== o) throw j(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > me) throw A(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > me) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 async function Wn(e, t, n, r) {
@@ -1051,10 +1056,10 @@ async function Wn(e, t, n, r) {
 			...c
 		});
 	} catch (e) {
-		throw await Kn(l) ? A(t.where, "it cannot be decoded") : qn(l, t, e);
+		throw await Kn(l) ? j(t.where, "it cannot be decoded") : qn(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
-	throw u.close(), A(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
+	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
 var Gn = async (e, t, n, r = 1) => {
 	let i = t.pieces * t.textures, [a, o] = Un(e, t, n && [n[0], i * n[1]]), s = await Wn(e, t, [a, o], i === 1 ? r : 1);
@@ -1092,7 +1097,7 @@ async function Kn(e) {
 	}
 }
 function qn(e, t, n) {
-	return new k("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
+	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
 var Jn = /* @__PURE__ */ new Set([
@@ -1161,32 +1166,32 @@ function Zn(e, t, n, r) {
 // eigenfield-three/src/triangle-decoder.ts
 var Qn = 5;
 function $n(e, t) {
-	let n = Re(e, Qn, t).getUint32(1, !0);
-	ze(e, 3 * n, 6 * _e, t);
-	let r = Ze(e.subarray(Qn)), i = tt(r, n, 3, !0);
+	let n = V(e, Qn, t).getUint32(1, !0);
+	Le(e, 3 * n, 6 * I, t);
+	let r = Ye(e.subarray(Qn)), i = $e(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
-	if (!a.every((e) => e >= 0 && e < 1e5)) throw A(t, "triangles of cameras that there cannot be");
+	if (!a.every((e) => e >= 0 && e < 1e5)) throw j(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
 var er = 14, tr = 2 ** 20;
 function nr(e, t) {
-	let n = Re(e, er, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
-	if (n.getUint8(1) > 1 || i === 0) throw A(t, "weights of no camera, or of an unknown kind");
-	ze(e, o * s * Math.max(a, 1), Ce, t), Re(e, er + 4 * a, t);
+	let n = V(e, er, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
+	Le(e, o * s * Math.max(a, 1), Se, t), V(e, er + 4 * a, t);
 	let c = o * s;
-	if (c < i) throw A(t, "a grid with too few cells");
-	let l = Ze(e.subarray(er + 4 * a)), u = r ? nt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	if (c < i) throw j(t, "a grid with too few cells");
+	let l = Ye(e.subarray(er + 4 * a)), u = r ? et(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
 	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * tr * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(er + 4 * e, !0);
-		if (!(r > 0 && r < Infinity)) throw A(t, "a step that is not positive");
-		let i = Qe(l), h = et(l, s, f[i], i);
-		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw A(t, `numbers of component ${e} that cannot be`);
+		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
+		let i = Xe(l), h = Qe(l, s, f[i], i);
+		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? rr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
@@ -1195,7 +1200,7 @@ function nr(e, t) {
 		}
 		l.checkEnd(t);
 	}
-	if (!p.every(Number.isFinite)) throw A(t, "weights that are not finite");
+	if (!p.every(Number.isFinite)) throw j(t, "weights that are not finite");
 	return {
 		cameras: i,
 		components: a,
@@ -1222,7 +1227,7 @@ function ir(e) {
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function U(e) {
+function ar(e) {
 	let [t, n] = [Gn, Gn];
 	return {
 		kind: "picture",
@@ -1238,17 +1243,23 @@ function U(e) {
 		bits: 8
 	};
 }
-var W = {
+var K = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: kn,
+		decode: An,
 		needs: "codedMesh",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
 		kind: "cameras",
-		decode: ot,
+		decode: st,
 		needs: "codedCameras",
+		limits: ["MAX_CAMERAS"]
+	},
+	"cameras-2": {
+		kind: "cameras",
+		decode: ot,
+		needs: "cameras-2",
 		limits: ["MAX_CAMERAS"]
 	},
 	"names-1": {
@@ -1269,43 +1280,43 @@ var W = {
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: U("image/png"),
-	webp: U("image/webp"),
-	avif: U("image/avif"),
-	jpeg: U("image/jpeg"),
+	png: ar("image/png"),
+	webp: ar("image/webp"),
+	avif: ar("image/avif"),
+	jpeg: ar("image/jpeg"),
 	"av1-10bit-1": {
-		...U("image/avif"),
+		...ar("image/avif"),
 		bits: 10,
 		decode: Yn,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...U("video/AV1"),
+		...ar("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => Yn(ce(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => Gn(ce(e, t.where), t, n, r),
+		decode: (e, t, n, r) => Yn(se(e, t.where), t, n, r),
+		bitmaps: (e, t, n, r) => Gn(se(e, t.where), t, n, r),
 		needs: "av1-10bit-2"
 	}
-}, ar = {
+}, or = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function or(e, t, n) {
-	let r = t.exists ? t.text(F) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+function sr(e, t, n) {
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(K, r) ? K[r] : null;
 	if (i?.kind === e) return i;
-	throw new k("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
+	throw new A("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function sr(e, t) {
-	return Object.keys(W).find((n) => {
-		let r = W[n];
+function cr(e, t) {
+	return Object.keys(K).find((n) => {
+		let r = K[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var G = class e {
+var q = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1336,7 +1347,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -we, t = we) {
+	number(e = -Ce, t = Ce) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1346,7 +1357,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -we, n = we) {
+	numbers(e, t = -Ce, n = Ce) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1360,27 +1371,27 @@ var G = class e {
 		];
 	}
 	wrong(e) {
-		return A(this.where || "/", this.exists ? e : "missing");
+		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, cr = 5121, lr = 5123, ur = 5125, K = 5126, dr = {
-	[cr]: 1,
-	[lr]: 2,
-	[ur]: 4,
-	[K]: 4
-}, fr = /* @__PURE__ */ new Set([
+}, lr = 5121, ur = 5123, dr = 5125, J = 5126, fr = {
+	[lr]: 1,
+	[ur]: 2,
+	[dr]: 4,
+	[J]: 4
+}, pr = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), pr = {
+]), mr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function mr(e) {
+function hr(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(P).map((e) => {
+	return e.key("bufferViews").items(F).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1392,11 +1403,11 @@ function mr(e) {
 		return i;
 	});
 }
-function hr(e) {
+function gr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function gr(e, t) {
-	let n = e.key("accessors").items(P);
+function _r(e, t) {
+	let n = e.key("accessors").items(F);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1406,14 +1417,14 @@ function gr(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = pr[r] ?? 1, u = o.key("count").integer(1, Ce);
+		let l = mr[r] ?? 1, u = o.key("count").integer(1, Se);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = dr[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = fr[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % dr[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % fr[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1424,40 +1435,40 @@ function gr(e, t) {
 		};
 	};
 }
-function _r(e, t, n) {
-	let r = typeof t.raw == "number" && fr.has(e), i = or(e, r ? new G(void 0, t.where) : t.key("codec"), ar[e]);
+function vr(e, t, n) {
+	let r = typeof t.raw == "number" && pr.has(e), i = sr(e, r ? new q(void 0, t.where) : t.key("codec"), or[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function vr(e, t, n) {
+async function yr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
-	if (r.byteLength < i) throw ie(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + dr[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : yr(new Float32Array(l), e.where);
+	if (r.byteLength < i) throw re(e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + fr[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : br(new Float32Array(l), e.where);
 }
-function yr(e, t) {
-	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw A(t, `${n} among its numbers`);
+function br(e, t) {
+	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var q = 8, br = 16;
-function xr(e, t) {
-	return new k("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
+var Y = 8, xr = 16;
+function Sr(e, t) {
+	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Sr(e, t = fe) {
+function Cr(e, t = fe) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > me) throw e.wrong(`more than ${me} texels`);
 	return [n, r];
 }
-function Cr(e, t, n, r, i) {
+function wr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = jr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Nr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Mr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Pr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1467,7 +1478,7 @@ function Cr(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === q ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Y ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
@@ -1475,7 +1486,7 @@ function Cr(e, t, n, r, i) {
 	if (s > ge) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function wr(e, t) {
+function Tr(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1507,11 +1518,11 @@ function wr(e, t) {
 			1
 		]
 	];
-	throw xr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Sr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Tr(e, t, n, r, i, a = !1) {
-	let o = Er(e), s = t === 3 && o.bits === q ? 1 : t;
-	r && Pr(e, s * n, r);
+function Er(e, t, n, r, i, a = !1) {
+	let o = Dr(e), s = t === 3 && o.bits === Y ? 1 : t;
+	r && Fr(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1519,71 +1530,71 @@ function Tr(e, t, n, r, i, a = !1) {
 		pieces: s,
 		where: e.where
 	};
-	return a && o.bits === q && !c.exists && !l.exists ? {
+	return a && o.bits === Y && !c.exists && !l.exists ? {
 		...u,
-		...Dr(t)
+		...Or(t)
 	} : {
 		...u,
-		scale: Ar(c, t, n),
-		zero: Ar(l, t, n)
+		scale: jr(c, t, n),
+		zero: jr(l, t, n)
 	};
 }
-function Er(e) {
-	let t = e.key("mimeType").text(F);
-	if (!sr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, br) : q, i = sr(t, r);
+function Dr(e) {
+	let t = e.key("mimeType").text(L);
+	if (!cr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, xr) : Y, i = cr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = or("picture", a, i);
+	let a = e.key("codec"), o = sr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Dr(e) {
+function Or(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function Or(e) {
-	return e.some(({ codec: e }) => e.bits > q);
+function kr(e) {
+	return e.some(({ codec: e }) => e.bits > Y);
 }
-function kr({ codec: e }) {
+function Ar({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function Ar(e, t, n) {
+function jr(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function jr(e, t, n, r) {
+function Mr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: W.png,
+				codec: K.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Dr(t)
+				...Or(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Sr(i.key("size")), o = Tr(i, t, 1, a, r, !0);
+	let a = Cr(i.key("size")), o = Er(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Mr(i.key("precision"), o, r)
+		precision: Nr(i.key("precision"), o, r)
 	};
 }
-function Mr(e, t, n) {
+function Nr(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === q) throw e.wrong(`of a mean of ${q} bits`);
-	let r = Sr(e.key("size"), pe), i = or("picture", e.key("codec"), "png");
-	if (i !== W.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === Y) throw e.wrong(`of a mean of ${Y} bits`);
+	let r = Cr(e.key("size"), pe), i = sr("picture", e.key("codec"), "png");
+	if (i !== K.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1593,19 +1604,19 @@ function Mr(e, t, n) {
 		where: e.where
 	};
 }
-function Nr(e, t, n, r, i) {
-	let a = Sr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Sr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
+function Pr(e, t, n, r, i) {
+	let a = Cr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Cr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(he).map((e) => {
-		let n = new G({
+		let n = new q({
 			...p,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, he) : 1;
-		return d += o, Tr(n, t, o, a, i);
+		return d += o, Er(n, t, o, a, i);
 	});
 	if (d > 4096) throw e.wrong(`more than ${he} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? _r("weights", h, i) : r(e.key("weights"), "SCALAR", [K], n * d) : null;
+	let h = e.key("codedWeights"), g = d ? h.exists ? vr("weights", h, i) : r(e.key("weights"), "SCALAR", [J], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1616,13 +1627,13 @@ function Nr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function Pr(e, t, [n, r]) {
+function Fr(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > me) throw e.wrong(`more than ${me} texels`);
 }
 // eigenfield-three/src/document.ts
-var Fr = [
+var Ir = [
 	"namePattern",
 	"packed",
 	"precision",
@@ -1630,62 +1641,62 @@ var Fr = [
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-], Ir = Object.values(W).flatMap(({ needs: e }) => e ?? []), Lr = /* @__PURE__ */ new Set([...Fr, ...Ir]), Rr = 64, zr = 9, Br = 10 ** zr;
-function Vr(e) {
-	let t = new G(e, "");
+], Lr = Object.values(K).flatMap(({ needs: e }) => e ?? []), Rr = /* @__PURE__ */ new Set([...Ir, ...Lr]), zr = 64, Br = 9, Vr = 10 ** Br;
+function Hr(e) {
+	let t = new q(e, "");
 	try {
 		return t.key("extensions").key(ue).exists;
 	} catch {
 		return !1;
 	}
 }
-function Hr(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(ue), r = Ur(n), i = mr(t), a = gr(t, i), o = hr(i);
-	Wr(t);
-	let s = qr(t, o), c = n.key("cameras"), { count: l, names: u } = Jr(c, o), d = Zr(c, l), f = d.filter((e) => !e).length, p = Cr(n, f, s, a, o), m = wr(n, p), h = c.key("colour");
+function Ur(e) {
+	let t = new q(e, ""), n = t.key("extensions").key(ue), r = Wr(n), i = hr(t), a = _r(t, i), o = gr(i);
+	Gr(t);
+	let s = Jr(t, o), c = n.key("cameras"), { count: l, names: u } = Yr(c, o), d = Qr(c, l), f = d.filter((e) => !e).length, p = wr(n, f, s, a, o), m = Tr(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
 	let [x, S] = [y.key("attributes"), y.key("indices")], C = n.key("generator"), w = n.key("mesh");
 	return {
 		version: r,
-		generator: C.exists ? C.text(F) : "",
+		generator: C.exists ? C.text(L) : "",
 		planes: p,
 		colours: m,
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: Qr(c, l, a, o),
-		sizes: $r(c, l, a),
-		colour: h.exists ? a(h, "SCALAR", [K], 6 * l) : null,
-		...ei(g),
-		triangles: v.exists ? _r("triangles", v, o) : _.exists ? Kr(a(_, "SCALAR", [lr, ur], null), 2 * _e) : null,
-		settings: ti(n.key("settings")),
-		scores: ti(n.key("scores")),
+		calibration: $r(c, l, a, o),
+		sizes: ei(c, l, a),
+		colour: h.exists ? a(h, "SCALAR", [J], 6 * l) : null,
+		...ti(g),
+		triangles: v.exists ? vr("triangles", v, o) : _.exists ? qr(a(_, "SCALAR", [ur, dr], null), 2 * I) : null,
+		settings: ni(n.key("settings")),
+		scores: ni(n.key("scores")),
 		views: i,
-		mesh: w.exists ? _r("mesh", w, o) : null,
-		position: Gr(a(x.key("POSITION"), "VEC3", [K], null), xe),
-		uv: Gr(a(x.key("TEXCOORD_0"), "VEC2", [K], null), xe),
-		indices: Kr(a(S, "SCALAR", [
-			cr,
+		mesh: w.exists ? vr("mesh", w, o) : null,
+		position: Kr(a(x.key("POSITION"), "VEC3", [J], null), be),
+		uv: Kr(a(x.key("TEXCOORD_0"), "VEC2", [J], null), be),
+		indices: qr(a(S, "SCALAR", [
 			lr,
-			ur
-		], null), Se),
+			ur,
+			dr
+		], null), xe),
 		preview: s
 	};
 }
-function Ur(e) {
-	let t = e.key("version").text(F);
-	if (!/^1\.\d+$/.test(t)) throw new k("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
+function Wr(e) {
+	let t = e.key("version").text(L);
+	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(P) : []) {
-		let t = e.text(F);
-		if (!Lr.has(t)) throw new k("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+	for (let e of n.exists ? n.items(F) : []) {
+		let t = e.text(L);
+		if (!Rr.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Wr(e) {
-	let t = e.key("nodes").items(P), n = Array(t.length).fill(!1);
+function Gr(e) {
+	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -1694,64 +1705,64 @@ function Wr(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(P)) {
+	for (let r of e.key("scenes").items(F)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Gr(e, t) {
-	if (e.count > t) throw A(e.where, `more than ${t}`);
+function Kr(e, t) {
+	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function Kr(e, t) {
-	if (e.count % 3) throw A(e.where, "torn triangles");
-	return Gr(e, 3 * t);
-}
 function qr(e, t) {
+	if (e.count % 3) throw j(e.where, "torn triangles");
+	return Kr(e, 3 * t);
+}
+function Jr(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Jr(e, t) {
+function Yr(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, _e),
-		names: _r("names", n, t)
+		count: n.key("count").integer(1, I),
+		names: vr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Xr(r) : i.items(_e).map((e) => e.text(F));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Zr(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Yr(a);
+	let o = Xr(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Yr(e) {
+function Xr(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Xr(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, _e));
+function Zr(e) {
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(Rr).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(F))];
+	let r = e.key("parts").items(zr).map((e) => {
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(F));
+			let e = a.items(i).map((e) => e.text(L));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Br), e.key("step").integer(0, Br)], c = e.key("digits").integer(1, zr);
+		let [o, s] = [e.key("first").integer(0, Vr), e.key("step").integer(0, Vr)], c = e.key("digits").integer(1, Br);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${F} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
 		return o;
 	});
 }
-function Zr(e, t) {
+function Qr(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1762,21 +1773,21 @@ function Zr(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function Qr(e, t, n, r) {
+function $r(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? _r("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [K], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [K], 12 * t)
+	return i.exists ? vr("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [J], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [J], 12 * t)
 	};
 }
-function $r(e, t, n) {
+function ei(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [ur], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ve);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [dr], 2 * t);
+	let [i = 0, a = 0] = r.numbers(2, 1, _e);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function ei(e) {
+function ti(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1791,23 +1802,23 @@ function ei(e) {
 		extent: [i, a]
 	};
 }
-function ti(e) {
+function ni(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var ni = 1e-6;
-async function ri(e, t) {
+var ri = 1e-6;
+async function ii(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		ii(e, t),
-		oi(e, t),
+		ai(e, t),
 		si(e, t),
-		e.colour ? vr(e.colour, e.views, t) : null
+		ci(e, t),
+		e.colour ? yr(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > ni && c > ni)) throw A(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = ci([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > ye) throw A(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!(s > ri && c > ri)) throw j(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = li([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > ve) throw j(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -1824,13 +1835,13 @@ async function ri(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? li([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? ui([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: yi(f, p),
+			centre: xi(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1838,31 +1849,31 @@ async function ri(e, t) {
 		};
 	});
 }
-async function ii({ names: e, heldOut: t }, n) {
+async function ai({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Yr(r);
-	if (i) throw A(e.where, i);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Xr(r);
+	if (i) throw j(e.where, i);
 	return r;
 }
-async function ai(e, t, n) {
+async function oi(e, t, n) {
 	return {
-		numbers: await vr(e, t.views, n),
+		numbers: await yr(e, t.views, n),
 		where: e.where
 	};
 }
-async function oi(e, t) {
+async function si(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await ai(r, e, t),
-			poses: await ai(i, e, t)
+			lenses: await oi(r, e, t),
+			poses: await oi(i, e, t)
 		};
 	}
-	let { view: i, codec: a, where: o } = n, s = a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
-	if (c !== r.length) throw A(o, `${c} cameras in it, and ${r.length} names`);
+	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
+	if (c !== r.length) throw j(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: yr(e, o),
+		numbers: br(e, o),
 		where: o
 	});
 	return {
@@ -1870,15 +1881,15 @@ async function oi(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function si(e, t) {
-	if (!Array.isArray(e.sizes)) return ai(e.sizes, e, t);
+async function ci(e, t) {
+	if (!Array.isArray(e.sizes)) return oi(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function ci(e, t, n) {
+function li(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1893,22 +1904,22 @@ function ci(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = Y(i[e], i[r]) - +(e === r);
-		if (!(Math.abs(a) <= 2e-4)) throw A(t, `the pose of "${n}" is no rotation`);
+		let a = X(i[e], i[r]) - +(e === r);
+		if (!(Math.abs(a) <= 2e-4)) throw j(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(Y(X(i[0], i[1]), i[2]) > 0)) throw A(t, `the pose of "${n}" is mirrored`);
+	if (!(X(Si(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function li(e, t, n) {
+function ui(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
-	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw A(t.colour?.where ?? "", `gain or offset of "${n}"`);
+	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function ui(e, t) {
-	let n = J(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => di(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function di(e, t) {
+	let n = pi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => fi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1916,38 +1927,38 @@ async function ui(e, t) {
 	}
 	return o;
 }
-async function di({ weights: e, count: t }, n, r, i) {
+async function fi({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return vr(e, r.views, i);
+	if ("type" in e) return yr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return yr(u, s);
-	throw A(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
+	if (c === n && l === t) return br(u, s);
+	throw j(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function J(e) {
+function pi(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function fi(e) {
-	return Math.max(0, ...J(e).map(({ count: e }) => e));
+function mi(e) {
+	return Math.max(0, ...pi(e).map(({ count: e }) => e));
 }
-function pi(e, t) {
-	let n = [...t, ...J(e).map(({ grid: e }) => e)];
+function hi(e, t) {
+	let n = [...t, ...pi(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function mi(e, t) {
+async function gi(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await hi(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await _i(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
-		if (Math.max(t, a, o) >= i) throw A(n, `no encoded camera ${Math.max(t, a, o)}`);
-		if (t === a || a === o || o === t) throw A(n, "a triangle with one camera twice");
+		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
+		if (t === a || a === o || o === t) throw j(n, "a triangle with one camera twice");
 	}
 	return r;
 }
-async function hi(e, t, n) {
-	return "type" in e ? Uint32Array.from(await vr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function _i(e, t, n) {
+	return "type" in e ? Uint32Array.from(await yr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function gi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = X(o, s), l = [
+function vi(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Si(o, s), l = [
 		0,
 		0,
 		0
@@ -1975,8 +1986,8 @@ function gi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: _i(e, i),
-		size: pi(e, n),
+		bytes: yi(e, i),
+		size: hi(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -1987,12 +1998,12 @@ function gi(e, t, n, r, i, a) {
 			}))
 		})),
 		...a,
-		facesPlane: Math.abs(Y(l, c)) > .7
+		facesPlane: Math.abs(X(l, c)) > .7
 	};
 }
-function _i(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(fi(e)).fill(0);
-	for (let { pictures: t } of J(e)) {
+function yi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(mi(e)).fill(0);
+	for (let { pictures: t } of pi(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2002,7 +2013,7 @@ function _i(e, t) {
 			}
 		}
 	}
-	let c = i(J(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
+	let c = i(pi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
 		l,
 		u,
 		d,
@@ -2017,15 +2028,15 @@ function _i(e, t) {
 		textures: s
 	};
 }
-function vi(e, t) {
+function bi(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? X(i, e.right) / r[0] : 0, r[1] > 0 ? X(i, e.up) / r[1] : 0];
 }
-function yi(e, t) {
+function xi(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2033,10 +2044,10 @@ function yi(e, t) {
 		n(2)
 	];
 }
-function Y(e, t) {
+function X(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function X(e, t) {
+function Si(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2044,7 +2055,7 @@ function X(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function bi(e, t, n) {
+function Ci(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2083,7 +2094,7 @@ function bi(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = xi(n, o, s);
+		let r = wi(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2094,11 +2105,11 @@ function bi(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ci(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Si(t) * m[0], Si(n) * m[1]], _ = [
+	let u = Ei(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ti(t) * m[0], Ti(n) * m[1]], _ = [
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -Y(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -X(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -2111,7 +2122,7 @@ function bi(e, t, n) {
 		offset: null
 	};
 }
-function xi({ K: e, width: t, height: n }, r, i) {
+function wi({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2131,63 +2142,63 @@ function xi({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Si(e) {
+function Ti(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ci(e) {
+function Ei(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			X(t[1], t[2]),
-			X(t[2], t[0]),
-			X(t[0], t[1])
-		], n = Y(t[0], e[0]);
+			Si(t[1], t[2]),
+			Si(t[2], t[0]),
+			Si(t[0], t[1])
+		], n = X(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
 	}
 	return t;
 }
-function wi(e, t, n, r, i = 1) {
+function Di(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Ti(e, t, n), Ei(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Oi(e, t, n), ki(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Ti(e, t, n) {
+function Oi(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
-	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new D()), t.updateMatrixWorld(!0);
+	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function Ei(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Di(e, n);
+function ki(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ai(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Di(e, t) {
+function Ai(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
-		center: new D(),
+		center: new O(),
 		radius: 1
-	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new D(...t.centre)) * o, c = 1.01 * (s + a * o);
+	}, o = r.getMaxScaleOnAxis(), s = i.distanceTo(new O(...t.centre)) * o, c = 1.01 * (s + a * o);
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var Oi = 256;
-function ki(e, t, n) {
+var ji = 256;
+function Mi(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Oi)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / ji)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ai(t, i.getX(e), i.getY(e), i.getZ(e))), l = ji(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ni(t, i.getX(e), i.getY(e), i.getZ(e))), l = Pi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = ji(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Pi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2197,7 +2208,7 @@ function ki(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ai({ K: e, R: t, t: n }, r, i, a) {
+function Ni({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2205,36 +2216,36 @@ function Ai({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function ji(e) {
+function Pi(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Mi = 4 / 3, Ni = 4, Pi = 8, Fi = 2, Ii = 2 ** 20;
-function Li() {
+var Fi = 4 / 3, Ii = 4, Li = 8, Ri = 2, zi = 2 ** 20;
+function Bi() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ri(e) ? Math.min(t ?? 4, 6) * 128 * Ii : Math.min(t ?? 8, 8) * 256 * Ii;
-}
-function Ri(e) {
-	return (e?.maxTouchPoints ?? 0) > 1;
-}
-function zi([e, t], n) {
-	return [Math.ceil(e / n), Math.ceil(t / n)];
-}
-function Bi(e, t) {
-	let [n, r] = zi(e, t);
-	return n * r;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Vi(e) ? Math.min(t ?? 4, 6) * 128 * zi : Math.min(t ?? 8, 8) * 256 * zi;
 }
 function Vi(e) {
-	return Math.ceil(e / 4);
+	return (e?.maxTouchPoints ?? 0) > 1;
 }
-function Hi(e, t) {
-	return t * Ui(e);
+function Hi([e, t], n) {
+	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function Ui(e) {
-	return Math.max(1, Math.ceil(e / 4));
+function Ui(e, t) {
+	let [n, r] = Hi(e, t);
+	return n * r;
 }
 function Wi(e) {
+	return Math.ceil(e / 4);
+}
+function Gi(e, t) {
+	return t * Ki(e);
+}
+function Ki(e) {
+	return Math.max(1, Math.ceil(e / 4));
+}
+function qi(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2242,14 +2253,14 @@ function Wi(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function Gi(e, t) {
+function Ji(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Ki(e, n) <= t.memory / 2) ?? 16, o = Ki(e, a) + e.geometry, s = (t, n) => o + Ji(e, t, n), c = (n, r) => s(n, r) + Zi(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && Yi(e, n) <= t.memory / 2) ?? 16, o = Yi(e, a) + e.geometry, s = (t, n) => o + Zi(e, t, n), c = (n, r) => s(n, r) + ea(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2263,70 +2274,70 @@ function Gi(e, t) {
 	};
 	return {
 		...p,
-		limitation: Qi(p, n, e, t)
+		limitation: ta(p, n, e, t)
 	};
 }
-function Ki(e, t) {
-	let n = e.means.map((e) => qi(e) * Vi(e.channels) * Bi(e.size, t)), r = Wi(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Mi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Pi * Bi(n, t) * (r + +!!i);
+function Yi(e, t) {
+	let n = e.means.map((e) => Xi(e) * Wi(e.channels) * Ui(e.size, t)), r = qi(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Fi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Li * Ui(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function qi({ tenBits: e }) {
-	return e ? Pi : Ni;
+function Xi({ tenBits: e }) {
+	return e ? Li : Ii;
 }
-function Ji({ bases: e, rays: t }, n, r) {
+function Zi({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Ui(a) * 129 * 129 * Pi : 0;
-		return e + qi(i) * Hi(a, i.channels) * Bi(i.size, n) + o;
+		let o = t ? Ki(a) * 129 * 129 * Li : 0;
+		return e + Xi(i) * Gi(a, i.channels) * Ui(i.size, n) + o;
 	}, 0);
 }
-function Yi({ means: e, bases: t }, n, r) {
-	return Xi([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => zi(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => zi(e, r))]);
+function Qi({ means: e, bases: t }, n, r) {
+	return $i([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => Hi(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => Hi(e, r))]);
 }
-function Xi(e) {
+function $i(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Zi(e, t) {
-	let [n, r] = Yi({
+function ea(e, t) {
+	let [n, r] = Qi({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Ni + (e.bases.some(({ tenBits: e }) => e) ? Fi : 0)) * n * r;
+	return (Ii + (e.bases.some(({ tenBits: e }) => e) ? Ri : 0)) * n * r;
 }
-function Qi(e, t, n, r) {
+function ta(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Ki(n, 1) + Ji(n, 1, t) + Zi(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${$i(a)} MB of graphics memory and ${$i(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ea(i.join(", "))}: ${o}.`;
+	let a = Yi(n, 1) + Zi(n, 1, t) + ea(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${na(a)} MB of graphics memory and ${na(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${ra(i.join(", "))}: ${o}.`;
 }
-function $i(e) {
+function na(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function ea(e) {
+function ra(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ta = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", na = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", ra = 2, ia = `
+var ia = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", aa = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", oa = 2, sa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${na}${ta}`, aa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", oa = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", sa = `${ia}
+${aa}${ia}`, ca = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", la = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ua = `${sa}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, ca = "sumTextures", la = "finerValue";
-function ua(n, r, i) {
+`, da = "sumTextures", fa = "finerValue";
+function pa(n, r, i) {
 	let o = new w({
 		glslVersion: f,
-		vertexShader: aa,
-		fragmentShader: `${ia}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: ca,
+		fragmentShader: `${sa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
-			rectangle: { value: new te(...r) },
+			rectangle: { value: new ee(...r) },
 			...i
 		},
 		side: c,
@@ -2360,8 +2371,8 @@ function ua(n, r, i) {
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function da([e, t], n) {
-	return new O(e, t, {
+function ma([e, t], n) {
+	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
 		generateMipmaps: n,
@@ -2369,31 +2380,31 @@ function da([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function fa(e, t) {
-	let n = X(e.right, e.up), r = [
+function ha(e, t) {
+	let n = Si(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...vi(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
+	return [...bi(e, t), X(r, n) / (Math.max(...e.extent) || 1)];
 }
-function pa(t, n, r) {
+function ga(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(fa(n, [
+	for (let e = 0; e < i.count; e++) o.set(ha(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - ra), u = l.flatMap((e) => l.map((t) => new ee(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - oa), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
 	let p = new w({
 		glslVersion: f,
-		vertexShader: oa.replace("SHIFTS", String(u.length)),
-		fragmentShader: sa,
+		vertexShader: la.replace("SHIFTS", String(u.length)),
+		fragmentShader: ua,
 		uniforms: {
-			texel: { value: new ee(2 / r.width, 2 / r.height) },
+			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
 		},
 		side: c,
@@ -2411,7 +2422,7 @@ function pa(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var ma = class {
+var _a = class {
 	mesh;
 	plane;
 	grids;
@@ -2419,14 +2430,14 @@ var ma = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = Wi({
+		let [a, ...o] = qi({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(ha), a = new T();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(va), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: da(zi(e, n), r),
+				target: ma(Hi(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -2434,7 +2445,7 @@ var ma = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = ua(la, [
+			let t = pa(fa, [
 				0,
 				0,
 				1,
@@ -2448,10 +2459,10 @@ var ma = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && va(this.composed, n) || (this.composed = n, xa(e, t, () => {
+		this.composed && xa(this.composed, n) || (this.composed = n, wa(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) ga(e, t, n);
+				for (let e of t.steps) ya(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -2463,22 +2474,22 @@ var ma = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = da([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = pa(this.mesh, this.plane, t.places);
+		t.places = ma([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = ga(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function ha(e) {
+function va(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
-		let o = Array.from({ length: 64 }, (t, n) => new D(...e.colours[n] ?? [
+		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = ua(ca, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = pa(da, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2491,7 +2502,7 @@ function ha(e) {
 			weightMaps: { value: null },
 			firstGroup: { value: (e.basis?.group ?? 0) + a },
 			places: { value: null },
-			eye: { value: new D() }
+			eye: { value: new O() }
 		});
 		i.push({
 			part: e,
@@ -2502,42 +2513,42 @@ function ha(e) {
 	}
 	return i;
 }
-function ga({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function ya({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => _a(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ba(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function _a(e, t, n, r) {
+function ba(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function va(e, t) {
+function xa(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var ya = new i(0), ba = new i();
-function xa(e, t, n) {
+var Sa = new i(0), Ca = new i();
+function wa(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(ba), e.setClearColor(ya, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(ba, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Ca), e.setClearColor(Sa, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ca, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Sa(e, t, n, i, a) {
+function Ta(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Ui(t) : 0;
+		u += e, d += t ? Ki(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2556,19 +2567,19 @@ function Sa(e, t, n, i, a) {
 	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Ca = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", wa = {
+var Ea = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Da = {
 	bilinear: 0,
 	bicubic: 1
-}, Ta = {
+}, Oa = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Ea = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Da = `
+}, ka = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Aa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${na}${Ca}
+${aa}${Ea}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -2598,56 +2609,56 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function Oa(e) {
+function ja(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
-		exposureScale: { value: new D(1, 1, 1) },
-		exposureBias: { value: new D() },
-		shown: { value: Ta.picture },
+		exposureScale: { value: new O(1, 1, 1) },
+		exposureBias: { value: new O() },
+		shown: { value: Oa.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
 	}, n = new w({
 		glslVersion: f,
-		vertexShader: Ea,
-		fragmentShader: Da,
+		vertexShader: ka,
+		fragmentShader: Aa,
 		uniforms: t,
-		defines: { BICUBIC: wa.bicubic },
+		defines: { BICUBIC: Da.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
 // eigenfield-three/src/gpu.ts
-function ka(e, t) {
+function Ma(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Aa(e, [t, n], r, i, a) {
-	return Na(e, e.TEXTURE_2D_ARRAY, () => {
+function Na(e, [t, n], r, i, a) {
+	return Ia(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ja(e, t, n) {
+function Pa(e, t, n) {
 	let { width: r, height: i } = n;
-	Pa(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	La(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Ma(e, [t, n], r = !1) {
-	return Na(e, e.TEXTURE_2D, () => {
+function Fa(e, [t, n], r = !1) {
+	return Ia(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function Na(e, t, n) {
+function Ia(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return Pa(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return La(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function Pa(e, t, n, r) {
+function La(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2661,9 +2672,9 @@ function Pa(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var Fa = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Ia = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function La(e, t) {
-	let n = Va(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var Ra = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", za = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function Ba(e, t) {
+	let n = Wa(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2671,7 +2682,7 @@ function La(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Ra(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Va(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2680,13 +2691,13 @@ function La(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Ra(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = Va(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Ha(e, 0, d, () => {
-				Ra(s) ? Ba(e, s, c, l) : za(e, s, c, l), Ua(e, () => u(n, r, i, a, o));
+			let f = () => Ga(e, 0, d, () => {
+				Va(s) ? Ua(e, s, c, l) : Ha(e, s, c, l), Ka(e, () => u(n, r, i, a, o));
 			});
-			o ? Ha(e, 1, t.precision, () => {
-				za(e, o.precision, 0, o.precision.height), f();
+			o ? Ga(e, 1, t.precision, () => {
+				Ha(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2694,30 +2705,30 @@ function La(e, t) {
 		}
 	};
 }
-function Ra(e) {
+function Va(e) {
 	return "data" in e;
 }
-function za(e, t, n, r) {
+function Ha(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Ba(e, { data: t, width: n, stride: r }, i, a) {
+function Ua(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Va(e) {
+function Wa(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Fa], [e.FRAGMENT_SHADER, Ia]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Ra], [e.FRAGMENT_SHADER, za]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Ha(e, t, n, r) {
+function Ga(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), Pa(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), La(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Ua(e, t) {
+function Ka(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2732,7 +2743,7 @@ function Ua(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function Wa(e, t, n) {
+function qa(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2742,7 +2753,7 @@ function Wa(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ga(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ja(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2770,7 +2781,7 @@ function Wa(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...qa(l, u, h),
+					...Xa(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2778,12 +2789,12 @@ function Wa(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Ui(h) : 0;
+			o += p, s += h ? Ki(h) : 0;
 		}
 	}), r;
 }
-function Ga({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : Ka([e]), o = {
+function Ja({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : Ya([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2793,11 +2804,11 @@ function Ga({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Ka(e) {
-	return Or(e) ? 1 : 255;
+function Ya(e) {
+	return kr(e) ? 1 : 255;
 }
-function qa(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Ka(e), o = 4 * t * Ui(n), s = {
+function Xa(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Ya(e), o = 4 * t * Ki(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2808,21 +2819,21 @@ function qa(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/pieces.ts
-function Ja(e) {
+function Za(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Ya = 128, Xa = .98;
-async function Za(e, t, n, r) {
+var Qa = 128, $a = .98;
+async function eo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = kr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ya, Ya).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Ar(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Qa, Qa).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Ya, Ya);
-		let { data: u } = d.getImageData(0, 0, Ya, Ya);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Qa, Qa);
+		let { data: u } = d.getImageData(0, 0, Qa, Qa);
 		(l ? [
 			0,
 			1,
@@ -2831,30 +2842,30 @@ async function Za(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Ja(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(Xa * f.length)] ?? 0;
+	}), Za(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor($a * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function Qa(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await $a(await t(e.precision.view), e.precision);
+async function to(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await no(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function $a(e, t) {
+async function no(e, t) {
 	let { type: n } = In(e) ?? {}, { mimeType: r } = t.codec;
-	if (n && n !== r) throw A(t.where, `${n}, not ${r}`);
+	if (n && n !== r) throw j(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
-	if (!i) throw A(t.where, "no picture");
+	if (!i) throw j(t.where, "no picture");
 	return i.picture;
 }
-function eo({ pieces: e, precision: t }) {
-	Ja(e), t?.close();
+function ro({ pieces: e, precision: t }) {
+	Za(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var to = 3, no = class {
+var io = 3, ao = class {
 	parts;
 	options;
 	means;
@@ -2881,15 +2892,15 @@ var to = 3, no = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: Or(t.pictures)
+			tenBits: kr(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: Or([t])
+			tenBits: kr([t])
 		}));
 		this.needs = {
-			atlas: pi(r, i),
+			atlas: hi(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -2918,7 +2929,7 @@ var to = 3, no = class {
 	attach(e) {
 		if (this.disposed) return;
 		let t = e.getContext();
-		if (!(t instanceof WebGL2RenderingContext)) throw new k("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
+		if (!(t instanceof WebGL2RenderingContext)) throw new A("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 		this.detach(), this.renderer = e, e.domElement.addEventListener("webglcontextlost", this.onLost), e.domElement.addEventListener("webglcontextrestored", this.onRestored);
 		let n = this.turn;
 		this.load(t, n).catch((e) => {
@@ -2926,7 +2937,7 @@ var to = 3, no = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(eo), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(ro), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2943,26 +2954,26 @@ var to = 3, no = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new k("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
+		if (!e.getExtension("EXT_color_buffer_float") && !e.getExtension("EXT_color_buffer_half_float")) throw new A("unsupported", "These graphics draw no half-floats; use a newer device or browser.");
 		let { packer: n, plan: r } = this.makeRoom(e);
 		if (this.plan = r, this.packer = n, this.onPlan(r), await this.loadMeans(e, t, r.meanDown), t !== this.turn) return;
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < to && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < io && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Ja(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Za(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(Ja).catch(() => void 0);
+			for (let e of a) e.then(Za).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * kr(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * Ar(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2982,13 +2993,13 @@ var to = 3, no = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Li();; i /= 2) {
-			let a = Gi(this.needs, ka(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Aa(e, zi(t, o), Vi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? Bi();; i /= 2) {
+			let a = Ji(this.needs, Ma(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Na(e, Hi(t, o), Wi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Aa(e, a ? zi(t, s) : [1, 1], a ? Hi(a, n) : 1, l, i);
-			})], d = Yi(this.needs, o, s), f = Ma(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Ma(e, d, !0) : null, h = Ma(e, Xi(r));
+				return Na(e, a ? Hi(t, s) : [1, 1], a ? Gi(a, n) : 1, l, i);
+			})], d = Qi(this.needs, o, s), f = Fa(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Fa(e, d, !0) : null, h = Fa(e, $i(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: La(e, {
+				packer: Ba(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3001,23 +3012,23 @@ var to = 3, no = class {
 				m,
 				h
 			]) e.deleteTexture(t);
-			if (!c) throw new k("unsupported", "The graphics memory is full; close other pages and try again.");
+			if (!c) throw new A("unsupported", "The graphics memory is full; close other pages and try again.");
 		}
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
-		this.decoded = null, (!a || n > 1) && (a?.forEach(eo), a = await Promise.all(r.planes.map((e) => Qa(e, i, n)))), a.forEach((n, i) => {
+		this.decoded = null, (!a || n > 1) && (a?.forEach(ro), a = await Promise.all(r.planes.map((e) => to(e, i, n)))), a.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), eo(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), ro(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = Or([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = kr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			ja(e, r, s.picture);
+			Pa(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * kr(n) : 1;
+		let c = o ? 255 * Ar(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -3035,7 +3046,7 @@ var to = 3, no = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, ro = 1.5, io = .001, ao = class extends l {
+}, oo = 1.5, so = .001, co = class extends l {
 	parts;
 	mesh;
 	info;
@@ -3066,15 +3077,15 @@ var to = 3, no = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = fi(n), this.counts = J(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = mi(n), this.counts = pi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new no(e, lo(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new ao(e, po(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = Oa(s), this.complete = new Promise((e, t) => {
+		this.material = ja(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? ki(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Mi(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -3104,7 +3115,7 @@ var to = 3, no = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...vi(this.info.viewPlane, n.centre));
+		return this.componentWeights(...bi(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3118,7 +3129,7 @@ var to = 3, no = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return ro * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return oo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3135,30 +3146,30 @@ var to = 3, no = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = co(t, n), [i, a] = vi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = fo(t, n), [i, a] = bi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = wa[this.filter];
+		let l = Da[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new ma(i, Wa(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new _a(i, qa(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Ta.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Oa.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === Ta.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Oa.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && fa(this.info.viewPlane, t),
+			eye: t && ha(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3170,7 +3181,7 @@ var to = 3, no = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Ta[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Oa[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3178,7 +3189,7 @@ var to = 3, no = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !uo(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !mo(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3189,7 +3200,7 @@ var to = 3, no = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Za(s, e, o, r).then((t) => {
+				eo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3199,13 +3210,13 @@ var to = 3, no = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= io * Math.max(...r);
+		return Math.abs(i) <= so * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Sa(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Ta(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3213,33 +3224,33 @@ var to = 3, no = class {
 		}, n;
 	}
 	fail(e) {
-		if (fo(e)) return;
-		let t = ae(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
+		if (ho(e)) return;
+		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
-			error: new k(t.code, `${t.message} ${n}`, t.where)
+			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, oo = new _(), so = new D();
-function co(e, t) {
-	return so.setFromMatrixPosition(e.matrixWorld).applyMatrix4(oo.copy(t.matrixWorld).invert()), [
-		so.x,
-		so.y,
-		so.z
+}, lo = new _(), uo = new O();
+function fo(e, t) {
+	return uo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(lo.copy(t.matrixWorld).invert()), [
+		uo.x,
+		uo.y,
+		uo.z
 	];
 }
-function lo(e) {
+function po(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function uo(e) {
+function mo(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function fo(e) {
+function ho(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var po = class {
+var go = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3270,7 +3281,7 @@ var po = class {
 	}
 	settle() {
 		let e = [];
-		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(re(this.received, t.to)) : e.push(t);
+		for (let t of this.waiters) t.to <= this.received ? t.resolve(this.copy(t.from, t.to)) : this.broken ? t.reject(this.broken.reason) : this.ended ? t.reject(ne(this.received, t.to)) : e.push(t);
 		this.waiters = e;
 	}
 	copy(e, t) {
@@ -3282,53 +3293,53 @@ var po = class {
 		}
 		return n.buffer;
 	}
-}, mo = 1179937895, ho = 1313821514, go = 5130562;
-async function _o(e) {
+}, _o = 1179937895, vo = 1313821514, yo = 5130562;
+async function bo(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof k && t.code === "truncated" ? So(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? To(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== mo) throw So(!1);
+	if (new DataView(t).getUint32(0, !0) !== _o) throw To(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
-	if (r !== 2) throw new k("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
-	if (i < 20) throw A("8", "a length of no file");
+	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
+	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== ho) throw A("16", "it does not begin with JSON");
-	if (o > de) throw A("12", `${o} bytes of JSON`);
-	if (20 + o > i) throw A("12", "a chunk longer than the file");
-	let s = yo(await e.read(20, 20 + o));
+	if (a.getUint32(4, !0) !== vo) throw j("16", "it does not begin with JSON");
+	if (o > de) throw j("12", `${o} bytes of JSON`);
+	if (20 + o > i) throw j("12", "a chunk longer than the file");
+	let s = So(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: bo(s, "20"),
-		binary: () => vo(e, 20 + o, i)
+		json: Co(s, "20"),
+		binary: () => xo(e, 20 + o, i)
 	};
 }
-async function vo(e, t, n) {
+async function xo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
-		if (r + 8 + i > n) throw A(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === go) return r + 8;
+		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
+		if (t.getUint32(4, !0) === yo) return r + 8;
 		r += 8 + i;
 	}
-	throw A(String(t), "no binary chunk");
+	throw j(String(t), "no binary chunk");
 }
-function yo(e) {
+function So(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
-		throw A("20", "its JSON is not UTF-8");
+		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function bo(e, t) {
-	if (xo(e) > 64) throw A(t, "its JSON is nested too deep");
+function Co(e, t) {
+	if (wo(e) > 64) throw j(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
-		throw A(t, "its JSON cannot be read");
+		throw j(t, "its JSON cannot be read");
 	}
 }
-function xo(e) {
+function wo(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3339,23 +3350,23 @@ function xo(e) {
 	}
 	return n;
 }
-function So(e) {
-	return new k("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
+function To(e) {
+	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var Co = "\"texts\":[\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"codedCameras\",\"codedMesh\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":4},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":5,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":6,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":7,\"textures\":[{\"bufferView\":12,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":8,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":13},{\"bufferView\":14}]}]},{\"channels\":2,\"mean\":{\"bufferView\":8,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":6,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"names\":[\"heldOut\":[1,2,\"coded\":9,\"size\":[1024,512]},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", wo = 4;
-async function To(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
+var Eo = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedMesh\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Do = 4;
+async function Oo(e, t) {
+	let n = new q(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
 	if (!i.exists) return e;
-	Ur(r);
-	let a = mr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < wo) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, wo)).getUint32(0, !0);
-	if (wo + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(bo(await Do(await t(o.offset + wo, s), i.where), i.where), i.where).object(), u = Eo(new G(c, `${i.where}/lengths`), o, wo + s), { packed: d, ...f } = r.object();
+	Wr(r);
+	let a = hr(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < Do) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Do)).getUint32(0, !0);
+	if (Do + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new q(Co(await Ao(await t(o.offset + Do, s), i.where), i.where), i.where).object(), u = ko(new q(c, `${i.where}/lengths`), o, Do + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(P).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
 			[ue]: {
@@ -3365,8 +3376,8 @@ async function To(e, t) {
 		}
 	};
 }
-function Eo(e, t, n) {
-	let r = n, i = e.items(P).map((e) => {
+function ko(e, t, n) {
+	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -3377,8 +3388,8 @@ function Eo(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Do(e, t) {
-	let n = new TextEncoder().encode(Co), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Ao(e, t) {
+	let n = new TextEncoder().encode(Eo), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3386,68 +3397,68 @@ async function Do(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await Nn(a, "deflate-raw", n.length + de, t);
+	let o = await le(a, "deflate-raw", n.length + de, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
 			ignoreBOM: !0
 		}).decode(o.subarray(n.length));
 	} catch {
-		throw A(t, "its JSON is not UTF-8");
+		throw j(t, "its JSON is not UTF-8");
 	}
 }
 // eigenfield-three/src/proxy.ts
-var Oo = 65535;
-function ko(e, t) {
+var jo = 65535;
+function Mo(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
-	if (!i) throw new k("damaged", "The proxy mesh has no triangles; make or download the file again.");
-	if (r.count !== n.count) throw A(t.uv.where, `${r.count} for ${n.count} vertices`);
+	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
+	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
 	for (let e = 0; e < n.count; e++) {
-		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw A(t.position.where, `vertex ${e} is not finite`);
-		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw A(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
+		if (!(Math.max(Math.abs(n.getX(e)), Math.abs(n.getY(e)), Math.abs(n.getZ(e))) <= 1e30)) throw j(t.position.where, `vertex ${e} is not finite`);
+		if (!(Math.max(Math.abs(r.getX(e)), Math.abs(r.getY(e))) <= 1e30)) throw j(t.uv.where, `texture coordinates of vertex ${e} are not finite`);
 	}
-	for (let e of i.array) if (e >= n.count) throw A(t.indices.where, `no vertex ${e}`);
+	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function Ao({ view: n, codec: r, where: i }, a) {
+async function No({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
-	if (!c.length) throw A(i, "a mesh without faces");
+	if (!c.length) throw j(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= Oo;
+	let u = o.length / 3 <= jo;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function jo(e) {
+function Po(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Mo(e) {
+function Fo(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = No(e, n, r) ?? (n === r ? null : No(e, r, n));
+		let r = t / n, i = Io(e, n, r) ?? (n === r ? null : Io(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function No(e, t, n) {
-	let [r, i] = [Fo(e, 0), Fo(e, 1)];
-	if (t === 1 && Io(i) > 0 || n === 1 && Io(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Lo(i, e) - Lo(i, t));
+function Io(e, t, n) {
+	let [r, i] = [Ro(e, 0), Ro(e, 1)];
+	if (t === 1 && zo(i) > 0 || n === 1 && zo(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => Bo(i, e) - Bo(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Lo(r, e) - Lo(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Bo(r, e) - Bo(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Po(n, t, (e, t) => Lo(r, o(t, e))) && Po(t, n, (e, t) => Lo(i, o(e, t))) ? {
+	return Lo(n, t, (e, t) => Bo(r, o(t, e))) && Lo(t, n, (e, t) => Bo(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Po(e, t, n) {
+function Lo(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3457,33 +3468,33 @@ function Po(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Fo(e, t) {
+function Ro(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function Io(e) {
+function zo(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Lo = (e, t) => e[t] ?? 0, Ro = 1e-6, zo = 32, Bo = class {
+var Bo = (e, t) => e[t] ?? 0, Vo = 1e-6, Ho = 32, Uo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Mo(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Fo(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Vo(e), this.isLine ? 0 : Vo(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Wo(e), this.isLine ? 0 : Wo(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Zo(e, t, this.places) : e === "bilinear" && this.grid ? $o(this.places, this.grid) : Wo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => es(e, t, this.places) : e === "bilinear" && this.grid ? ns(this.places, this.grid) : qo(this.places, this.triangles);
 	}
 };
-function Vo(e) {
+function Wo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ho(e) {
+function Go(e) {
 	let t = {
 		camera: [
 			0,
@@ -3503,7 +3514,7 @@ function Ho(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Uo(e, t, n, r, i, a) {
+function Ko(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3511,49 +3522,49 @@ function Uo(e, t, n, r, i, a) {
 		m
 	];
 }
-function Wo(e, t) {
+function qo(e, t) {
 	if (!t.length) {
-		let t = Xo(e, Yo(e));
-		return (n, r) => Jo(n, r, e, t);
+		let t = $o(e, Qo(e));
+		return (n, r) => Zo(n, r, e, t);
 	}
-	let n = Ko(e, t, 3), r = qo(t);
+	let n = Yo(e, t, 3), r = Xo(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * zo + $(i)] ?? []) {
+		for (let r of n[$(a) * Ho + $(i)] ?? []) {
 			let [n, l, u] = [
-				Go(t, r, 0),
-				Go(t, r, 1),
-				Go(t, r, 2)
-			], d = Uo(i, a, e, n, l, u), f = Math.min(...d);
+				Jo(t, r, 0),
+				Jo(t, r, 1),
+				Jo(t, r, 2)
+			], d = Ko(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Jo(i, a, e, r) : Ho(c.map((e, n) => [Go(t, o, n), e]));
+		return s < -1e-9 ? Zo(i, a, e, r) : Go(c.map((e, n) => [Jo(t, o, n), e]));
 	};
 }
-var Go = (e, t, n) => e[3 * t + n] ?? 0;
+var Jo = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * zo)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ho)));
 }
-function Ko(e, t, n) {
+function Yo(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * zo + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ho + t]?.push(i);
 	}
 	return r;
 }
-function qo(e) {
+function Xo(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Go(e, n, r), Go(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Jo(e, n, r), Jo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3562,7 +3573,7 @@ function qo(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Jo(e, t, n, r) {
+function Zo(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3577,12 +3588,12 @@ function Jo(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Ho([[o, 1 - c], [s, c]]);
+	return Go([[o, 1 - c], [s, c]]);
 }
-function Yo(e) {
+function Qo(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Xo(e, t) {
+function $o(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3603,7 +3614,7 @@ function Xo(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Zo(e, t, n) {
+function es(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3617,12 +3628,12 @@ function Zo(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Qo(n, r, i, a) <= Ro) return Jo(e, t, n, Xo(n, [
+	if (a < 0 || ts(n, r, i, a) <= Vo) return Zo(e, t, n, $o(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Uo(e, t, n, r, i, a);
+	let [l, u, d] = Ko(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3638,15 +3649,15 @@ function Zo(e, t, n) {
 		]
 	};
 }
-function Qo(e, t, n, r) {
+function ts(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function $o(e, t) {
+function ns(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Xo(e, Yo(e));
-		return (n, r) => Jo(n, r, e, t);
+		let t = $o(e, Qo(e));
+		return (n, r) => Zo(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3655,7 +3666,7 @@ function $o(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Ko(e, o.flat(), 4), c = [];
+	let s = Yo(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3663,12 +3674,12 @@ function $o(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * zo + $(t)] ?? []) {
-			let s = o[a], c = s ? es(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Ho + $(t)] ?? []) {
+			let s = o[a], c = s ? rs(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Jo(t, n, e, l);
-		let [a, c] = ts(t, n, e, r);
+		if (!r || i < -1e-9) return Zo(t, n, e, l);
+		let [a, c] = is(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3680,7 +3691,7 @@ function $o(e, t) {
 		};
 	};
 }
-function es(e, t, n, r) {
+function rs(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3688,7 +3699,7 @@ function es(e, t, n, r) {
 	}
 	return i;
 }
-function ts(e, t, n, r) {
+function is(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3706,31 +3717,31 @@ function ts(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ns(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [ns(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = as(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [as(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function ns(e) {
+function as(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var rs = class {
+var os = class {
 	parser;
 	options;
 	name = ue;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Vr(e.json);
+		this.parser = e, this.options = t, this.ours = Hr(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
 		let { json: e } = this.parser;
-		Object.assign(e, await To(e, (e, t) => this.read(e, t))), this.scene = Hr(e);
+		Object.assign(e, await Oo(e, (e, t) => this.read(e, t))), this.scene = Ur(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
 		let n = (await this.parser.getDependency("buffer", 0)).slice(e, e + t);
-		if (n.byteLength < t) throw ie("/buffers/0");
+		if (n.byteLength < t) throw re("/buffers/0");
 		return n;
 	}
 	loadMaterial(e) {
@@ -3746,24 +3757,24 @@ var rs = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = is(e, this.parser), [r] = n;
-		if (!r) throw A("/meshes/0", "no node shows it");
-		ko(r.geometry, t);
+		let n = ss(e, this.parser), [r] = n;
+		if (!r) throw j("/meshes/0", "no node shows it");
+		Mo(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
-			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ie(`/bufferViews/${e}`);
+			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Ao(t.mesh, i);
+		}, a = t.mesh && await No(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map((e) => Qa(e, i))),
-			ri(t, i),
-			ui(t, i),
-			mi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Bo(Float64Array.from(u.flatMap((e) => vi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = gi(t, s, f, d.grid, this.fileBytes(), jo(r.geometry)), m = {
+			Promise.all(t.planes.map((e) => to(e, i))),
+			ii(t, i),
+			di(t, i),
+			gi(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Uo(Float64Array.from(u.flatMap((e) => bi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = vi(t, s, f, d.grid, this.fileBytes(), Po(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3774,7 +3785,7 @@ var rs = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new ao(m, this.options);
+		e.userData.eigenfield = new co(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3782,44 +3793,44 @@ var rs = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function is(e, t) {
+function ss(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		as(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		cs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function as(e) {
+function cs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function os(e, t = {}) {
+async function ls(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new po(), i = new AbortController(), a = () => {
+	let r = new go(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = ls(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = fs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await _o(r);
-		if (!Vr(e.json)) return {
-			gltf: await cs(r, e, o),
+		let e = await bo(r);
+		if (!Hr(e.json)) return {
+			gltf: await ds(r, e, o),
 			field: null
 		};
-		let i = await ss(r, e, t);
+		let i = await us(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof ao ? a : null
+			field: a instanceof co ? a : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), ae(e);
+		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function ss(e, t, n) {
-	let r = new ne(), i = t.binary();
+async function us(e, t, n) {
+	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
 		total: t.length,
@@ -3828,51 +3839,51 @@ async function ss(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new rs(e, {
+	return r.register((e) => new os(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function cs(e, t, n) {
+async function ds(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
-		return await new ne().parseAsync(r, "");
+		return await new te().parseAsync(r, "");
 	} catch (e) {
-		let t = ae(e).message;
-		throw new k("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
+		let t = ie(e).message;
+		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function ls(e, t, n, r) {
+async function fs(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? us(e) : await ds(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? ps(e) : await ms(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : fs(t.received, e);
+			throw n.aborted ? e : hs(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function us(e) {
+function ps(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function ds(e, t) {
+async function ms(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
-		throw t.aborted ? n : new k("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
+		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
-	if (!n.ok || !n.body) throw await n.body?.cancel(), new k("network", `The server answered ${n.status} for the scene; check its address.`, e);
+	if (!n.ok || !n.body) throw await n.body?.cancel(), new A("network", `The server answered ${n.status} for the scene; check its address.`, e);
 	let r = n.headers.get("Content-Encoding") ? null : n.headers.get("Content-Length");
 	return {
 		body: n.body,
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function fs(e, t) {
-	return new k("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
+function hs(e, t) {
+	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { ao as EigenField, rs as EigenfieldPlugin, k as SceneError, Li as defaultMemory, os as loadEigenfield, bi as novelCamera, wi as placeCamera };
+export { co as EigenField, os as EigenfieldPlugin, A as SceneError, Bi as defaultMemory, ls as loadEigenfield, Ci as novelCamera, Di as placeCamera };
