@@ -21,7 +21,7 @@ from support.schema import SCHEMA
 
 DOCUMENTS = Path(__file__).parents[2] / "docs"
 VERSIONED = [  # codec, what is coded, the first byte
-    ("mesh-1", ball(6, 4), coder.VERSION),
+    ("mesh-2", ball(6, 4), coder.VERSION),
     ("cameras-1", (row_grid(4),), cameras.VERSION),
     ("cameras-2", (row_grid(4),), cameras.DEFLATED_VERSION),
     ("triangles-1", (np.array([[2, 0, 1]], np.int32),), triangles.VERSION),
@@ -62,7 +62,8 @@ def test_every_place_has_a_codec_of_its_kind():
 
 def test_every_versioned_codec_is_tried():
     kinds = {"mesh", "cameras", "triangles", "weights"}
-    assert [name for name, _, _ in VERSIONED] == [name for name, codec in CODECS.items() if codec.kind in kinds]
+    written = [name for name, codec in CODECS.items() if codec.kind in kinds and codec.encode is not None]
+    assert [name for name, _, _ in VERSIONED] == written
 
 
 @pytest.mark.parametrize(("codec", "given", "version"), VERSIONED)

@@ -308,7 +308,7 @@ function streamsOf(json) {
 function named(e, codec = null) {
   const [plane] = e.planes;
   const [basis] = plane.bases;
-  e.mesh.codec = codec ?? "mesh-1";
+  e.mesh.codec = codec ?? "mesh-2";
   e.cameras.coded.codec = codec ?? "cameras-2";
   e.viewPlane.codedTriangles = { bufferView: e.viewPlane.codedTriangles, codec: codec ?? "triangles-1" };
   basis.codedWeights = { bufferView: basis.codedWeights, codec: codec ?? "weights-1" };
@@ -332,7 +332,7 @@ test("streams may name their codecs; an unknown one is refused by name, and so i
   routes["/named.glb"] = { body: writeGlb({ json: own, binary }) };
   assert.deepEqual(await tryLoad(page, "named.glb"), { later: null, loaded: 6 });
   for (const [kind, stream] of Object.entries(STREAMS)) {
-    for (const codec of ["soup-9", kind === "mesh" ? "png" : "mesh-1", "toString"]) {
+    for (const codec of ["soup-9", kind === "mesh" ? "png" : "mesh-2", "toString"]) {
       const other = structuredClone(own);
       stream(find(other)).codec = codec;
       routes["/named.glb"] = { body: writeGlb({ json: other, binary }) };

@@ -99,8 +99,12 @@ def _picture_8bit(mime: str, encode: Callable[..., bytes] | None, lossless: bool
 PICTURE_LIMITS = ("MAX_SIDE", "MAX_STACKED", "MAX_TEXELS")
 CODECS: dict[str, Codec] = {
     "mesh-1": Codec(
-        "mesh", _later("mesh.coder", "encode_mesh"), _later("mesh.coder", "decode_mesh"),
+        "mesh", None, partial(_later("mesh.coder", "decode_mesh"), version=1),
         "codedMesh", "1.2", ("MAX_VERTICES", "MAX_TRIANGLES"),
+    ),
+    "mesh-2": Codec(
+        "mesh", _later("mesh.coder", "encode_mesh"), _later("mesh.coder", "decode_mesh"),
+        "mesh-2", "1.8", ("MAX_VERTICES", "MAX_TRIANGLES"),
     ),
     "cameras-1": Codec(
         "cameras", _later("arrays.cameras", "code_cameras"), _later("arrays.cameras", "decode_cameras"),

@@ -6,7 +6,7 @@ import { decodeCameras, inflateCameras, type CodedCameras } from "./camera-decod
 import { SceneError } from "./errors.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
-import { decodeMesh, type DecodedMesh } from "./mesh-decoder.js";
+import { decodeMesh, decodeOldMesh, type DecodedMesh } from "./mesh-decoder.js";
 import { decodeNames } from "./name-decoder.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { decodeBitmaps } from "./pictures-8bit.js";
@@ -59,7 +59,8 @@ function eightBits(mimeType: schema.MimeType): BitmapCodec {
 
 /** Every codec but those of a residual, which this plug-in does not draw. */
 export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
-  "mesh-1": { kind: "mesh", decode: decodeMesh, needs: "codedMesh", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
+  "mesh-1": { kind: "mesh", decode: decodeOldMesh, needs: "codedMesh", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
+  "mesh-2": { kind: "mesh", decode: decodeMesh, needs: "mesh-2", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
   "cameras-1": { kind: "cameras", decode: decodeCameras, needs: "codedCameras", limits: ["MAX_CAMERAS"] },
   "cameras-2": { kind: "cameras", decode: inflateCameras, needs: "cameras-2", limits: ["MAX_CAMERAS"] },
   "names-1": { kind: "names", decode: decodeNames, needs: "codedNames", limits: ["MAX_NAMES", "MAX_CAMERAS"] },

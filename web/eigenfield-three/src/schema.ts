@@ -52,6 +52,7 @@ export type Feature =
   | "codedNames"
   | "codedTriangles"
   | "codedWeights"
+  | "mesh-2"
   | "namePattern"
   | "packed"
   | "precision"
@@ -62,7 +63,7 @@ export type Feature =
   | "toRGB";
 
 /** Codecs of a mesh. */
-export type MeshCodec = "mesh-1";
+export type MeshCodec = "mesh-1" | "mesh-2";
 
 /** Codecs of intrinsics and poses. */
 export type CamerasCodec = "cameras-1" | "cameras-2";

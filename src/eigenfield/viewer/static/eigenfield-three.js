@@ -235,9 +235,9 @@ var Ie = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function V(e, t, n) {
+function V(e, t, n, r = 1) {
 	if (e.length < t) throw re(n);
-	if (e[0] !== 1) throw j(n, `coded numbers of version ${e[0]}`);
+	if (e[0] !== r) throw j(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
 function Le(e, t, n, r) {
@@ -630,91 +630,92 @@ function sn(e, t) {
 		corners: i
 	};
 }
-function cn(e, t, n, r, i, a) {
-	let o = t.faces.length / 3, s = Math.min(o, Math.floor(n / 3)), c = {
-		faces: new Int32Array(3 * o),
+function cn(e, t, n, r, i, a, o) {
+	let s = t.faces.length / 3, c = Math.min(s, Math.floor(n / 3)), l = {
+		faces: new Int32Array(3 * s),
 		place: new Int32Array(n),
 		chart: new Int32Array(n),
-		kinds: new Uint8Array(s),
-		maps: new Uint32Array(6 * s)
-	}, l = new Int32Array(t.points.length / 3).fill(-1), u = new Int32Array(n), d = [
+		kinds: new Uint8Array(c),
+		maps: new Uint32Array(6 * c)
+	}, u = new Int32Array(t.points.length / 3).fill(-1), d = new Int32Array(n), f = [
 		-1,
 		-1,
 		-1
-	], f = [
+	], p = [
 		0,
 		0,
 		0
-	], p = new Int32Array(Yt), m = /* @__PURE__ */ new Int32Array(8), [h, g, _] = [
+	], m = new Int32Array(Yt), h = /* @__PURE__ */ new Int32Array(8), [g, _, v] = [
 		0,
 		0,
 		-1
-	], v = (e, n) => {
+	], y = (e, n) => {
 		for (let r = 0; r < 3; r++) if (t.faces[3 * e + r] === n) return r;
 		return -1;
-	}, y = (e, n) => {
+	}, b = (e, n) => {
 		let [a, o] = [t.faces[3 * e + n], t.faces[3 * e + (n + 1) % 3]];
 		for (let t = r[a]; t < Math.min(r[a + 1], r[a] + Jt); t++) {
 			let n = Math.floor(i[t] / 3);
 			if (n >= e) break;
-			if (v(n, o) >= 0) return n;
+			if (y(n, o) >= 0) return n;
 		}
 		return -1;
-	}, b = (e, t) => c.faces[3 * e + v(e, t)], x = (n, r) => {
-		let i = t.faces[3 * n + r], o = l[i];
-		if (o < 0) return -1;
-		m.fill($t);
+	}, x = (e, t) => l.faces[3 * e + y(e, t)], S = (n, r) => {
+		let i = t.faces[3 * n + r], a = u[i];
+		if (a < 0) return -1;
+		h.fill($t);
 		let s = 0;
 		for (let e of [r, (r + 2) % 3]) {
-			if (d[e] < 0) continue;
-			let t = b(d[e], i);
-			s === 1 && p[0] === t ? m[1] = f[e] : (p[s] = t, m[2 * s] = f[e], s += 1);
+			if (f[e] < 0) continue;
+			let t = x(f[e], i);
+			s === 1 && m[0] === t ? h[1] = p[e] : (m[s] = t, h[2 * s] = p[e], s += 1);
 		}
-		for (let e = 0; e < Jt && s < Yt && o >= 0; e++) (s < 1 || o !== p[0]) && (s < 2 || o !== p[1]) && (p[s++] = o), o = u[o];
-		let g = -1;
-		for (let t = 0; t < s && g < 0; t++) {
-			let [n, i] = [m[2 * t], m[2 * t + 1]], a = en + 76 + Math.min(s, 3) * 4 + n;
-			e.flag(en + t * 16 + n * 4 + i, en + 64 + t * 3 + r, a, rn) && (g = p[t]);
+		for (let e = 0; e < Jt && s < Yt && a >= 0; e++) (s < 1 || a !== m[0]) && (s < 2 || a !== m[1]) && (m[s++] = a), a = d[a];
+		let c = -1;
+		for (let t = 0; t < s && c < 0; t++) {
+			let [n, i] = [h[2 * t], h[2 * t + 1]], a = en + 76 + Math.min(s, 3) * 4 + n;
+			e.flag(en + t * 16 + n * 4 + i, en + 64 + t * 3 + r, a, rn) && (c = m[t]);
 		}
-		if (g < 0) {
+		if (c < 0) {
 			if (e.flag(tn + s, tn + s, tn + Yt, an)) return -1;
-			if (g = e.raw(B(h - 1)), g >= h || c.place[g] !== i) throw j(a, "a corner that is elsewhere");
+			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw j(o, "a corner that is elsewhere");
 		}
-		for (let e of [r, (r + 2) % 3]) d[e] >= 0 && (f[e] = b(d[e], i) === g ? Zt : Qt);
-		return g;
-	}, S = () => {
-		let t = g++;
-		if (!e.flag(W, W, W, on)) return c.kinds[t] = e.flag(W + 1, W + 1, W + 1, on) ? 2 : 0, t;
-		c.kinds[t] = 1;
-		let n = _;
-		if (_ = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, on)) {
+		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Zt : Qt);
+		return c;
+	}, C = () => {
+		let t = _++;
+		if (!e.flag(W, W, W, on)) return l.kinds[t] = e.flag(W + 1, W + 1, W + 1, on) ? 2 : 0, t;
+		l.kinds[t] = 1;
+		let n = v;
+		if (v = t, n >= 0 && e.flag(W + 2, W + 2, W + 2, on)) {
 			let n = e.raw(B(t - 1));
-			if (n >= t || c.kinds[n] !== 1) throw j(a, "a map that is not there");
-			return c.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
+			if (n >= t || l.kinds[n] !== 1) throw j(o, "a map that is not there");
+			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
 		let r = n >= 0 && e.flag(W + 3, W + 3, W + 3, on);
-		for (let i = 0; i < 6; i++) c.maps[6 * t + i] = r && i < 4 ? c.maps[6 * n + i] : e.raw(32);
+		for (let i = 0; i < 4; i++) l.maps[6 * t + i] = r ? l.maps[6 * n + i] : e.raw(32);
+		for (let n = 4; n < 6; n++) l.maps[6 * t + n] = e.raw(a);
 		return t;
 	};
-	for (let e = 0; e < o; e++) {
-		for (let t = 0; t < 3; t++) d[t] = y(e, t), f[t] = Xt;
+	for (let e = 0; e < s; e++) {
+		for (let t = 0; t < 3; t++) f[t] = b(e, t), p[t] = Xt;
 		let r = -1, i = [];
-		for (let o = 0; o < 3; o++) {
-			let s = x(e, o);
-			if (s >= 0) r = c.chart[s];
+		for (let a = 0; a < 3; a++) {
+			let s = S(e, a);
+			if (s >= 0) r = l.chart[s];
 			else {
-				if (h >= n) throw j(a, "more vertices than announced");
-				s = h++;
-				let r = t.faces[3 * e + o];
-				c.place[s] = r, u[s] = l[r], l[r] = s, i.push(s);
+				if (g >= n) throw j(o, "more vertices than announced");
+				s = g++;
+				let r = t.faces[3 * e + a];
+				l.place[s] = r, d[s] = u[r], u[r] = s, i.push(s);
 			}
-			c.faces[3 * e + o] = s;
+			l.faces[3 * e + a] = s;
 		}
-		r < 0 && (r = S());
-		for (let e of i) c.chart[e] = r;
+		r < 0 && (r = C());
+		for (let e of i) l.chart[e] = r;
 	}
-	if (h !== n) throw j(a, "fewer vertices than announced");
-	return c;
+	if (g !== n) throw j(o, "fewer vertices than announced");
+	return l;
 }
 // eigenfield-three/src/mesh-values.ts
 var ln = 16, un = 6, dn = 13, fn = 14, pn = 20, mn = nn, hn = mn + 169 + 280 + 182, gn = hn + 144 + 576 + 48, [_n, vn] = [12, 13], yn = [
@@ -854,30 +855,38 @@ function En(e, t, n, r, i, a, o) {
 	return [n[2 * i] + f * u - m * d, n[2 * i + 1] + f * d + m * u];
 }
 // eigenfield-three/src/mesh-decoder.ts
-var Dn = 144, On = 18, kn = 8;
-function An(e, t) {
-	let n = V(e, Dn, t), [r, i, a] = [
-		n.getUint8(1),
-		n.getUint8(2),
-		n.getUint8(3)
-	], [o, s, c] = [
+var Dn = 144, On = 2, kn = 3, An = 18, jn = 8;
+function Mn(e, t) {
+	return Pn(e, t, 1);
+}
+function Nn(e, t) {
+	return Pn(e, t, On);
+}
+function Pn(e, t, n) {
+	let r = V(e, Dn, t, n), [i, a, o] = [
+		r.getUint8(1),
+		r.getUint8(2),
+		r.getUint8(3)
+	], [s, c, l] = [
 		4,
 		8,
 		12
-	].map((e) => n.getUint32(e, !0)), l = Float64Array.from({ length: 16 }, (e, t) => n.getFloat64(16 + 8 * t, !0));
-	if (o > be || c > be || s > xe) throw j(t, `${c} vertices and ${s} faces`);
-	if (Le(e, Math.max(o, s, c), xe, t), r > 1 || a > kn * r || i < 1 || i > On || !l.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
-	let u = new Ie(e.subarray(Dn), gn, 16), d = Kt(u, o, s, {
-		flat: r === 1,
-		fine: a
+	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
+	if (s > be || l > be || c > xe) throw j(t, `${l} vertices and ${c} faces`);
+	if (Le(e, Math.max(s, c, l), xe, t), i > 1 || o > jn * i || a < 1 || a > An || !u.every(Number.isFinite)) throw j(t, "a lattice that cannot be");
+	let d = new Ie(e.subarray(Dn), gn, 16), f = Kt(d, s, c, {
+		flat: i === 1,
+		fine: o
 	}, t);
-	u.checkEnd(t);
-	let f = sn(d.faces, o);
-	r && Sn(u, d, f.first, f.corners);
-	let p = cn(u, d, c, f.first, f.corners, t), m = jn(d.points, l), h = sn(p.faces, c), g = Tn(u, p, m, h.first, h.corners);
-	return u.checkEnd(t), Nn(Mn(d, p, m, g, 2 ** i), t);
+	d.checkEnd(t);
+	let p = sn(f.faces, s);
+	i && Sn(d, f, p.first, p.corners);
+	let m = n === On ? a + kn : 32, h = cn(d, f, l, p.first, p.corners, m, t), g = Fn(f.points, u), _ = sn(h.faces, l), v = Tn(d, h, g, _.first, _.corners);
+	d.checkEnd(t);
+	let y = new Float32Array(h.maps.buffer);
+	return Ln(In(f, h, g, v, 2 ** a, (e) => n === On ? h.maps[e] / 2 ** (a + 1) - 2 : y[e]), t);
 }
-function jn(e, t) {
+function Fn(e, t) {
 	let n = new Float64Array(e.length);
 	for (let r = 0; r < e.length; r += 3) {
 		let i = (n) => t[4 * n] * e[r] + t[4 * n + 1] * e[r + 1] + t[4 * n + 2] * e[r + 2] + t[4 * n + 3], a = i(3);
@@ -885,30 +894,30 @@ function jn(e, t) {
 	}
 	return n;
 }
-function Mn(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c) {
-	let l = new Float32Array(3 * n.length), u = new Float32Array(2 * n.length), d = new Float32Array(a.buffer);
+function In(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) {
+	let u = new Float32Array(3 * n.length), d = new Float32Array(2 * n.length), f = new Float32Array(a.buffer);
 	return n.forEach((t, n) => {
-		l.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
-		let a = 6 * r[n], f = i[r[n]] === 1;
+		u.set(o.subarray(3 * t, 3 * t + 3), 3 * n);
+		let a = 6 * r[n], p = i[r[n]] === 1;
 		for (let r = 0; r < 2; r++) {
 			let i = a + 2 * r;
-			u[2 * n + r] = f ? d[i] * e.points[3 * t] + d[i + 1] * e.points[3 * t + 1] + d[a + 4 + r] : s[2 * n + r] / c;
+			d[2 * n + r] = p ? f[i] * e.points[3 * t] + f[i + 1] * e.points[3 * t + 1] + l(a + 4 + r) : s[2 * n + r] / c;
 		}
 	}), {
-		positions: l,
-		uv: u,
+		positions: u,
+		uv: d,
 		indices: new Uint32Array(t)
 	};
 }
-function Nn(e, t) {
+function Ln(e, t) {
 	let n = (e) => Math.abs(e) <= Ce;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw j(t, "positions or texture coordinates that are not finite");
 	return e;
 }
 // eigenfield-three/src/name-decoder.ts
-var Pn = 4 * L;
-async function Fn(e, t, n) {
-	let r = Math.min(ye, Pn * t), i = await le(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+var Rn = 4 * L;
+async function zn(e, t, n) {
+	let r = Math.min(ye, Rn * t), i = await le(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw j(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -927,16 +936,16 @@ async function Fn(e, t, n) {
 	return c;
 }
 // eigenfield-three/src/headers.ts
-function In(e) {
+function Bn(e) {
 	let t = new DataView(e);
 	try {
-		return Ln(t) ?? Rn(t) ?? zn(t) ?? Bn(t);
+		return Hn(t) ?? Un(t) ?? Wn(t) ?? Gn(t);
 	} catch (e) {
 		if (e instanceof RangeError) return null;
 		throw e;
 	}
 }
-function G(e, t) {
+function Vn(e, t) {
 	return String.fromCharCode(...[
 		0,
 		1,
@@ -944,15 +953,15 @@ function G(e, t) {
 		3
 	].map((n) => e.getUint8(t + n)));
 }
-function Ln(e) {
-	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || G(e, 12) !== "IHDR" ? null : {
+function Hn(e) {
+	return e.getUint32(0) !== 2303741511 || e.getUint32(4) !== 218765834 || Vn(e, 12) !== "IHDR" ? null : {
 		type: "image/png",
 		width: e.getUint32(16),
 		height: e.getUint32(20),
 		bits: null
 	};
 }
-function Rn(e) {
+function Un(e) {
 	if (e.getUint16(0) !== 65496) return null;
 	for (let t = 2;;) {
 		let n = e.getUint16(t);
@@ -975,12 +984,12 @@ function Rn(e) {
 		t += 2 + e.getUint16(t + 2);
 	}
 }
-function zn(e) {
-	if (G(e, 0) !== "RIFF" || G(e, 8) !== "WEBP") return null;
+function Wn(e) {
+	if (Vn(e, 0) !== "RIFF" || Vn(e, 8) !== "WEBP") return null;
 	let t = {
 		type: "image/webp",
 		bits: null
-	}, n = G(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
+	}, n = Vn(e, 12), r = (t) => e.getUint16(t, !0) + 65536 * e.getUint8(t + 2);
 	if (n === "VP8X") return {
 		...t,
 		width: 1 + r(24),
@@ -1000,11 +1009,11 @@ function zn(e) {
 		height: e.getUint16(28, !0) & 16383
 	} : null;
 }
-function Bn(e) {
-	if (G(e, 4) !== "ftyp") return null;
+function Gn(e) {
+	if (Vn(e, 4) !== "ftyp") return null;
 	let t = null, n = null, r = (i, a) => {
 		for (let o = i; o + 8 <= a;) {
-			let i = e.getUint32(o), s = G(e, o + 4), c = i === 0 ? a : o + i;
+			let i = e.getUint32(o), s = Vn(e, o + 4), c = i === 0 ? a : o + i;
 			if (i === 1 || c < o + 8 || c > a) return;
 			if (s === "meta" && r(o + 12, c), (s === "iprp" || s === "ipco") && r(o + 8, c), s === "ispe") {
 				let [n, r] = [e.getUint32(o + 12), e.getUint32(o + 16)];
@@ -1027,15 +1036,15 @@ function Bn(e) {
 	};
 }
 // eigenfield-three/src/pictures-8bit.ts
-var Vn = {
+var Kn = {
 	colorSpaceConversion: "none",
 	premultiplyAlpha: "none"
-}, Hn = {
+}, qn = {
 	"image/avif": "AAAAHGZ0eXBhdmlmAAAAAGF2aWZtaWYxbWlhZgAAAOltZXRhAAAAAAAAACFoZGxyAAAAAAAAAABwaWN0AAAAAAAAAAAAAAAAAAAAAA5waXRtAAAAAAABAAAAHmlsb2MAAAAARAAAAQABAAAAAQAAAQ0AAAAZAAAAKGlpbmYAAAAAAAEAAAAaaW5mZQIAAAAAAQAAYXYwMUNvbG9yAAAAAGhpcHJwAAAASWlwY28AAAAUaXNwZQAAAAAAAAAIAAAACAAAAA5waXhpAAAAAAEIAAAADGF2MUOBABwAAAAAE2NvbHJuY2x4AAEADQAGgAAAABdpcG1hAAAAAAAAAAEAAQQBAoMEAAAAIW1kYXQSAAoIGAi/aYCGg1AyCxlGIYeeaACQQNmg",
 	"image/webp": "UklGRh4AAABXRUJQVlA4TBEAAAAvAAAAAAdQwAIWsP+BiOh/AAA="
 };
-function Un(e, t, n) {
-	let r = In(e);
+function Jn(e, t, n) {
+	let r = Bn(e);
 	if (!r) throw j(t.where, "no picture");
 	let { width: i, height: a, bits: o } = r;
 	if (n && (i !== n[0] || a !== n[1])) throw j(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
@@ -1044,25 +1053,25 @@ function Un(e, t, n) {
 	if (!s || i > 16384 || a > 32768 || s > me) throw j(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
-async function Wn(e, t, n, r) {
-	let [i, a] = Un(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
+async function Yn(e, t, n, r) {
+	let [i, a] = Jn(e, t, n), [o, s] = [Math.ceil(i / r), Math.ceil(a / r)], c = r === 1 ? {} : {
 		resizeWidth: o,
 		resizeHeight: s,
 		resizeQuality: "high"
-	}, l = In(e)?.type ?? t.codec.mimeType, u;
+	}, l = Bn(e)?.type ?? t.codec.mimeType, u;
 	try {
 		u = await createImageBitmap(new Blob([e], { type: l }), {
-			...Vn,
+			...Kn,
 			...c
 		});
 	} catch (e) {
-		throw await Kn(l) ? j(t.where, "it cannot be decoded") : qn(l, t, e);
+		throw await Zn(l) ? j(t.where, "it cannot be decoded") : Qn(l, t, e);
 	}
 	if (u.width === o && u.height === s) return u;
 	throw u.close(), j(t.where, `decoded to ${u.width} x ${u.height}, not to ${o} x ${s}`);
 }
-var Gn = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Un(e, t, n && [n[0], i * n[1]]), s = await Wn(e, t, [a, o], i === 1 ? r : 1);
+var Xn = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Jn(e, t, n && [n[0], i * n[1]]), s = await Yn(e, t, [a, o], i === 1 ? r : 1);
 	if (i === 1) return [{
 		picture: s,
 		row: 0,
@@ -1075,7 +1084,7 @@ var Gn = async (e, t, n, r = 1) => {
 	}));
 	if (r === 1) return l;
 	let [u, d] = [Math.ceil(a / r), Math.ceil(c / r)], f = {
-		...Vn,
+		...Kn,
 		resizeWidth: u,
 		resizeHeight: d,
 		resizeQuality: "high"
@@ -1086,8 +1095,8 @@ var Gn = async (e, t, n, r = 1) => {
 		rows: d
 	}));
 };
-async function Kn(e) {
-	let t = Hn[e];
+async function Zn(e) {
+	let t = qn[e];
 	if (!t) return !0;
 	let n = Uint8Array.from(atob(t), (e) => e.charCodeAt(0));
 	try {
@@ -1096,17 +1105,17 @@ async function Kn(e) {
 		return !1;
 	}
 }
-function qn(e, t, n) {
+function Qn(e, t, n) {
 	return new A("codec", `This browser cannot decode ${e.replace("image/", "").toUpperCase()} pictures; use a newer one, or encode the scene with --codec png.`, t.where, { cause: n });
 }
 // eigenfield-three/src/pictures-10bit.ts
-var Jn = /* @__PURE__ */ new Set([
+var $n = /* @__PURE__ */ new Set([
 	"I420P10",
 	"I422P10",
 	"I444P10"
-]), Yn = async (e, t, n, r = 1) => {
-	let i = t.pieces * t.textures, [a, o] = Un(e, t, n && [n[0], i * n[1]]), s = await Xn(e, a, o);
-	if (!s) return Gn(e, t, n, r);
+]), er = async (e, t, n, r = 1) => {
+	let i = t.pieces * t.textures, [a, o] = Jn(e, t, n && [n[0], i * n[1]]), s = await tr(e, a, o);
+	if (!s) return Xn(e, t, n, r);
 	let c = o / i;
 	return Array.from({ length: i }, (e, t) => {
 		if (r === 1) return {
@@ -1114,7 +1123,7 @@ var Jn = /* @__PURE__ */ new Set([
 			row: t * c,
 			rows: c
 		};
-		let n = Zn(s, t * c, c, r);
+		let n = nr(s, t * c, c, r);
 		return {
 			picture: n,
 			row: 0,
@@ -1122,7 +1131,7 @@ var Jn = /* @__PURE__ */ new Set([
 		};
 	});
 };
-async function Xn(e, t, n) {
+async function tr(e, t, n) {
 	if (typeof ImageDecoder > "u") return null;
 	let r = null, i = null;
 	try {
@@ -1131,7 +1140,7 @@ async function Xn(e, t, n) {
 			type: "image/avif"
 		}), i = (await r.decode()).image;
 		let a = i.visibleRect;
-		if (!Jn.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
+		if (!$n.has(i.format ?? "") || a?.width !== t || a.height !== n) return null;
 		let o = new Uint8Array(i.allocationSize()), [s] = await i.copyTo(o);
 		return s ? {
 			data: o.subarray(s.offset),
@@ -1145,7 +1154,7 @@ async function Xn(e, t, n) {
 		i?.close(), r?.close();
 	}
 }
-function Zn(e, t, n, r) {
+function nr(e, t, n, r) {
 	let [i, a] = [Math.ceil(e.width / r), Math.ceil(n / r)], o = new Uint8Array(2 * i * a);
 	for (let s = 0; s < a; s++) for (let a = 0; a < i; a++) {
 		let [c, l] = [0, 0];
@@ -1164,36 +1173,36 @@ function Zn(e, t, n, r) {
 	};
 }
 // eigenfield-three/src/triangle-decoder.ts
-var Qn = 5;
-function $n(e, t) {
-	let n = V(e, Qn, t).getUint32(1, !0);
+var rr = 5;
+function ir(e, t) {
+	let n = V(e, rr, t).getUint32(1, !0);
 	Le(e, 3 * n, 6 * I, t);
-	let r = Ye(e.subarray(Qn)), i = $e(r, n, 3, !0);
+	let r = Ye(e.subarray(rr)), i = $e(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw j(t, "triangles of cameras that there cannot be");
 	return { corners: Uint32Array.from(a) };
 }
 // eigenfield-three/src/weight-decoder.ts
-var er = 14, tr = 2 ** 20;
-function nr(e, t) {
-	let n = V(e, er, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+var ar = 14, or = 2 ** 20;
+function sr(e, t) {
+	let n = V(e, ar, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw j(t, "weights of no camera, or of an unknown kind");
-	Le(e, o * s * Math.max(a, 1), Se, t), V(e, er + 4 * a, t);
+	Le(e, o * s * Math.max(a, 1), Se, t), V(e, ar + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw j(t, "a grid with too few cells");
-	let l = Ye(e.subarray(er + 4 * a)), u = r ? et(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = Ye(e.subarray(ar + 4 * a)), u = r ? et(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
-	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * tr * Math.max(o, s);
+	].map(() => new Float64Array(c)), p = new Float32Array(i * a), m = 4 * or * Math.max(o, s);
 	for (let e = 0; e < a; e++) {
-		let r = n.getFloat32(er + 4 * e, !0);
+		let r = n.getFloat32(ar + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw j(t, "a step that is not positive");
 		let i = Xe(l), h = Qe(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw j(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
-		let g = i === 2 ? rr(h, o, s) : h;
+		let g = i === 2 ? cr(h, o, s) : h;
 		for (let t = 0; t < c; t++) {
 			let n = u ? u[t] : t;
 			n >= 0 && (p[n * a + e] = g[t] * r);
@@ -1207,14 +1216,14 @@ function nr(e, t) {
 		values: p
 	};
 }
-function rr(e, t, n) {
-	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = ir(n);
+function cr(e, t, n) {
+	let r = new Float64Array(t * n), i = new Float64Array(t * n), a = lr(n);
 	for (let i = 0; i < t; i++) for (let t = 0; t < n; t++) {
 		let o = 0;
 		for (let r = 0; r < n; r++) o += a(r, t) * e[i * n + r];
 		r[i * n + t] = o;
 	}
-	let o = ir(t);
+	let o = lr(t);
 	for (let e = 0; e < t; e++) for (let a = 0; a < n; a++) {
 		let s = 0;
 		for (let i = 0; i < t; i++) s += o(i, e) * r[i * n + a];
@@ -1222,13 +1231,13 @@ function rr(e, t, n) {
 	}
 	return i;
 }
-function ir(e) {
+function lr(e) {
 	let [t, n] = [Math.sqrt(1 / e), Math.sqrt(2 / e)], r = Float64Array.from({ length: 4 * e }, (t, r) => n * Math.cos(Math.PI * r / (2 * e)));
 	return (n, i) => n === 0 ? t : r[(2 * i + 1) * n % (4 * e)];
 }
 // eigenfield-three/src/codecs.ts
-function ar(e) {
-	let [t, n] = [Gn, Gn];
+function ur(e) {
+	let [t, n] = [Xn, Xn];
 	return {
 		kind: "picture",
 		decode: t,
@@ -1243,11 +1252,17 @@ function ar(e) {
 		bits: 8
 	};
 }
-var K = {
+var G = {
 	"mesh-1": {
 		kind: "mesh",
-		decode: An,
+		decode: Mn,
 		needs: "codedMesh",
+		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
+	},
+	"mesh-2": {
+		kind: "mesh",
+		decode: Nn,
+		needs: "mesh-2",
 		limits: ["MAX_VERTICES", "MAX_TRIANGLES"]
 	},
 	"cameras-1": {
@@ -1264,59 +1279,59 @@ var K = {
 	},
 	"names-1": {
 		kind: "names",
-		decode: Fn,
+		decode: zn,
 		needs: "codedNames",
 		limits: ["MAX_NAMES", "MAX_CAMERAS"]
 	},
 	"triangles-1": {
 		kind: "triangles",
-		decode: $n,
+		decode: ir,
 		needs: "codedTriangles",
 		limits: ["MAX_CAMERAS"]
 	},
 	"weights-1": {
 		kind: "weights",
-		decode: nr,
+		decode: sr,
 		needs: "codedWeights",
 		limits: ["MAX_WEIGHTS"]
 	},
-	png: ar("image/png"),
-	webp: ar("image/webp"),
-	avif: ar("image/avif"),
-	jpeg: ar("image/jpeg"),
+	png: ur("image/png"),
+	webp: ur("image/webp"),
+	avif: ur("image/avif"),
+	jpeg: ur("image/jpeg"),
 	"av1-10bit-1": {
-		...ar("image/avif"),
+		...ur("image/avif"),
 		bits: 10,
-		decode: Yn,
+		decode: er,
 		needs: "bits"
 	},
 	"av1-10bit-2": {
-		...ar("video/AV1"),
+		...ur("video/AV1"),
 		bits: 10,
-		decode: (e, t, n, r) => Yn(se(e, t.where), t, n, r),
-		bitmaps: (e, t, n, r) => Gn(se(e, t.where), t, n, r),
+		decode: (e, t, n, r) => er(se(e, t.where), t, n, r),
+		bitmaps: (e, t, n, r) => Xn(se(e, t.where), t, n, r),
 		needs: "av1-10bit-2"
 	}
-}, or = {
+}, dr = {
 	mesh: "mesh-1",
 	cameras: "cameras-1",
 	names: "names-1",
 	triangles: "triangles-1",
 	weights: "weights-1"
 };
-function sr(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(K, r) ? K[r] : null;
+function fr(e, t, n) {
+	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(G, r) ? G[r] : null;
 	if (i?.kind === e) return i;
 	throw new A("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
-function cr(e, t) {
-	return Object.keys(K).find((n) => {
-		let r = K[n];
+function pr(e, t) {
+	return Object.keys(G).find((n) => {
+		let r = G[n];
 		return r.kind === "picture" && r.mimeType === e && (t ?? r.bits) === r.bits;
 	});
 }
 // eigenfield-three/src/json.ts
-var q = class e {
+var K = class e {
 	raw;
 	where;
 	constructor(e, t) {
@@ -1373,21 +1388,21 @@ var q = class e {
 	wrong(e) {
 		return j(this.where || "/", this.exists ? e : "missing");
 	}
-}, lr = 5121, ur = 5123, dr = 5125, J = 5126, fr = {
-	[lr]: 1,
-	[ur]: 2,
-	[dr]: 4,
-	[J]: 4
-}, pr = /* @__PURE__ */ new Set([
+}, mr = 5121, hr = 5123, gr = 5125, q = 5126, _r = {
+	[mr]: 1,
+	[hr]: 2,
+	[gr]: 4,
+	[q]: 4
+}, vr = /* @__PURE__ */ new Set([
 	"cameras",
 	"triangles",
 	"weights"
-]), mr = {
+]), yr = {
 	SCALAR: 1,
 	VEC2: 2,
 	VEC3: 3
 };
-function hr(e) {
+function br(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
@@ -1403,10 +1418,10 @@ function hr(e) {
 		return i;
 	});
 }
-function gr(e) {
+function xr(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
-function _r(e, t) {
+function Sr(e, t) {
 	let n = e.key("accessors").items(F);
 	return (e, r, i, a) => {
 		let o = n[e.integer(0, n.length - 1)];
@@ -1417,14 +1432,14 @@ function _r(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = mr[r] ?? 1, u = o.key("count").integer(1, Se);
+		let l = yr[r] ?? 1, u = o.key("count").integer(1, Se);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
-		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = fr[s] * l;
+		let p = o.key("byteOffset"), m = p.exists ? p.integer(0, f.length) : 0, h = _r[s] * l;
 		if (f.stride && (f.stride < h || r === "SCALAR")) throw o.wrong("a stride that cannot be");
 		if (m + (u - 1) * (f.stride || h) + h > f.length) throw o.wrong("outside its buffer view");
-		if ((m + f.offset) % fr[s]) throw o.wrong("not aligned");
+		if ((m + f.offset) % _r[s]) throw o.wrong("not aligned");
 		return {
 			view: d,
 			offset: m,
@@ -1435,40 +1450,40 @@ function _r(e, t) {
 		};
 	};
 }
-function vr(e, t, n) {
-	let r = typeof t.raw == "number" && pr.has(e), i = sr(e, r ? new q(void 0, t.where) : t.key("codec"), or[e]);
+function Cr(e, t, n) {
+	let r = typeof t.raw == "number" && vr.has(e), i = fr(e, r ? new K(void 0, t.where) : t.key("codec"), dr[e]);
 	return {
 		view: n(r ? t : t.key("bufferView")),
 		codec: i,
 		where: t.where
 	};
 }
-async function yr(e, t, n) {
+async function wr(e, t, n) {
 	let r = await n(e.view), i = t[e.view]?.length ?? Infinity;
 	if (r.byteLength < i) throw re(e.where);
-	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + fr[c] * o * s);
-	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : br(new Float32Array(l), e.where);
+	let { offset: a, count: o, items: s, type: c } = e, l = r.slice(a, a + _r[c] * o * s);
+	return c === 5125 ? new Uint32Array(l) : c === 5123 ? new Uint16Array(l) : Tr(new Float32Array(l), e.where);
 }
-function br(e, t) {
+function Tr(e, t) {
 	for (let n of e) if (!(Math.abs(n) <= 1e30)) throw j(t, `${n} among its numbers`);
 	return e;
 }
 // eigenfield-three/src/planes.ts
-var Y = 8, xr = 16;
-function Sr(e, t) {
+var J = 8, Er = 16;
+function Dr(e, t) {
 	return new A("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Cr(e, t = fe) {
+function Or(e, t = fe) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
 	if (n * r > me) throw e.wrong(`more than ${me} texels`);
 	return [n, r];
 }
-function wr(e, t, n, r, i) {
+function kr(e, t, n, r, i) {
 	let a = e.key("planes").items(16);
 	if (!a.length) throw e.key("planes").wrong("no plane");
 	let o = a.map((e, a) => {
-		let o = e.key("channels").integer(1, 64), s = Mr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => Pr(e, o, t, r, i);
+		let o = e.key("channels").integer(1, 64), s = Lr(e, o, a === 0 ? n : null, i), c = e.key("bases").items(64), l = (e) => zr(e, o, t, r, i);
 		return {
 			channels: o,
 			...s,
@@ -1478,7 +1493,7 @@ function wr(e, t, n, r, i) {
 	for (let { channels: e, meanSize: t, bases: n } of o) {
 		s += 4 * e * (t ? t[0] * t[1] : 0);
 		for (let { size: t, count: r, pictures: i } of n) {
-			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === Y ? 1 : 2), 0);
+			let n = i.reduce((e, { textures: t, codec: n }) => e + t * (n.bits === J ? 1 : 2), 0);
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
@@ -1486,7 +1501,7 @@ function wr(e, t, n, r, i) {
 	if (s > ge) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
-function Tr(e, t) {
+function Ar(e, t) {
 	let n = t.reduce((e, { channels: t }) => e + t, 0), r = e.key("toRGB");
 	if (r.exists) {
 		let e = r.numbers(3 * n), t = (t, r) => e[t * n + r] ?? 0;
@@ -1518,11 +1533,11 @@ function Tr(e, t) {
 			1
 		]
 	];
-	throw Sr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
+	throw Dr(`${t.length > 1 ? `${t.length} planes` : `${n} channels`} and no colours for them`, `${e.where}/planes`);
 }
-function Er(e, t, n, r, i, a = !1) {
-	let o = Dr(e), s = t === 3 && o.bits === Y ? 1 : t;
-	r && Fr(e, s * n, r);
+function jr(e, t, n, r, i, a = !1) {
+	let o = Mr(e), s = t === 3 && o.bits === J ? 1 : t;
+	r && Br(e, s * n, r);
 	let [c, l] = [e.key("scale"), e.key("zero")], u = {
 		view: i(e.key("bufferView")),
 		codec: o,
@@ -1530,71 +1545,71 @@ function Er(e, t, n, r, i, a = !1) {
 		pieces: s,
 		where: e.where
 	};
-	return a && o.bits === Y && !c.exists && !l.exists ? {
+	return a && o.bits === J && !c.exists && !l.exists ? {
 		...u,
-		...Or(t)
+		...Nr(t)
 	} : {
 		...u,
-		scale: jr(c, t, n),
-		zero: jr(l, t, n)
+		scale: Ir(c, t, n),
+		zero: Ir(l, t, n)
 	};
 }
-function Dr(e) {
+function Mr(e) {
 	let t = e.key("mimeType").text(L);
-	if (!cr(t)) throw e.key("mimeType").wrong("an unknown type");
-	let n = e.key("bits"), r = n.exists ? n.integer(1, xr) : Y, i = cr(t, r);
+	if (!pr(t)) throw e.key("mimeType").wrong("an unknown type");
+	let n = e.key("bits"), r = n.exists ? n.integer(1, Er) : J, i = pr(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
-	let a = e.key("codec"), o = sr("picture", a, i);
+	let a = e.key("codec"), o = fr("picture", a, i);
 	if (o.mimeType !== t || o.bits !== r) throw a.wrong(`${r} bits of ${t}`);
 	return o;
 }
-function Or(e) {
+function Nr(e) {
 	return {
 		scale: Array(e).fill(1 / 255),
 		zero: Array(e).fill(0)
 	};
 }
-function kr(e) {
-	return e.some(({ codec: e }) => e.bits > Y);
+function Pr(e) {
+	return e.some(({ codec: e }) => e.bits > J);
 }
-function Ar({ codec: e }) {
+function Fr({ codec: e }) {
 	return (2 ** e.bits - 1) / 255;
 }
-function jr(e, t, n) {
+function Ir(e, t, n) {
 	let r = e.items(t * n).map((e) => e.number());
 	if (r.length === t * n) return r;
 	if (r.length !== t) throw e.wrong(`${t} or ${t * n} numbers are needed`);
 	return Array(n).fill(r).flat();
 }
-function Mr(e, t, n, r) {
+function Lr(e, t, n, r) {
 	let i = e.key("mean");
 	if (!i.exists) {
 		if (n === null || t !== 1 && t !== 3) throw i.wrong("no mean");
 		return {
 			mean: {
 				view: n,
-				codec: K.png,
+				codec: G.png,
 				textures: 1,
 				pieces: 1,
 				where: "/images/0",
-				...Or(t)
+				...Nr(t)
 			},
 			meanSize: null,
 			precision: null
 		};
 	}
-	let a = Cr(i.key("size")), o = Er(i, t, 1, a, r, !0);
+	let a = Or(i.key("size")), o = jr(i, t, 1, a, r, !0);
 	return {
 		mean: o,
 		meanSize: a,
-		precision: Nr(i.key("precision"), o, r)
+		precision: Rr(i.key("precision"), o, r)
 	};
 }
-function Nr(e, t, n) {
+function Rr(e, t, n) {
 	if (!e.exists) return null;
-	if (t.codec.bits === Y) throw e.wrong(`of a mean of ${Y} bits`);
-	let r = Cr(e.key("size"), pe), i = sr("picture", e.key("codec"), "png");
-	if (i !== K.png) throw e.key("codec").wrong("no PNG");
+	if (t.codec.bits === J) throw e.wrong(`of a mean of ${J} bits`);
+	let r = Or(e.key("size"), pe), i = fr("picture", e.key("codec"), "png");
+	if (i !== G.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
 		codec: i,
@@ -1604,19 +1619,19 @@ function Nr(e, t, n) {
 		where: e.where
 	};
 }
-function Pr(e, t, n, r, i) {
-	let a = Cr(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Cr(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
+function zr(e, t, n, r, i) {
+	let a = Or(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Or(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, fe) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = 0, f = e.key("picture"), p = f.exists ? f.object() : {}, m = e.key("textures").items(he).map((e) => {
-		let n = new q({
+		let n = new K({
 			...p,
 			...e.object()
 		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, he) : 1;
-		return d += o, Er(n, t, o, a, i);
+		return d += o, jr(n, t, o, a, i);
 	});
 	if (d > 4096) throw e.wrong(`more than ${he} textures`);
-	let h = e.key("codedWeights"), g = d ? h.exists ? vr("weights", h, i) : r(e.key("weights"), "SCALAR", [J], n * d) : null;
+	let h = e.key("codedWeights"), g = d ? h.exists ? Cr("weights", h, i) : r(e.key("weights"), "SCALAR", [q], n * d) : null;
 	return {
 		size: a,
 		grid: c,
@@ -1627,13 +1642,13 @@ function Pr(e, t, n, r, i) {
 		where: e.where
 	};
 }
-function Fr(e, t, [n, r]) {
+function Br(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
 	if (n * i > me) throw e.wrong(`more than ${me} texels`);
 }
 // eigenfield-three/src/document.ts
-var Ir = [
+var Vr = [
 	"namePattern",
 	"packed",
 	"precision",
@@ -1641,19 +1656,19 @@ var Ir = [
 	"sharedPicture",
 	"stacks",
 	"toRGB"
-], Lr = Object.values(K).flatMap(({ needs: e }) => e ?? []), Rr = /* @__PURE__ */ new Set([...Ir, ...Lr]), zr = 64, Br = 9, Vr = 10 ** Br;
-function Hr(e) {
-	let t = new q(e, "");
+], Hr = Object.values(G).flatMap(({ needs: e }) => e ?? []), Ur = /* @__PURE__ */ new Set([...Vr, ...Hr]), Wr = 64, Gr = 9, Kr = 10 ** Gr;
+function qr(e) {
+	let t = new K(e, "");
 	try {
 		return t.key("extensions").key(ue).exists;
 	} catch {
 		return !1;
 	}
 }
-function Ur(e) {
-	let t = new q(e, ""), n = t.key("extensions").key(ue), r = Wr(n), i = hr(t), a = _r(t, i), o = gr(i);
-	Gr(t);
-	let s = Jr(t, o), c = n.key("cameras"), { count: l, names: u } = Yr(c, o), d = Qr(c, l), f = d.filter((e) => !e).length, p = wr(n, f, s, a, o), m = Tr(n, p), h = c.key("colour");
+function Jr(e) {
+	let t = new K(e, ""), n = t.key("extensions").key(ue), r = Yr(n), i = br(t), a = Sr(t, i), o = xr(i);
+	Xr(t);
+	let s = $r(t, o), c = n.key("cameras"), { count: l, names: u } = ei(c, o), d = ri(c, l), f = d.filter((e) => !e).length, p = kr(n, f, s, a, o), m = Ar(n, p), h = c.key("colour");
 	if (h.exists && m.length < 3) throw h.wrong("needs three channels");
 	let g = n.key("viewPlane"), [_, v] = [g.key("triangles"), g.key("codedTriangles")], y = t.key("meshes").at(0).key("primitives").at(0), b = y.key("mode");
 	if (b.exists && b.integer(0, 6) !== 4) throw b.wrong("no triangles");
@@ -1666,36 +1681,36 @@ function Ur(e) {
 		names: u,
 		heldOut: d,
 		reference: n.key("reference").integer(0, l - 1),
-		calibration: $r(c, l, a, o),
-		sizes: ei(c, l, a),
-		colour: h.exists ? a(h, "SCALAR", [J], 6 * l) : null,
-		...ti(g),
-		triangles: v.exists ? vr("triangles", v, o) : _.exists ? qr(a(_, "SCALAR", [ur, dr], null), 2 * I) : null,
-		settings: ni(n.key("settings")),
-		scores: ni(n.key("scores")),
+		calibration: ii(c, l, a, o),
+		sizes: ai(c, l, a),
+		colour: h.exists ? a(h, "SCALAR", [q], 6 * l) : null,
+		...oi(g),
+		triangles: v.exists ? Cr("triangles", v, o) : _.exists ? Qr(a(_, "SCALAR", [hr, gr], null), 2 * I) : null,
+		settings: si(n.key("settings")),
+		scores: si(n.key("scores")),
 		views: i,
-		mesh: w.exists ? vr("mesh", w, o) : null,
-		position: Kr(a(x.key("POSITION"), "VEC3", [J], null), be),
-		uv: Kr(a(x.key("TEXCOORD_0"), "VEC2", [J], null), be),
-		indices: qr(a(S, "SCALAR", [
-			lr,
-			ur,
-			dr
+		mesh: w.exists ? Cr("mesh", w, o) : null,
+		position: Zr(a(x.key("POSITION"), "VEC3", [q], null), be),
+		uv: Zr(a(x.key("TEXCOORD_0"), "VEC2", [q], null), be),
+		indices: Qr(a(S, "SCALAR", [
+			mr,
+			hr,
+			gr
 		], null), xe),
 		preview: s
 	};
 }
-function Wr(e) {
+function Yr(e) {
 	let t = e.key("version").text(L);
 	if (!/^1\.\d+$/.test(t)) throw new A("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
 	for (let e of n.exists ? n.items(F) : []) {
 		let t = e.text(L);
-		if (!Rr.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
+		if (!Ur.has(t)) throw new A("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
-function Gr(e) {
+function Xr(e) {
 	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
@@ -1710,42 +1725,42 @@ function Gr(e) {
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
 }
-function Kr(e, t) {
+function Zr(e, t) {
 	if (e.count > t) throw j(e.where, `more than ${t}`);
 	return e;
 }
-function qr(e, t) {
+function Qr(e, t) {
 	if (e.count % 3) throw j(e.where, "torn triangles");
-	return Kr(e, 3 * t);
+	return Zr(e, 3 * t);
 }
-function Jr(e, t) {
+function $r(e, t) {
 	let n = e.key("images");
 	if (!n.exists) return null;
 	let r = n.at(0).key("bufferView");
 	return r.exists ? t(r) : null;
 }
-function Yr(e, t) {
+function ei(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
 		count: n.key("count").integer(1, I),
-		names: vr("names", n, t)
+		names: Cr("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Zr(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? ni(r) : i.items(I).map((e) => e.text(L));
 	if (!a.length) throw i.wrong("no cameras");
-	let o = Xr(a);
+	let o = ti(a);
 	if (o) throw i.wrong(o);
 	return {
 		count: a.length,
 		names: a
 	};
 }
-function Xr(e) {
+function ti(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
-function Zr(e) {
+function ni(e) {
 	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
-	let r = e.key("parts").items(zr).map((e) => {
+	let r = e.key("parts").items(Wr).map((e) => {
 		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
@@ -1753,7 +1768,7 @@ function Zr(e) {
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
-		let [o, s] = [e.key("first").integer(0, Vr), e.key("step").integer(0, Vr)], c = e.key("digits").integer(1, Br);
+		let [o, s] = [e.key("first").integer(0, Kr), e.key("step").integer(0, Kr)], c = e.key("digits").integer(1, Gr);
 		return [r, Array.from({ length: i }, (e, t) => String(o + s * t).padStart(c, "0"))];
 	});
 	return Array.from({ length: t * n }, (t, i) => {
@@ -1762,7 +1777,7 @@ function Zr(e) {
 		return o;
 	});
 }
-function Qr(e, t) {
+function ri(e, t) {
 	let n = Array(t).fill(!1), r = e.key("heldOut");
 	if (!r.exists) return n;
 	for (let e of r.items(t)) {
@@ -1773,21 +1788,21 @@ function Qr(e, t) {
 	if (n.every((e) => e)) throw r.wrong("all cameras are held out");
 	return n;
 }
-function $r(e, t, n, r) {
+function ii(e, t, n, r) {
 	let i = e.key("coded");
-	return i.exists ? vr("cameras", i, r) : {
-		intrinsics: n(e.key("intrinsics"), "SCALAR", [J], 5 * t),
-		poses: n(e.key("poses"), "SCALAR", [J], 12 * t)
+	return i.exists ? Cr("cameras", i, r) : {
+		intrinsics: n(e.key("intrinsics"), "SCALAR", [q], 5 * t),
+		poses: n(e.key("poses"), "SCALAR", [q], 12 * t)
 	};
 }
-function ei(e, t, n) {
+function ai(e, t, n) {
 	let r = e.key("size");
-	if (!r.exists) return n(e.key("sizes"), "SCALAR", [dr], 2 * t);
+	if (!r.exists) return n(e.key("sizes"), "SCALAR", [gr], 2 * t);
 	let [i = 0, a = 0] = r.numbers(2, 1, _e);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
-function ti(e) {
+function oi(e) {
 	let [t, n] = [e.key("right").triple(), e.key("up").triple()], r = (e, t) => e.reduce((e, n, r) => e + n * (t[r] ?? 0), 0);
 	for (let i of [
 		r(t, t) - 1,
@@ -1802,22 +1817,22 @@ function ti(e) {
 		extent: [i, a]
 	};
 }
-function ni(e) {
+function si(e) {
 	return e.exists ? e.object() : {};
 }
 // eigenfield-three/src/info.ts
-var ri = 1e-6;
-async function ii(e, t) {
+var ci = 1e-6;
+async function li(e, t) {
 	let [n, { lenses: r, poses: i }, a, o] = await Promise.all([
-		ai(e, t),
-		si(e, t),
-		ci(e, t),
-		e.colour ? yr(e.colour, e.views, t) : null
+		ui(e, t),
+		fi(e, t),
+		pi(e, t),
+		e.colour ? wr(e.colour, e.views, t) : null
 	]);
 	return n.map((t, n) => {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
-		if (!(s > ri && c > ri)) throw j(r.where, `focal lengths of "${t}"`);
-		let { R: f, t: p } = li([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
+		if (!(s > ci && c > ci)) throw j(r.where, `focal lengths of "${t}"`);
+		let { R: f, t: p } = mi([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
 		if (!m || !h || Math.max(m, h) > 65535 || m * h > ve) throw j(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
@@ -1835,13 +1850,13 @@ async function ii(e, t) {
 				0,
 				1
 			]
-		], [_, v] = o ? ui([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
+		], [_, v] = o ? hi([...o.subarray(6 * n, 6 * n + 6)], e, t) : [null, null];
 		return {
 			name: t,
 			K: g,
 			R: f,
 			t: p,
-			centre: xi(f, p),
+			centre: Ei(f, p),
 			width: m,
 			height: h,
 			gain: _,
@@ -1849,31 +1864,31 @@ async function ii(e, t) {
 		};
 	});
 }
-async function ai({ names: e, heldOut: t }, n) {
+async function ui({ names: e, heldOut: t }, n) {
 	if (Array.isArray(e)) return e;
-	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : Xr(r);
+	let r = await e.codec.decode(new Uint8Array(await n(e.view)), t.length, e.where), i = r.some((e) => e.length > 1024) ? "names that are too long" : ti(r);
 	if (i) throw j(e.where, i);
 	return r;
 }
-async function oi(e, t, n) {
+async function di(e, t, n) {
 	return {
-		numbers: await yr(e, t.views, n),
+		numbers: await wr(e, t.views, n),
 		where: e.where
 	};
 }
-async function si(e, t) {
+async function fi(e, t) {
 	let { calibration: n, heldOut: r } = e;
 	if ("intrinsics" in n) {
 		let { intrinsics: r, poses: i } = n;
 		return {
-			lenses: await oi(r, e, t),
-			poses: await oi(i, e, t)
+			lenses: await di(r, e, t),
+			poses: await di(i, e, t)
 		};
 	}
 	let { view: i, codec: a, where: o } = n, s = await a.decode(new Uint8Array(await t(i)), o), c = s.poses.length / 12;
 	if (c !== r.length) throw j(o, `${c} cameras in it, and ${r.length} names`);
 	let l = (e) => ({
-		numbers: br(e, o),
+		numbers: Tr(e, o),
 		where: o
 	});
 	return {
@@ -1881,15 +1896,15 @@ async function si(e, t) {
 		poses: l(s.poses)
 	};
 }
-async function ci(e, t) {
-	if (!Array.isArray(e.sizes)) return oi(e.sizes, e, t);
+async function pi(e, t) {
+	if (!Array.isArray(e.sizes)) return di(e.sizes, e, t);
 	let [n, r] = e.sizes;
 	return {
 		numbers: Uint32Array.from({ length: 2 * e.heldOut.length }, (e, t) => t % 2 ? r : n),
 		where: "its cameras' size"
 	};
 }
-function li(e, t, n) {
+function mi(e, t, n) {
 	let r = (t) => [
 		e[4 * t] ?? NaN,
 		e[4 * t + 1] ?? NaN,
@@ -1904,22 +1919,22 @@ function li(e, t, n) {
 		e[11] ?? NaN
 	];
 	for (let e = 0; e < 3; e++) for (let r = e; r < 3; r++) {
-		let a = X(i[e], i[r]) - +(e === r);
+		let a = Y(i[e], i[r]) - +(e === r);
 		if (!(Math.abs(a) <= 2e-4)) throw j(t, `the pose of "${n}" is no rotation`);
 	}
-	if (!(X(Si(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
+	if (!(Y(Di(i[0], i[1]), i[2]) > 0)) throw j(t, `the pose of "${n}" is mirrored`);
 	return {
 		R: i,
 		t: a
 	};
 }
-function ui(e, t, n) {
+function hi(e, t, n) {
 	let [r, i] = [e.slice(0, 3), e.slice(3)];
 	if (!(r.every((e) => e >= 1 / 1e3 && e <= 1e3) && i.every((e) => Math.abs(e) <= 1e3))) throw j(t.colour?.where ?? "", `gain or offset of "${n}"`);
 	return [r, i];
 }
-async function di(e, t) {
-	let n = pi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => fi(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
+async function gi(e, t) {
+	let n = vi(e), r = e.heldOut.filter((e) => !e).length, i = await Promise.all(n.map((n) => _i(n, r, e, t))), a = n.reduce((e, { count: t }) => e + t, 0), o = new Float32Array(r * a), s = 0;
 	for (let e of i) {
 		let t = e.length / r;
 		for (let n = 0; n < r; n++) o.set(e.subarray(n * t, (n + 1) * t), n * a + s);
@@ -1927,26 +1942,26 @@ async function di(e, t) {
 	}
 	return o;
 }
-async function fi({ weights: e, count: t }, n, r, i) {
+async function _i({ weights: e, count: t }, n, r, i) {
 	if (!e) return /* @__PURE__ */ new Float32Array();
-	if ("type" in e) return yr(e, r.views, i);
+	if ("type" in e) return wr(e, r.views, i);
 	let { view: a, codec: o, where: s } = e, { cameras: c, components: l, values: u } = o.decode(new Uint8Array(await i(a)), s);
-	if (c === n && l === t) return br(u, s);
+	if (c === n && l === t) return Tr(u, s);
 	throw j(s, `${c} x ${l} weights, and ${n} encoded cameras x ${t} textures`);
 }
-function pi(e) {
+function vi(e) {
 	return e.planes.flatMap(({ bases: e }) => e);
 }
-function mi(e) {
-	return Math.max(0, ...pi(e).map(({ count: e }) => e));
+function yi(e) {
+	return Math.max(0, ...vi(e).map(({ count: e }) => e));
 }
-function hi(e, t) {
-	let n = [...t, ...pi(e).map(({ grid: e }) => e)];
+function bi(e, t) {
+	let n = [...t, ...vi(e).map(({ grid: e }) => e)];
 	return [Math.max(...n.map(([e]) => e)), Math.max(...n.map(([, e]) => e))];
 }
-async function gi(e, t) {
+async function xi(e, t) {
 	if (!e.triangles) return /* @__PURE__ */ new Uint32Array();
-	let { where: n } = e.triangles, r = await _i(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
+	let { where: n } = e.triangles, r = await Si(e.triangles, e, t), i = e.heldOut.filter((e) => !e).length;
 	for (let e = 0; e < r.length; e += 3) {
 		let [t = i, a = i, o = i] = r.subarray(e, e + 3);
 		if (Math.max(t, a, o) >= i) throw j(n, `no encoded camera ${Math.max(t, a, o)}`);
@@ -1954,11 +1969,11 @@ async function gi(e, t) {
 	}
 	return r;
 }
-async function _i(e, t, n) {
-	return "type" in e ? Uint32Array.from(await yr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
+async function Si(e, t, n) {
+	return "type" in e ? Uint32Array.from(await wr(e, t.views, n)) : e.codec.decode(new Uint8Array(await n(e.view)), e.where).corners;
 }
-function vi(e, t, n, r, i, a) {
-	let { right: o, up: s } = e, c = Si(o, s), l = [
+function Ci(e, t, n, r, i, a) {
+	let { right: o, up: s } = e, c = Di(o, s), l = [
 		0,
 		0,
 		0
@@ -1986,8 +2001,8 @@ function vi(e, t, n, r, i, a) {
 		settings: e.settings,
 		scores: e.scores,
 		metresPerUnit: typeof u == "number" && u > 0 && u <= 1e30 ? u : null,
-		bytes: yi(e, i),
-		size: hi(e, n),
+		bytes: wi(e, i),
+		size: bi(e, n),
 		planes: e.planes.map(({ channels: e, bases: t }, r) => ({
 			channels: e,
 			mean: n[r] ?? [1, 1],
@@ -1998,12 +2013,12 @@ function vi(e, t, n, r, i, a) {
 			}))
 		})),
 		...a,
-		facesPlane: Math.abs(X(l, c)) > .7
+		facesPlane: Math.abs(Y(l, c)) > .7
 	};
 }
-function yi(e, t) {
-	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(mi(e)).fill(0);
-	for (let { pictures: t } of pi(e)) {
+function wi(e, t) {
+	let n = /* @__PURE__ */ new Set(), r = (t) => n.has(t) ? 0 : (n.add(t), e.views[t]?.length ?? 0), i = (e) => e.reduce((e, t) => e + r(t), 0), a = e.planes.flatMap(({ mean: e, precision: t }) => [e.view, ...t ? [t.view] : []]), o = i(e.preview === null ? a : [e.preview, ...a]), s = Array(yi(e)).fill(0);
+	for (let { pictures: t } of vi(e)) {
 		let e = 0;
 		for (let { view: n, textures: i } of t) {
 			let t = r(n);
@@ -2013,7 +2028,7 @@ function yi(e, t) {
 			}
 		}
 	}
-	let c = i(pi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
+	let c = i(vi(e).flatMap((e) => e.weights ? [e.weights.view] : [])), { position: l, uv: u, indices: d } = e, f = i([
 		l,
 		u,
 		d,
@@ -2028,15 +2043,15 @@ function yi(e, t) {
 		textures: s
 	};
 }
-function bi(e, t) {
+function Ti(e, t) {
 	let { origin: n, extent: r } = e, i = [
 		t[0] - n[0],
 		t[1] - n[1],
 		t[2] - n[2]
 	];
-	return [r[0] > 0 ? X(i, e.right) / r[0] : 0, r[1] > 0 ? X(i, e.up) / r[1] : 0];
+	return [r[0] > 0 ? Y(i, e.right) / r[0] : 0, r[1] > 0 ? Y(i, e.up) / r[1] : 0];
 }
-function xi(e, t) {
+function Ei(e, t) {
 	let n = (n) => -(e[0][n] * t[0] + e[1][n] * t[1] + e[2][n] * t[2]);
 	return [
 		n(0),
@@ -2044,10 +2059,10 @@ function xi(e, t) {
 		n(2)
 	];
 }
-function X(e, t) {
+function Y(e, t) {
 	return e[0] * t[0] + e[1] * t[1] + e[2] * t[2];
 }
-function Si(e, t) {
+function Di(e, t) {
 	return [
 		e[1] * t[2] - e[2] * t[1],
 		e[2] * t[0] - e[0] * t[2],
@@ -2055,7 +2070,7 @@ function Si(e, t) {
 	];
 }
 // eigenfield-three/src/cameras.ts
-function Ci(e, t, n) {
+function Oi(e, t, n) {
 	let { info: r } = e, i = r.cameras.filter((e, t) => !r.heldOut[t]), a = r.cameras[r.reference];
 	if (!a) throw RangeError(`no camera ${r.reference}`);
 	let { width: o, height: s } = a, c = [
@@ -2094,7 +2109,7 @@ function Ci(e, t, n) {
 	e.viewWeights(t, n, "delaunay").forEach((e, t) => {
 		let n = i[t];
 		if (!e || !n) return;
-		let r = wi(n, o, s);
+		let r = ki(n, o, s);
 		for (let t of [
 			0,
 			1,
@@ -2105,11 +2120,11 @@ function Ci(e, t, n) {
 			2
 		]) t < 2 && (c[t][i] += e * r[t][i]), l[t][i] += e * n.R[t][i];
 	});
-	let u = Ei(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ti(t) * m[0], Ti(n) * m[1]], _ = [
+	let u = ji(l), { origin: d, right: f, up: p, extent: m } = r.viewPlane, [h, g] = [Ai(t) * m[0], Ai(n) * m[1]], _ = [
 		0,
 		1,
 		2
-	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -X(e, _));
+	].map((e) => d[e] + h * f[e] + g * p[e]), v = u.map((e) => -Y(e, _));
 	return {
 		name: `${t.toFixed(3)}, ${n.toFixed(3)}`,
 		K: c,
@@ -2122,7 +2137,7 @@ function Ci(e, t, n) {
 		offset: null
 	};
 }
-function wi({ K: e, width: t, height: n }, r, i) {
+function ki({ K: e, width: t, height: n }, r, i) {
 	let a = Math.max(r / t, i / n), [o, s] = [(r - a * t) / 2, (i - a * n) / 2];
 	return [
 		[
@@ -2142,41 +2157,41 @@ function wi({ K: e, width: t, height: n }, r, i) {
 		]
 	];
 }
-function Ti(e) {
+function Ai(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Ei(e) {
+function ji(e) {
 	let t = e;
 	for (let e = 0; e < 50; e++) {
 		let e = [
-			Si(t[1], t[2]),
-			Si(t[2], t[0]),
-			Si(t[0], t[1])
-		], n = X(t[0], e[0]);
+			Di(t[1], t[2]),
+			Di(t[2], t[0]),
+			Di(t[0], t[1])
+		], n = Y(t[0], e[0]);
 		if (!(n > 1e-12)) break;
 		let r = t.map((t, r) => t.map((t, i) => (t + e[r][i] / n) / 2)), i = Math.max(...r.flatMap((e, n) => e.map((e, r) => Math.abs(e - t[n][r]))));
 		if (t = r, i < 1e-15) break;
 	}
 	return t;
 }
-function Di(e, t, n, r, i = 1) {
+function Mi(e, t, n, r, i = 1) {
 	let a = n.width / n.height, o = i * Math.min(1, a / r), s = i * Math.min(1, r / a), c = {
 		left: (1 - o) / 2,
 		top: (1 - s) / 2,
 		width: o,
 		height: s
 	};
-	return Oi(e, t, n), ki(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
+	return Ni(e, t, n), Pi(e, t, n, c), t.aspect = r, t.fov = 2 * Math.atan(n.height / (2 * n.K[1][1] * s)) * 180 / Math.PI, c;
 }
-function Oi(e, t, n) {
+function Ni(e, t, n) {
 	let { R: r, centre: i } = n, a = new _().set(r[0][0], -r[1][0], -r[2][0], i[0], r[0][1], -r[1][1], -r[2][1], i[1], r[0][2], -r[1][2], -r[2][2], i[2], 0, 0, 0, 1);
 	e.mesh.updateWorldMatrix(!0, !1), a.premultiply(e.mesh.matrixWorld), t.parent && (t.parent.updateWorldMatrix(!0, !1), a.premultiply(t.parent.matrixWorld.clone().invert())), a.decompose(t.position, t.quaternion, new O()), t.updateMatrixWorld(!0);
 }
-function ki(e, t, n, r) {
-	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Ai(e, n);
+function Pi(e, t, n, r) {
+	let [[i, a, o], [, s, c]] = n.K, [l, u] = [2 * r.width / n.width, 2 * r.height / n.height], [d, f] = Fi(e, n);
 	t.near = d, t.far = f, t.projectionMatrix.set(l * i, -l * a, -(2 * r.left - 1 + l * o), 0, 0, u * s, -(1 - 2 * r.top - u * c), 0, 0, 0, -(f + d) / (f - d), -2 * f * d / (f - d), 0, 0, -1, 0), t.projectionMatrixInverse.copy(t.projectionMatrix).invert();
 }
-function Ai(e, t) {
+function Fi(e, t) {
 	let { geometry: n, matrixWorld: r } = e.mesh;
 	n.boundingSphere || n.computeBoundingSphere();
 	let { center: i, radius: a } = n.boundingSphere ?? {
@@ -2186,19 +2201,19 @@ function Ai(e, t) {
 	return [Math.max(.5 * (s - a * o), c * 2e-4), c];
 }
 // eigenfield-three/src/footprint.ts
-var ji = 256;
-function Mi(e, t, n) {
+var Ii = 256;
+function Li(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / ji)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Ii)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ni(t, i.getX(e), i.getY(e), i.getZ(e))), l = Pi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Ri(t, i.getX(e), i.getY(e), i.getZ(e))), l = zi(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Pi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = zi(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -2208,7 +2223,7 @@ function Mi(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Ni({ K: e, R: t, t: n }, r, i, a) {
+function Ri({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -2216,36 +2231,36 @@ function Ni({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Pi(e) {
+function zi(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/memory.ts
-var Fi = 4 / 3, Ii = 4, Li = 8, Ri = 2, zi = 2 ** 20;
-function Bi() {
+var Bi = 4 / 3, Vi = 4, Hi = 8, Ui = 2, Wi = 2 ** 20;
+function Gi() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Vi(e) ? Math.min(t ?? 4, 6) * 128 * zi : Math.min(t ?? 8, 8) * 256 * zi;
-}
-function Vi(e) {
-	return (e?.maxTouchPoints ?? 0) > 1;
-}
-function Hi([e, t], n) {
-	return [Math.ceil(e / n), Math.ceil(t / n)];
-}
-function Ui(e, t) {
-	let [n, r] = Hi(e, t);
-	return n * r;
-}
-function Wi(e) {
-	return Math.ceil(e / 4);
-}
-function Gi(e, t) {
-	return t * Ki(e);
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Ki(e) ? Math.min(t ?? 4, 6) * 128 * Wi : Math.min(t ?? 8, 8) * 256 * Wi;
 }
 function Ki(e) {
+	return (e?.maxTouchPoints ?? 0) > 1;
+}
+function qi([e, t], n) {
+	return [Math.ceil(e / n), Math.ceil(t / n)];
+}
+function Ji(e, t) {
+	let [n, r] = qi(e, t);
+	return n * r;
+}
+function Yi(e) {
+	return Math.ceil(e / 4);
+}
+function Xi(e, t) {
+	return t * Zi(e);
+}
+function Zi(e) {
 	return Math.max(1, Math.ceil(e / 4));
 }
-function qi(e) {
+function Qi(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2253,14 +2268,14 @@ function qi(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-function Ji(e, t) {
+function $i(e, t) {
 	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = [
 		1,
 		2,
 		4,
 		8,
 		16
-	].find((n) => Math.max(...e.atlas) / n <= t.side && Yi(e, n) <= t.memory / 2) ?? 16, o = Yi(e, a) + e.geometry, s = (t, n) => o + Zi(e, t, n), c = (n, r) => s(n, r) + ea(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
+	].find((n) => Math.max(...e.atlas) / n <= t.side && ea(e, n) <= t.memory / 2) ?? 16, o = ea(e, a) + e.geometry, s = (t, n) => o + na(e, t, n), c = (n, r) => s(n, r) + aa(e, n) <= t.memory, l = Math.max(1, ...e.bases.flatMap(({ size: e }) => e)), u = (e) => l / e <= t.side, d = [
 		1,
 		2,
 		4
@@ -2274,68 +2289,68 @@ function Ji(e, t) {
 	};
 	return {
 		...p,
-		limitation: ta(p, n, e, t)
+		limitation: oa(p, n, e, t)
 	};
 }
-function Yi(e, t) {
-	let n = e.means.map((e) => Xi(e) * Wi(e.channels) * Ui(e.size, t)), r = qi(e).map((n) => {
-		let r = n.join() === e.atlas.join() ? Fi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Li * Ui(n, t) * (r + +!!i);
+function ea(e, t) {
+	let n = e.means.map((e) => ta(e) * Yi(e.channels) * Ji(e.size, t)), r = Qi(e).map((n) => {
+		let r = n.join() === e.atlas.join() ? Bi : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
+		return Hi * Ji(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Xi({ tenBits: e }) {
-	return e ? Li : Ii;
+function ta({ tenBits: e }) {
+	return e ? Hi : Vi;
 }
-function Zi({ bases: e, rays: t }, n, r) {
+function na({ bases: e, rays: t }, n, r) {
 	return e.reduce((e, i) => {
 		let a = Math.min(r, i.count);
 		if (!a) return e;
-		let o = t ? Ki(a) * 129 * 129 * Li : 0;
-		return e + Xi(i) * Gi(a, i.channels) * Ui(i.size, n) + o;
+		let o = t ? Zi(a) * 129 * 129 * Hi : 0;
+		return e + ta(i) * Xi(a, i.channels) * Ji(i.size, n) + o;
 	}, 0);
 }
-function Qi({ means: e, bases: t }, n, r) {
-	return $i([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => Hi(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => Hi(e, r))]);
+function ra({ means: e, bases: t }, n, r) {
+	return ia([...e.filter(({ pieces: e, tenBits: t }) => e > 1 || t).map(({ size: e }) => qi(e, n)), ...t.filter(({ count: e }) => e > 0).map(({ size: e }) => qi(e, r))]);
 }
-function $i(e) {
+function ia(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function ea(e, t) {
-	let [n, r] = Qi({
+function aa(e, t) {
+	let [n, r] = ra({
 		means: [],
 		bases: e.bases
 	}, 1, t);
-	return (Ii + (e.bases.some(({ tenBits: e }) => e) ? Ri : 0)) * n * r;
+	return (Vi + (e.bases.some(({ tenBits: e }) => e) ? Ui : 0)) * n * r;
 }
-function ta(e, t, n, r) {
+function oa(e, t, n, r) {
 	let i = [];
 	if (e.usable < t && i.push(`${e.usable} of ${t} eigen textures are drawn`), e.usable && e.scaleDown > 1 && i.push(`eigen textures have 1/${e.scaleDown} of their size`), e.meanDown > 1 && i.push(`the mean texture has 1/${e.meanDown} of its size`), !i.length) return null;
-	let a = Yi(n, 1) + Zi(n, 1, t) + ea(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${na(a)} MB of graphics memory and ${na(r.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${ra(i.join(", "))}: ${o}.`;
+	let a = ea(n, 1) + na(n, 1, t) + aa(n, 1) + n.geometry, o = a > r.memory ? `the scene needs ${sa(a)} MB of graphics memory and ${sa(r.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${ca(i.join(", "))}: ${o}.`;
 }
-function na(e) {
+function sa(e) {
 	return (e / 1e6).toFixed(+(e < 1e7));
 }
-function ra(e) {
+function ca(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var ia = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", aa = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", oa = 2, sa = `
+var la = "// Equations 7 and 8, texel by texel: means and eigen textures, weighted and summed into one texture of the whole atlas,\n// which surface.glsl then draws (decision 15).\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All\n// draw into textures whose row 0 is v = 0, and the second and third add to what is there:\n//   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies\n//   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B\n//   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there\n// Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a\n// mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.\n\n#define LAYERS 64  // most that one draw sums\n#define LEVEL 1e-4 // a height of no more than this is as good as none\n#define MOST 6e4   // halves end at 65504\n\nuniform sampler2DArray stored; // codes / 255, or values; anything finite where there is no texture (yet)\nuniform int firstLayer;\nuniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one\nuniform int channels;\nuniform int entries;           // entry e is channel e % channels, of group e / channels; at most LAYERS\nuniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel\n\nuniform bool rayWeights;       // look weights up where the ray to the eye meets the view plane; else they are in `scale`\nuniform sampler2DArray weightMaps; // layer g: weights 4 g .. 4 g + 3 over X, Y in -1..1, nodes on the edges\nuniform int firstGroup;\nuniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface\nuniform vec3 eye;              // X, Y and height above the view plane\n\nuniform sampler2D coarse;      // a grid's sum\n\n// A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over\n// the height. Halves keep that well enough for points near and far.\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\n\n// Where the ray from a point of the surface to the eye meets the view plane, as X, Y; where it does not (the eye is\n// level with the point, or the point lies behind the cameras) and where there is no surface, where the eye itself stands.\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\n\n// The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.\nvec3 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = firstGroup; entry < entries; group++) {\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(group)), 0.0);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return sum;\n}\n\n// The value of the grid `coarse` at texture coordinates of the atlas.\nvec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\n", ua = "// Weights of the texels -1, 0, 1 and 2 for a place between texels 0 and 1: Catmull-Rom, a = -1/2.\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\n\n// A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one\n// by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.\nvec3 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec3 sum = vec3(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec3 line = vec3(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0).rgb;\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", da = 2, fa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${aa}${ia}`, ca = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", la = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ua = `${sa}
+${ua}${la}`, pa = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ma = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nvoid main() {\n  point = onPlane;\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shifts[gl_InstanceID], 0.0, 1.0);\n}\n", ha = `${fa}
 in vec3 point;
 out vec4 place;
 void main() { place = placeOf(point); }
-`, da = "sumTextures", fa = "finerValue";
-function pa(n, r, i) {
+`, ga = "sumTextures", _a = "finerValue";
+function va(n, r, i) {
 	let o = new w({
 		glslVersion: f,
-		vertexShader: ca,
-		fragmentShader: `${sa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
+		vertexShader: pa,
+		fragmentShader: `${fa}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${n}(own), 1.0); }\n`,
 		uniforms: {
 			rectangle: { value: new ee(...r) },
 			...i
@@ -2371,7 +2386,7 @@ function pa(n, r, i) {
 	let l = new v(s, o);
 	return l.frustumCulled = !1, l;
 }
-function ma([e, t], n) {
+function ya([e, t], n) {
 	return new k(e, t, {
 		type: p,
 		depthBuffer: !1,
@@ -2380,29 +2395,29 @@ function ma([e, t], n) {
 		magFilter: n ? h : b
 	});
 }
-function ha(e, t) {
-	let n = Si(e.right, e.up), r = [
+function ba(e, t) {
+	let n = Di(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
 		t[2] - e.origin[2]
 	];
-	return [...bi(e, t), X(r, n) / (Math.max(...e.extent) || 1)];
+	return [...Ti(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-function ga(t, n, r) {
+function xa(t, n, r) {
 	let i = t.geometry.getAttribute("position"), a = t.geometry.getAttribute("uv"), o = new Float32Array(3 * i.count), s = new Float32Array(2 * i.count);
-	for (let e = 0; e < i.count; e++) o.set(ha(n, [
+	for (let e = 0; e < i.count; e++) o.set(ba(n, [
 		i.getX(e),
 		i.getY(e),
 		i.getZ(e)
 	]), 3 * e), s.set([a.getX(e), a.getY(e)], 2 * e);
-	let l = Array.from({ length: 5 }, (e, t) => t - oa), u = l.flatMap((e) => l.map((t) => new D(t, e)));
+	let l = Array.from({ length: 5 }, (e, t) => t - da), u = l.flatMap((e) => l.map((t) => new D(t, e)));
 	u.sort((e, t) => t.lengthSq() - e.lengthSq());
 	let d = new m();
 	d.setAttribute("position", new e(s, 2)), d.setAttribute("onPlane", new e(o, 3)), d.setIndex(t.geometry.index ? new e(t.geometry.index.array, 1) : null), d.instanceCount = u.length, d.boundingSphere = new E();
 	let p = new w({
 		glslVersion: f,
-		vertexShader: la.replace("SHIFTS", String(u.length)),
-		fragmentShader: ua,
+		vertexShader: ma.replace("SHIFTS", String(u.length)),
+		fragmentShader: ha,
 		uniforms: {
 			texel: { value: new D(2 / r.width, 2 / r.height) },
 			shifts: { value: u }
@@ -2422,7 +2437,7 @@ function ga(t, n, r) {
 	};
 }
 // eigenfield-three/src/composer.ts
-var _a = class {
+var Sa = class {
 	mesh;
 	plane;
 	grids;
@@ -2430,14 +2445,14 @@ var _a = class {
 	camera = new n();
 	constructor(e, t, n, r, i) {
 		this.mesh = r, this.plane = i;
-		let [a, ...o] = qi({
+		let [a, ...o] = Qi({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), s = (e, r) => {
-			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(va), a = new T();
+			let i = t.filter(({ grid: t }) => t.join() === e.join()).flatMap(Ca), a = new T();
 			return i.forEach(({ quad: e }, t) => a.add(Object.assign(e, { renderOrder: t }))), {
-				target: ma(Hi(e, n), r),
+				target: ya(qi(e, n), r),
 				scene: a,
 				steps: i,
 				places: null
@@ -2445,7 +2460,7 @@ var _a = class {
 		}, c = s(a ?? e, !0);
 		this.grids = o.map((e) => s(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = pa(fa, [
+			let t = va(_a, [
 				0,
 				0,
 				1,
@@ -2459,10 +2474,10 @@ var _a = class {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && xa(this.composed, n) || (this.composed = n, wa(e, t, () => {
+		this.composed && Ea(this.composed, n) || (this.composed = n, ka(e, t, () => {
 			for (let t of this.grids) {
 				n.eye && !t.places && t.steps.some(({ part: e }) => e.basis) && this.findPlaces(e, t);
-				for (let e of t.steps) ya(e, t, n);
+				for (let e of t.steps) wa(e, t, n);
 				this.draw(e, t.scene, t.target);
 			}
 		}));
@@ -2474,22 +2489,22 @@ var _a = class {
 		}
 	}
 	findPlaces(e, t) {
-		t.places = ma([t.target.width, t.target.height], !1);
-		let { scene: n, free: r } = ga(this.mesh, this.plane, t.places);
+		t.places = ya([t.target.width, t.target.height], !1);
+		let { scene: n, free: r } = xa(this.mesh, this.plane, t.places);
 		this.draw(e, n, t.places), r();
 	}
 	draw(e, t, n) {
 		e.setRenderTarget(n), e.state.buffers.color.setMask(!0), e.clear(!0, !1, !1), e.render(t, this.camera);
 	}
 };
-function va(e) {
+function Ca(e) {
 	let t = e.colours.length, [n, r] = [e.scale.length / (4 * t), Math.floor(64 / t)], i = [];
 	for (let a = 0; a < n; a += r) {
 		let o = Array.from({ length: 64 }, (t, n) => new O(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), s = e.basis ? 1 : 4, c = pa(da, e.rectangle, {
+		])), s = e.basis ? 1 : 4, c = va(ga, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(a * t / s) },
 			sharing: { value: s },
@@ -2513,42 +2528,42 @@ function va(e) {
 	}
 	return i;
 }
-function ya({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
+function wa({ part: e, first: t, groups: n, quad: r }, { places: i }, a) {
 	let { basis: o, colours: s } = e, { uniforms: c } = r.material, l = (e, t) => {
 		let n = c[e];
 		n && (n.value = t);
-	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => ba(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
+	}, u = o !== null && a.eye !== null && a.only === null, d = Array.from({ length: 4 * n }, (e, n) => Ta(o, 4 * t + n, a, u)), f = Math.ceil((d.findLastIndex((e) => e !== 0) + 1) / 4), [p, m] = [c.scale?.value, c.bias?.value], h = s.length;
 	for (let n = 0; n < 4 * h * f; n++) {
 		let r = d[4 * Math.floor(n / (4 * h)) + n % 4] ?? 0;
 		p[n] = r * (e.scale[4 * h * t + n] ?? 0), m[n] = r * (e.bias[4 * h * t + n] ?? 0);
 	}
 	l("entries", h * f), l("rayWeights", u), l("weightMaps", u ? a.maps : null), l("places", u ? i?.texture ?? null : null), a.eye && (c.eye?.value).set(...a.eye), r.visible = f > 0, r.material.uniformsNeedUpdate = !0;
 }
-function ba(e, t, n, r) {
+function Ta(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function xa(e, t) {
+function Ea(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
-var Sa = new i(0), Ca = new i();
-function wa(e, t, n) {
+var Da = new i(0), Oa = new i();
+function ka(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(Ca), e.setClearColor(Sa, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Ca, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(Oa), e.setClearColor(Da, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(Oa, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/maps.ts
-function Ta(e, t, n, i, a) {
+function Aa(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Ki(t) : 0;
+		u += e, d += t ? Zi(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -2567,19 +2582,19 @@ function Ta(e, t, n, i, a) {
 	return m.format = C, m.type = p, m.minFilter = m.magFilter = h, m.wrapS = m.wrapT = r, m.needsUpdate = !0, m;
 }
 // ../src/eigenfield/rendering/shaders/surface.glsl?raw
-var Ea = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Da = {
+var ja = "// The composed texture (compose.glsl) on the surface of the proxy.\n//\n// This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/renderer.py and as GLSL ES 3.00 by the web viewer. Whoever\n// includes it writes the #version line, the precisions, cubic.glsl before it, and\n//   BICUBIC   how the finest level is read: 0 bilinear, 1 Catmull-Rom\n// Pixels of more than `finest` texels are left to the sampler and its mip maps.\n\nuniform sampler2D composed;\nuniform float finest;       // texels a pixel up to which the finest level is read: 1.5 times those a pixel of the\n                            // photographs covers, which holds no more than its own average\nuniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured\nuniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0\n\n// R, G, B at texture coordinates; nothing is cut off.\nvec3 surfaceValue(vec2 uv) {\n  vec3 plain = texture(composed, uv, -log2(finest)).rgb;\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\n\n// What the surface shows at texture coordinates.\nvec3 surfaceColour(vec2 uv) {\n  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);\n}\n", Ma = {
 	bilinear: 0,
 	bicubic: 1
-}, Oa = {
+}, Na = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, ka = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Aa = `
+}, Pa = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Fa = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
-${aa}${Ea}
+${ua}${ja}
 uniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error
 uniform float shownGain;       // of the eigen texture around mid grey
 uniform sampler2D photograph;  // row 0 on top
@@ -2609,56 +2624,56 @@ void main() {
   fragment = vec4(colour, 1.0);
 }
 `;
-function ja(e) {
+function Ia(e) {
 	let t = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new O(1, 1, 1) },
 		exposureBias: { value: new O() },
-		shown: { value: Oa.picture },
+		shown: { value: Na.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new _() }
 	}, n = new w({
 		glslVersion: f,
-		vertexShader: ka,
-		fragmentShader: Aa,
+		vertexShader: Pa,
+		fragmentShader: Fa,
 		uniforms: t,
-		defines: { BICUBIC: Da.bicubic },
+		defines: { BICUBIC: Ma.bicubic },
 		side: e ? c : d
 	});
 	return n.name = "eigen textures", n;
 }
 // eigenfield-three/src/gpu.ts
-function Ma(e, t) {
+function La(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function Na(e, [t, n], r, i, a) {
-	return Ia(e, e.TEXTURE_2D_ARRAY, () => {
+function Ra(e, [t, n], r, i, a) {
+	return Va(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function Pa(e, t, n) {
+function za(e, t, n) {
 	let { width: r, height: i } = n;
-	La(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	Ha(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function Fa(e, [t, n], r = !1) {
-	return Ia(e, e.TEXTURE_2D, () => {
+function Ba(e, [t, n], r = !1) {
+	return Va(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function Ia(e, t, n) {
+function Va(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return La(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return Ha(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function La(e, t, n, r) {
+function Ha(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2672,9 +2687,9 @@ function La(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var Ra = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", za = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function Ba(e, t) {
-	let n = Wa(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var Ua = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Wa = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function Ga(e, t) {
+	let n = Ya(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2682,7 +2697,7 @@ function Ba(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Va(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), Ka(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2691,13 +2706,13 @@ function Ba(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = Va(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = Ka(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => Ga(e, 0, d, () => {
-				Va(s) ? Ua(e, s, c, l) : Ha(e, s, c, l), Ka(e, () => u(n, r, i, a, o));
+			let f = () => Xa(e, 0, d, () => {
+				Ka(s) ? Ja(e, s, c, l) : qa(e, s, c, l), Za(e, () => u(n, r, i, a, o));
 			});
-			o ? Ga(e, 1, t.precision, () => {
-				Ha(e, o.precision, 0, o.precision.height), f();
+			o ? Xa(e, 1, t.precision, () => {
+				qa(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2705,30 +2720,30 @@ function Ba(e, t) {
 		}
 	};
 }
-function Va(e) {
+function Ka(e) {
 	return "data" in e;
 }
-function Ha(e, t, n, r) {
+function qa(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function Ua(e, { data: t, width: n, stride: r }, i, a) {
+function Ja(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function Wa(e) {
+function Ya(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, Ra], [e.FRAGMENT_SHADER, za]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, Ua], [e.FRAGMENT_SHADER, Wa]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function Ga(e, t, n, r) {
+function Xa(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), La(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), Ha(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function Ka(e, t) {
+function Za(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2743,7 +2758,7 @@ function Ka(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function qa(e, t, n) {
+function Qa(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2753,7 +2768,7 @@ function qa(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = Ja(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = $a(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2781,7 +2796,7 @@ function qa(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...Xa(l, u, h),
+					...to(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2789,12 +2804,12 @@ function qa(e, t, n) {
 					}
 				});
 			}
-			o += p, s += h ? Ki(h) : 0;
+			o += p, s += h ? Zi(h) : 0;
 		}
 	}), r;
 }
-function Ja({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : Ya([e]), o = {
+function $a({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : eo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2804,11 +2819,11 @@ function Ja({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function Ya(e) {
-	return kr(e) ? 1 : 255;
+function eo(e) {
+	return Pr(e) ? 1 : 255;
 }
-function Xa(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = Ya(e), o = 4 * t * Ki(n), s = {
+function to(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = eo(e), o = 4 * t * Zi(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2819,21 +2834,21 @@ function Xa(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/pieces.ts
-function Za(e) {
+function no(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Qa = 128, $a = .98;
-async function eo(e, t, n, r) {
+var ro = 128, io = .98;
+async function ao(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Ar(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Qa, Qa).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Fr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ro, ro).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Qa, Qa);
-		let { data: u } = d.getImageData(0, 0, Qa, Qa);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, ro, ro);
+		let { data: u } = d.getImageData(0, 0, ro, ro);
 		(l ? [
 			0,
 			1,
@@ -2842,30 +2857,30 @@ async function eo(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Za(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor($a * f.length)] ?? 0;
+	}), no(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(io * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function to(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await no(await t(e.precision.view), e.precision);
+async function oo(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await so(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function no(e, t) {
-	let { type: n } = In(e) ?? {}, { mimeType: r } = t.codec;
+async function so(e, t) {
+	let { type: n } = Bn(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw j(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw j(t.where, "no picture");
 	return i.picture;
 }
-function ro({ pieces: e, precision: t }) {
-	Za(e), t?.close();
+function co({ pieces: e, precision: t }) {
+	no(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var io = 3, ao = class {
+var lo = 3, uo = class {
 	parts;
 	options;
 	means;
@@ -2892,15 +2907,15 @@ var io = 3, ao = class {
 		let o = r.planes.flatMap(({ channels: e, bases: t }) => t.map((t) => ({
 			...t,
 			channels: e,
-			tenBits: kr(t.pictures)
+			tenBits: Pr(t.pictures)
 		}))), s = r.planes.map(({ channels: e, mean: t }, n) => ({
 			size: i[n] ?? [1, 1],
 			channels: e,
 			pieces: t.pieces,
-			tenBits: kr([t])
+			tenBits: Pr([t])
 		}));
 		this.needs = {
-			atlas: hi(r, i),
+			atlas: bi(r, i),
 			means: s,
 			bases: o,
 			rays: a,
@@ -2937,7 +2952,7 @@ var io = 3, ao = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(ro), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(co), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -2960,20 +2975,20 @@ var io = 3, ao = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < io && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < lo && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Za(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), no(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(Za).catch(() => void 0);
+			for (let e of a) e.then(no).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
 	pack(e, t, n, r) {
 		let { number: i, channels: a, first: o, picture: s } = t, c = this.bases[i]?.sourceTexture, l = this.ready[i];
 		if (!(c instanceof WebGLTexture) || !l) return;
-		let u = this.needs.bases[i]?.tenBits ? 255 * Ar(s) : 1, d = s.pieces < a;
+		let u = this.needs.bases[i]?.tenBits ? 255 * Fr(s) : 1, d = s.pieces < a;
 		for (let t = o; t < Math.min(o + s.textures, r); t++) {
 			for (let r = 0; r < s.pieces; r++) {
 				let i = (e) => a * Math.floor(t / 4) + e, l = (d ? [
@@ -2993,13 +3008,13 @@ var io = 3, ao = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? Bi();; i /= 2) {
-			let a = Ji(this.needs, Ma(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Na(e, Hi(t, o), Wi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+		for (let i = this.options.memory ?? Gi();; i /= 2) {
+			let a = $i(this.needs, La(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => Ra(e, qi(t, o), Yi(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return Na(e, a ? Hi(t, s) : [1, 1], a ? Gi(a, n) : 1, l, i);
-			})], d = Qi(this.needs, o, s), f = Fa(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Fa(e, d, !0) : null, h = Fa(e, $i(r));
+				return Ra(e, a ? qi(t, s) : [1, 1], a ? Xi(a, n) : 1, l, i);
+			})], d = ra(this.needs, o, s), f = Ba(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? Ba(e, d, !0) : null, h = Ba(e, ia(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: Ba(e, {
+				packer: Ga(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3017,18 +3032,18 @@ var io = 3, ao = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, { decoded: a } = this;
-		this.decoded = null, (!a || n > 1) && (a?.forEach(ro), a = await Promise.all(r.planes.map((e) => to(e, i, n)))), a.forEach((n, i) => {
+		this.decoded = null, (!a || n > 1) && (a?.forEach(co), a = await Promise.all(r.planes.map((e) => oo(e, i, n)))), a.forEach((n, i) => {
 			let a = this.means[i]?.sourceTexture, o = r.planes[i]?.mean;
-			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), ro(n);
+			t === this.turn && o && a instanceof WebGLTexture && this.putMean(e, n, o, a), co(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
-		let { pieces: i, precision: a } = t, o = kr([n]), [s] = i;
+		let { pieces: i, precision: a } = t, o = Pr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			Pa(e, r, s.picture);
+			za(e, r, s.picture);
 			return;
 		}
-		let c = o ? 255 * Ar(n) : 1;
+		let c = o ? 255 * Fr(n) : 1;
 		i.forEach((e, t) => {
 			let i = [{
 				channel: 0,
@@ -3046,7 +3061,7 @@ var io = 3, ao = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, oo = 1.5, so = .001, co = class extends l {
+}, fo = 1.5, po = .001, mo = class extends l {
 	parts;
 	mesh;
 	info;
@@ -3077,15 +3092,15 @@ var io = 3, ao = class {
 		super(), this.parts = e;
 		let { scene: n, info: r, meshes: i } = e, [a] = i;
 		if (!a) throw Error("a field needs a mesh");
-		this.mesh = a, this.info = r, this.total = mi(n), this.counts = pi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
+		this.mesh = a, this.info = r, this.total = yi(n), this.counts = vi(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new ao(e, po(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new uo(e, vo(a), t);
 		let s = [a.material].flat().some((e) => e.side !== d);
-		this.material = ja(s), this.complete = new Promise((e, t) => {
+		this.material = Ia(s), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
-		this.detail = c ? Mi(a.geometry, c, [1, 1]) : 0, this.listen();
+		this.detail = c ? Li(a.geometry, c, [1, 1]) : 0, this.listen();
 		for (let e of i) e.material = this.material, e.onBeforeRender = (t, n, r) => this.prepare(t, r, e);
 		t.renderer && this.textures.attach(t.renderer);
 	}
@@ -3115,7 +3130,7 @@ var io = 3, ao = class {
 		let t = this.rowOf[e] ?? -1, n = this.info.cameras[e], r = this.columns;
 		if (t >= 0) return Float64Array.from(this.parts.omega.subarray(t * r, (t + 1) * r));
 		if (!n) throw RangeError(`no camera ${e}`);
-		return this.componentWeights(...bi(this.info.viewPlane, n.centre));
+		return this.componentWeights(...Ti(this.info.viewPlane, n.centre));
 	}
 	restore(e) {
 		this.textures.attach(e);
@@ -3129,7 +3144,7 @@ var io = 3, ao = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return oo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return fo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3146,30 +3161,30 @@ var io = 3, ao = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = fo(t, n), [i, a] = bi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = _o(t, n), [i, a] = Ti(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
-		let l = Da[this.filter];
+		let l = Ma[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
 		let { plan: r } = this.textures, { size: i, viewPlane: a } = this.info;
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
-		s || (s = new _a(i, qa(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
+		s || (s = new Sa(i, Qa(this.parts.scene, this.textures, r), o, this.mesh, a), this.composers.set(o, s)), s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
 	freeComposers() {
 		for (let e of this.composers.values()) e.dispose();
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.material.uniforms.shown.value, r = n === Oa.eigen ? this.shownEigen : null;
+		let n = this.material.uniforms.shown.value, r = n === Na.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			only: r,
-			count: n === Oa.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === Na.mean ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && ha(this.info.viewPlane, t),
+			eye: t && ba(this.info.viewPlane, t),
 			maps: t && this.mapsOf(this.mixing)
 		};
 	}
@@ -3181,7 +3196,7 @@ var io = 3, ao = class {
 		]).map((e) => 1 / e);
 		e.exposureScale.value.fromArray(a), e.exposureBias.value.fromArray(a.map((e, t) => -(i?.[t] ?? 0) * e));
 		let o = this.view === "error" && !t ? "picture" : this.view, s = this.shownEigen;
-		e.shown.value = Oa[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
+		e.shown.value = Na[o === "eigen" && s >= this.loaded ? "mean" : o], o === "eigen" && (e.shownGain.value = this.gainOf(s)), t && this.aimPhotograph();
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -3189,7 +3204,7 @@ var io = 3, ao = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !mo(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new _().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new _().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !yo(t.image), u = new _().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3200,7 +3215,7 @@ var io = 3, ao = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				eo(s, e, o, r).then((t) => {
+				ao(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3210,13 +3225,13 @@ var io = 3, ao = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= so * Math.max(...r);
+		return Math.abs(i) <= po * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
 		if (this.maps?.mixing === e && this.maps.usable === t) return this.maps.texture;
 		this.maps?.texture.dispose();
-		let n = Ta(this.parts.weights, e, this.parts.omega, this.counts, t);
+		let n = Aa(this.parts.weights, e, this.parts.omega, this.counts, t);
 		return this.maps = {
 			texture: n,
 			mixing: e,
@@ -3224,33 +3239,33 @@ var io = 3, ao = class {
 		}, n;
 	}
 	fail(e) {
-		if (ho(e)) return;
+		if (bo(e)) return;
 		let t = ie(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new A(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, lo = new _(), uo = new O();
-function fo(e, t) {
-	return uo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(lo.copy(t.matrixWorld).invert()), [
-		uo.x,
-		uo.y,
-		uo.z
+}, ho = new _(), go = new O();
+function _o(e, t) {
+	return go.setFromMatrixPosition(e.matrixWorld).applyMatrix4(ho.copy(t.matrixWorld).invert()), [
+		go.x,
+		go.y,
+		go.z
 	];
 }
-function po(e) {
+function vo(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function mo(e) {
+function yo(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function ho(e) {
+function bo(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var go = class {
+var xo = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3293,53 +3308,53 @@ var go = class {
 		}
 		return n.buffer;
 	}
-}, _o = 1179937895, vo = 1313821514, yo = 5130562;
-async function bo(e) {
+}, So = 1179937895, Co = 1313821514, wo = 5130562;
+async function To(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof A && t.code === "truncated" ? To(e.received === 0) : t;
+		throw t instanceof A && t.code === "truncated" ? Ao(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== _o) throw To(!1);
+	if (new DataView(t).getUint32(0, !0) !== So) throw Ao(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new A("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw j("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== vo) throw j("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Co) throw j("16", "it does not begin with JSON");
 	if (o > de) throw j("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw j("12", "a chunk longer than the file");
-	let s = So(await e.read(20, 20 + o));
+	let s = Do(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: Co(s, "20"),
-		binary: () => xo(e, 20 + o, i)
+		json: Oo(s, "20"),
+		binary: () => Eo(e, 20 + o, i)
 	};
 }
-async function xo(e, t, n) {
+async function Eo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw j(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === yo) return r + 8;
+		if (t.getUint32(4, !0) === wo) return r + 8;
 		r += 8 + i;
 	}
 	throw j(String(t), "no binary chunk");
 }
-function So(e) {
+function Do(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw j("20", "its JSON is not UTF-8");
 	}
 }
-function Co(e, t) {
-	if (wo(e) > 64) throw j(t, "its JSON is nested too deep");
+function Oo(e, t) {
+	if (ko(e) > 64) throw j(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw j(t, "its JSON cannot be read");
 	}
 }
-function wo(e) {
+function ko(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3350,20 +3365,20 @@ function wo(e) {
 	}
 	return n;
 }
-function To(e) {
+function Ao(e) {
 	return new A("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var Eo = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedMesh\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Do = 4;
-async function Oo(e, t) {
-	let n = new q(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
+var jo = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", Mo = 4;
+async function No(e, t) {
+	let n = new K(e, ""), r = n.key("extensions").key(ue), i = r.key("packed");
 	if (!i.exists) return e;
-	Wr(r);
-	let a = hr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < Do) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, Do)).getUint32(0, !0);
-	if (Do + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new q(Co(await Ao(await t(o.offset + Do, s), i.where), i.where), i.where).object(), u = ko(new q(c, `${i.where}/lengths`), o, Do + s), { packed: d, ...f } = r.object();
+	Yr(r);
+	let a = br(n), o = a[i.integer(a.length - 1, a.length - 1)];
+	if (!o || o.length < Mo) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, Mo)).getUint32(0, !0);
+	if (Mo + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K(Oo(await Fo(await t(o.offset + Mo, s), i.where), i.where), i.where).object(), u = Po(new K(c, `${i.where}/lengths`), o, Mo + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -3376,7 +3391,7 @@ async function Oo(e, t) {
 		}
 	};
 }
-function ko(e, t, n) {
+function Po(e, t, n) {
 	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3388,8 +3403,8 @@ function ko(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function Ao(e, t) {
-	let n = new TextEncoder().encode(Eo), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function Fo(e, t) {
+	let n = new TextEncoder().encode(jo), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3408,8 +3423,8 @@ async function Ao(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var jo = 65535;
-function Mo(e, t) {
+var Io = 65535;
+function Lo(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new A("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw j(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3419,46 +3434,46 @@ function Mo(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw j(t.indices.where, `no vertex ${e}`);
 }
-async function No({ view: n, codec: r, where: i }, a) {
+async function Ro({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw j(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= jo;
+	let u = o.length / 3 <= Io;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function Po(e) {
+function zo(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function Fo(e) {
+function Bo(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = Io(e, n, r) ?? (n === r ? null : Io(e, r, n));
+		let r = t / n, i = Vo(e, n, r) ?? (n === r ? null : Vo(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function Io(e, t, n) {
-	let [r, i] = [Ro(e, 0), Ro(e, 1)];
-	if (t === 1 && zo(i) > 0 || n === 1 && zo(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => Bo(i, e) - Bo(i, t));
+function Vo(e, t, n) {
+	let [r, i] = [Uo(e, 0), Uo(e, 1)];
+	if (t === 1 && Wo(i) > 0 || n === 1 && Wo(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => X(i, e) - X(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => Bo(r, e) - Bo(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => X(r, e) - X(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return Lo(n, t, (e, t) => Bo(r, o(t, e))) && Lo(t, n, (e, t) => Bo(i, o(e, t))) ? {
+	return Ho(n, t, (e, t) => X(r, o(t, e))) && Ho(t, n, (e, t) => X(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function Lo(e, t, n) {
+function Ho(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3468,33 +3483,33 @@ function Lo(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function Ro(e, t) {
+function Uo(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function zo(e) {
+function Wo(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var Bo = (e, t) => e[t] ?? 0, Vo = 1e-6, Ho = 32, Uo = class {
+var X = (e, t) => e[t] ?? 0, Go = 1e-6, Ko = 32, qo = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = Fo(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = Bo(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Wo(e), this.isLine ? 0 : Wo(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Jo(e), this.isLine ? 0 : Jo(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => es(e, t, this.places) : e === "bilinear" && this.grid ? ns(this.places, this.grid) : qo(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => is(e, t, this.places) : e === "bilinear" && this.grid ? os(this.places, this.grid) : Zo(this.places, this.triangles);
 	}
 };
-function Wo(e) {
+function Jo(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Go(e) {
+function Yo(e) {
 	let t = {
 		camera: [
 			0,
@@ -3514,7 +3529,7 @@ function Go(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Ko(e, t, n, r, i, a) {
+function Xo(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3522,49 +3537,49 @@ function Ko(e, t, n, r, i, a) {
 		m
 	];
 }
-function qo(e, t) {
+function Zo(e, t) {
 	if (!t.length) {
-		let t = $o(e, Qo(e));
-		return (n, r) => Zo(n, r, e, t);
+		let t = rs(e, ns(e));
+		return (n, r) => ts(n, r, e, t);
 	}
-	let n = Yo(e, t, 3), r = Xo(t);
+	let n = $o(e, t, 3), r = es(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * Ho + $(i)] ?? []) {
+		for (let r of n[$(a) * Ko + $(i)] ?? []) {
 			let [n, l, u] = [
-				Jo(t, r, 0),
-				Jo(t, r, 1),
-				Jo(t, r, 2)
-			], d = Ko(i, a, e, n, l, u), f = Math.min(...d);
+				Qo(t, r, 0),
+				Qo(t, r, 1),
+				Qo(t, r, 2)
+			], d = Xo(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Zo(i, a, e, r) : Go(c.map((e, n) => [Jo(t, o, n), e]));
+		return s < -1e-9 ? ts(i, a, e, r) : Yo(c.map((e, n) => [Qo(t, o, n), e]));
 	};
 }
-var Jo = (e, t, n) => e[3 * t + n] ?? 0;
+var Qo = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ho)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * Ko)));
 }
-function Yo(e, t, n) {
+function $o(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ho + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * Ko + t]?.push(i);
 	}
 	return r;
 }
-function Xo(e) {
+function es(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Jo(e, n, r), Jo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Qo(e, n, r), Qo(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3573,7 +3588,7 @@ function Xo(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Zo(e, t, n, r) {
+function ts(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3588,12 +3603,12 @@ function Zo(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Go([[o, 1 - c], [s, c]]);
+	return Yo([[o, 1 - c], [s, c]]);
 }
-function Qo(e) {
+function ns(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function $o(e, t) {
+function rs(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3614,7 +3629,7 @@ function $o(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function es(e, t, n) {
+function is(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3628,12 +3643,12 @@ function es(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || ts(n, r, i, a) <= Vo) return Zo(e, t, n, $o(n, [
+	if (a < 0 || as(n, r, i, a) <= Go) return ts(e, t, n, rs(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Ko(e, t, n, r, i, a);
+	let [l, u, d] = Xo(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3649,15 +3664,15 @@ function es(e, t, n) {
 		]
 	};
 }
-function ts(e, t, n, r) {
+function as(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function ns(e, t) {
+function os(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = $o(e, Qo(e));
-		return (n, r) => Zo(n, r, e, t);
+		let t = rs(e, ns(e));
+		return (n, r) => ts(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3666,7 +3681,7 @@ function ns(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Yo(e, o.flat(), 4), c = [];
+	let s = $o(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3674,12 +3689,12 @@ function ns(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * Ho + $(t)] ?? []) {
-			let s = o[a], c = s ? rs(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * Ko + $(t)] ?? []) {
+			let s = o[a], c = s ? ss(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Zo(t, n, e, l);
-		let [a, c] = is(t, n, e, r);
+		if (!r || i < -1e-9) return ts(t, n, e, l);
+		let [a, c] = cs(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3691,7 +3706,7 @@ function ns(e, t) {
 		};
 	};
 }
-function rs(e, t, n, r) {
+function ss(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3699,7 +3714,7 @@ function rs(e, t, n, r) {
 	}
 	return i;
 }
-function is(e, t, n, r) {
+function cs(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3717,26 +3732,26 @@ function is(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = as(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [as(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = ls(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [ls(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function as(e) {
+function ls(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var os = class {
+var us = class {
 	parser;
 	options;
 	name = ue;
 	scene = null;
 	ours;
 	constructor(e, t = {}) {
-		this.parser = e, this.options = t, this.ours = Hr(e.json);
+		this.parser = e, this.options = t, this.ours = qr(e.json);
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
 		let { json: e } = this.parser;
-		Object.assign(e, await Oo(e, (e, t) => this.read(e, t))), this.scene = Ur(e);
+		Object.assign(e, await No(e, (e, t) => this.read(e, t))), this.scene = Jr(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -3757,24 +3772,24 @@ var os = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = ss(e, this.parser), [r] = n;
+		let n = ds(e, this.parser), [r] = n;
 		if (!r) throw j("/meshes/0", "no node shows it");
-		Mo(r.geometry, t);
+		Lo(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw re(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await No(t.mesh, i);
+		}, a = t.mesh && await Ro(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(t.planes.map((e) => to(e, i))),
-			ii(t, i),
-			di(t, i),
-			gi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new Uo(Float64Array.from(u.flatMap((e) => bi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = vi(t, s, f, d.grid, this.fileBytes(), Po(r.geometry)), m = {
+			Promise.all(t.planes.map((e) => oo(e, i))),
+			li(t, i),
+			gi(t, i),
+			xi(t, i)
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new qo(Float64Array.from(u.flatMap((e) => Ti(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ci(t, s, f, d.grid, this.fileBytes(), zo(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -3785,7 +3800,7 @@ var os = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new co(m, this.options);
+		e.userData.eigenfield = new mo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -3793,43 +3808,43 @@ var os = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function ss(e, t) {
+function ds(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		cs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		fs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function cs(e) {
+function fs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function ls(e, t = {}) {
+async function ps(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new go(), i = new AbortController(), a = () => {
+	let r = new xo(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = fs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = gs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await bo(r);
-		if (!Hr(e.json)) return {
-			gltf: await ds(r, e, o),
+		let e = await To(r);
+		if (!qr(e.json)) return {
+			gltf: await hs(r, e, o),
 			field: null
 		};
-		let i = await us(r, e, t);
+		let i = await ms(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof co ? a : null
+			field: a instanceof mo ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), ie(e);
 	}
 }
-async function us(e, t, n) {
+async function ms(e, t, n) {
 	let r = new te(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -3839,12 +3854,12 @@ async function us(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new os(e, {
+	return r.register((e) => new us(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function ds(e, t, n) {
+async function hs(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -3854,25 +3869,25 @@ async function ds(e, t, n) {
 		throw new A("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function fs(e, t, n, r) {
+async function gs(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? ps(e) : await ms(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? _s(e) : await vs(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : hs(t.received, e);
+			throw n.aborted ? e : ys(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function ps(e) {
+function _s(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function ms(e, t) {
+async function vs(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new A("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -3883,7 +3898,7 @@ async function ms(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function hs(e, t) {
+function ys(e, t) {
 	return new A("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { co as EigenField, os as EigenfieldPlugin, A as SceneError, Bi as defaultMemory, ls as loadEigenfield, Ci as novelCamera, Di as placeCamera };
+export { mo as EigenField, us as EigenfieldPlugin, A as SceneError, Gi as defaultMemory, ps as loadEigenfield, Oi as novelCamera, Mi as placeCamera };
