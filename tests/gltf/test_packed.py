@@ -13,6 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eigenfield.coding import limits
+from eigenfield.core.errors import OutputError
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Residual
 from eigenfield.gltf import encode_scene, read_scene, store_scores, validate, without_residual
@@ -107,6 +108,20 @@ def test_a_residual_is_taken_off(data, tmp_path):
     (tmp_path / "bare.glb").write_bytes(bare)
     assert validate(tmp_path / "bare.glb") == [] and encode_scene(read_scene(bare)) == data
     assert without_residual(bare) == bare and without_residual(data) == data
+
+
+def test_more_json_than_is_read_is_not_written(data, tmp_path, monkeypatch):
+    path = tmp_path / "scene.glb"
+    path.write_bytes(data)
+    monkeypatch.setattr(limits, "MAX_JSON", 2000)
+    for write in (
+        lambda: store_scores(path, {"much": "x" * 2000}),
+        lambda: encode_scene(replace(read_scene(data), settings={"much": "x" * 2000})),
+    ):
+        with pytest.raises(OutputError) as caught:
+            write()
+        assert caught.value.code == "scene-limit" and caught.value.remedy
+    assert path.read_bytes() == data
 
 
 DAMAGE = {

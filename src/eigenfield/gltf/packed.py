@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import Any
 
 from eigenfield.coding import limits
-from eigenfield.core.errors import FormatError
+from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.gltf import strict_json
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
@@ -55,8 +55,14 @@ def pack(extension: Mapping[str, Any], streams: Sequence[bytes]) -> bytes:
     Args:
         extension: What is packed of the root extension.
         streams: Its streams.
+
+    Raises:
+        OutputError: `scene-limit`, more JSON than is read.
     """
     text = json_bytes({**extension, "lengths": list(map(len, streams))}).rstrip(b" ")
+    if len(text) > limits.MAX_JSON:
+        message = f"{len(text)} bytes of JSON, {limits.MAX_JSON} are allowed"
+        raise OutputError("scene-limit", message, remedy="store less in it")
     coder = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS, 9, zlib.Z_DEFAULT_STRATEGY, DICTIONARY)
     head = coder.compress(text) + coder.flush()
     return b"".join([HEAD.pack(len(head)), head, *streams])
