@@ -186,7 +186,7 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
 def test_small_files_have_a_smaller_mesh_for_other_viewers():
     mesh = bumpy_square(40)
     faces = [len(shown_mesh(mesh, coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
-    assert faces == sorted(faces) and faces[0] == faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
+    assert faces == sorted(faces) and faces[0] <= 16 < faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
     assert len(shown_mesh(bumpy_square(2), 10).faces) == 2
 
 
