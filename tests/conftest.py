@@ -14,13 +14,13 @@ from support.program import Ran, call
 def every_file_keeps_to_the_schema():
     """Whatever a test writes as a .glb has its JSON checked; files that a test damages afterwards are not."""
     from eigenfield.gltf import write
-    from support.schema import check_json
+    from support.schema import check_file
 
     check_readable = write.check_readable
 
     def checked(text: bytes, binary: bytes) -> None:
         check_readable(text, binary)
-        check_json(text)
+        check_file(text, binary)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(write, "check_readable", checked)

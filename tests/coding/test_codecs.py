@@ -21,8 +21,9 @@ from support.schema import SCHEMA
 
 DOCUMENTS = Path(__file__).parents[2] / "docs"
 VERSIONED = [  # codec, what is coded, the first byte
-    ("mesh-1", ball(6, 4), coder.VERSION),
+    ("mesh-2", ball(6, 4), coder.VERSION),
     ("cameras-1", (row_grid(4),), cameras.VERSION),
+    ("cameras-2", (row_grid(4),), cameras.DEFLATED_VERSION),
     ("triangles-1", (np.array([[2, 0, 1]], np.int32),), triangles.VERSION),
     ("weights-1", (np.ones((4, 2), np.float32), 0.1), weights.VERSION),
 ]
@@ -61,12 +62,13 @@ def test_every_place_has_a_codec_of_its_kind():
 
 def test_every_versioned_codec_is_tried():
     kinds = {"mesh", "cameras", "triangles", "weights"}
-    assert [name for name, _, _ in VERSIONED] == [name for name, codec in CODECS.items() if codec.kind in kinds]
+    written = [name for name, codec in CODECS.items() if codec.kind in kinds and codec.encode is not None]
+    assert [name for name, _, _ in VERSIONED] == written
 
 
 @pytest.mark.parametrize(("codec", "given", "version"), VERSIONED)
 def test_a_stream_begins_with_the_version_of_its_codec(codec, given, version):
-    steps = {"intrinsic_step": 0.1, "rotation_step": 1e-3, "centre_step": 1e-3} if codec == "cameras-1" else {}
+    steps = {"intrinsic_step": 0.1, "rotation_step": 1e-3, "centre_step": 1e-3} if codec.startswith("cameras") else {}
     made = CODECS[codec].encode(*given, **steps)
     data = made if isinstance(made, bytes) else made[0]
     assert codec.endswith(f"-{version}") and data[0] == version

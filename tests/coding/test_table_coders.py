@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zlib
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,7 +11,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from eigenfield.coding.arrays.cameras import HEADER as CAMERA_HEADER
-from eigenfield.coding.arrays.cameras import code_cameras, decode_cameras
+from eigenfield.coding.arrays.cameras import code_cameras, code_deflated, decode_cameras, decode_deflated
 from eigenfield.coding.arrays.triangles import code_triangles, decode_triangles, sorted_triangles
 from eigenfield.coding.arrays.weights import code_weights, decode_weights
 from eigenfield.core.camera import Camera
@@ -129,6 +131,44 @@ def test_cameras_that_look_everywhere():
     assert turned.magnitude().max() <= np.sqrt(3) * 0.5e-4 * 1.1
 
 
+@pytest.mark.parametrize("grid", [None, GRID], ids=["line", "grid"])
+def test_deflated_cameras_are_the_same_cameras(grid):
+    given = {"intrinsic_step": 0.02, "rotation_step": 1e-4, "centre_step": 1e-3, "grid": grid}
+    plain, deflated = code_cameras(array_cameras(), **given), code_deflated(array_cameras(), **given)
+    assert deflated[0][0] == 2 and zlib.decompress(deflated[0][1:], -15) == plain[0][1:]
+    for found in (deflated[1:], decode_deflated(deflated[0])):
+        assert np.array_equal(found[0], plain[1]) and np.array_equal(found[1], plain[2])
+
+
+def test_a_regular_grid_takes_few_bytes():
+    row, column = np.mgrid[:9, :9].reshape(2, 81)
+    lens = [[500.0, 0, 256], [0, 500, 256], [0, 0, 1]]
+    cameras = [Camera(np.array(lens), np.eye(3), -np.array([0.1 * x, 0.1 * y, 0]), 512, 512)
+               for y, x in zip(row, column, strict=True)]  # fmt: skip
+    steps = {"intrinsic_step": 0.02, "rotation_step": 1e-5, "centre_step": 1e-4}
+    data, _, poses = code_deflated(cameras, **steps, grid=np.arange(81).reshape(9, 9))
+    assert len(data) < 80
+    assert np.abs(poses[:, :, 3] - [camera.t for camera in cameras]).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("data", "code"),
+    [
+        (b"", "coded-truncated"),
+        (b"\1\0", "coded-version"),
+        (b"\2\xff\xff", "coded-damaged"),
+        (b"\2" + zlib.compress(bytes(300), 9, -15)[:-2], "coded-truncated"),
+        (b"\2" + zlib.compress(bytes(300), 9, -15), "coded-damaged"),
+        (b"\2" + zlib.compress(bytes(100), 9, -15), "coded-truncated"),
+        (b"\2" + zlib.compress(bytes(2**23), 9, -15), "coded-size"),
+    ],
+)
+def test_deflated_cameras_that_cannot_be_are_refused(data, code):
+    with pytest.raises(FormatError) as caught:
+        decode_deflated(data, "here")
+    assert caught.value.code == code and caught.value.where == "here"
+
+
 def test_no_cameras_are_refused():
     with pytest.raises(ValueError, match="cameras"):
         code_cameras([], intrinsic_step=1, rotation_step=1, centre_step=1)
@@ -143,6 +183,7 @@ def streams():
         (decode_weights, code_weights(weights, 0.1)[0]), (decode_weights, code_weights(weights, 0.1, GRID)[0]),
         (decode_cameras, code_cameras(cameras, **steps)[0]),
         (decode_cameras, code_cameras(cameras, **steps, grid=np.arange(6).reshape(2, 3))[0]),
+        (decode_deflated, code_deflated(cameras, **steps, grid=np.arange(6).reshape(2, 3))[0]),
         (decode_triangles, code_triangles(sorted_triangles(array_triangles()))),
     ]  # fmt: skip
 
@@ -162,6 +203,8 @@ def test_damaged_bytes_give_numbers_or_a_format_error(streams, data):
 
 def test_large_numbers_in_a_short_stream_allocate_nothing(streams):
     for decode, stream in streams:
+        if decode is decode_deflated:
+            continue
         large = bytearray(stream)
         at = 1 if decode is decode_triangles else 6
         large[at : at + 4] = (10**5).to_bytes(4, "little")

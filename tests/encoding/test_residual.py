@@ -156,7 +156,7 @@ def test_the_file_brings_it_back(exact, data, tmp_path):
     gltf, _ = glb_surgery.split(data)
     extension = gltf["extensions"][limits.EXTENSION]
     assert (
-        extension["version"] == "1.5"
+        extension["version"] >= "1.5"
         and extension["residual"]["smooth"] is True
         and "residual" not in extension["needs"]
     )
@@ -189,7 +189,7 @@ def test_a_file_cut_in_its_residual_loses_that_alone(base, data, tmp_path, caplo
     length = parts(stored(data, tmp_path))["residual"]
     gltf, binary = glb_surgery.split(data)
     ends = [view.get("byteOffset", 0) + view["byteLength"] for view in gltf["bufferViews"]]
-    start = len(data) - len(binary) + sorted(ends)[-3]  # after it the order of the frames, its own too, and the video
+    start = len(data) - len(binary) + sorted(ends)[-2]  # after it the video
     for keep in (start, start + 4, start + 1, len(data) - length // 2, len(data) - 5):
         path = stored(data[:keep], tmp_path)
         found = ef.load(path)

@@ -82,7 +82,7 @@ def test_textures_are_stacked_and_share_one_step():
     coded = code_basis(basis, 1e-3, svt_coder(8))
     made = coded.basis
     assert sum(picture.count for picture in coded.pictures) == 7 and {p.codec for p in coded.pictures} == {
-        "av1-10bit-1"
+        "av1-10bit-2"
     }
     assert made.textures.dtype == np.uint16 and len(np.unique(made.scale)) == 1
     assert np.abs(made.values() - basis.values()).mean() < 2e-3
@@ -109,7 +109,7 @@ def test_weak_textures_have_finer_codes_so_that_eight_bits_are_enough(monkeypatc
 def test_means_of_any_range(channels):
     mean = smooth_pictures(1, 64, 64, channels)[0] * (3 if channels == 2 else 0.5) + (0 if channels == 2 else 0.5)
     back, picture = code_mean(mean, 1e-3, svt_coder(8))
-    assert picture.codec == "av1-10bit-1" and np.abs(back - mean).mean() < 0.01
+    assert picture.codec == "av1-10bit-2" and np.abs(back - mean).mean() < 0.01
 
 
 def scene_of_planes():
@@ -140,7 +140,7 @@ def test_a_file_of_planes_regions_and_stacks(tmp_path):
     from eigenfield.gltf.container import parse_glb, read_file
 
     extension = parse_glb(read_file(path)).json["extensions"]["EIGENFIELD_eigen_textures"]
-    assert extension["version"] == "1.2" and extension["needs"] == ["bits", "regions", "stacks", "toRGB"]
+    assert extension["version"] == "1.8" and extension["needs"] == ["av1-10bit-2", "regions", "stacks", "toRGB"]
 
 
 def test_stacks_of_eight_bits_are_read():

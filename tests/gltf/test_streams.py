@@ -56,9 +56,9 @@ def naming(place, codec=None):
             entry = holder[key]
             entry = {"bufferView": entry} if isinstance(entry, int) else entry
             usual = PLACES[place].codec or {8: entry.get("mimeType", "image/png").removeprefix("image/")}.get(
-                entry.get("bits", 8), "av1-10bit-1"
+                entry.get("bits", 8), "av1-10bit-2"
             )
-            holder[key] = {**entry, "codec": usual if codec is None else codec}
+            holder[key] = {**entry, "codec": entry.get("codec", usual) if codec is None else codec}
 
     return change
 
@@ -109,14 +109,14 @@ def test_a_new_codec_is_an_entry_in_the_table(data, tmp_path, monkeypatch):
     stream = weights.shape[1].to_bytes(4, "little") + weights.astype("<f4").tobytes()
     changed = replace(scene, payloads=scene.payloads | {weights_key(weights): [Payload("weights-raw", stream)]})
     with monkeypatch.context() as patch:
-        raw = Codec("weights", None, raw_weights, "weights-raw", "1.7", ("MAX_WEIGHTS",))
+        raw = Codec("weights", None, raw_weights, "weights-raw", "1.8", ("MAX_WEIGHTS",))
         patch.setitem(CODECS, "weights-raw", raw)
-        patch.setitem(streams.FEATURES, "weights-raw", "1.7")
+        patch.setitem(streams.FEATURES, "weights-raw", "1.8")
         patch.setattr(schema, "VALIDATOR", Draft202012Validator({}))  # which does not know it
         path.write_bytes(encode_scene(changed))
         extension = glb_surgery.split(path.read_bytes())[0]["extensions"][EXTENSION]
         assert extension["planes"][0]["bases"][0]["codedWeights"]["codec"] == "weights-raw"
-        assert extension["version"] == "1.7" and "codedWeights" not in extension["needs"]
+        assert extension["version"] == "1.8" and "codedWeights" not in extension["needs"]
         assert "weights-raw" in extension["needs"]
         assert validate(path) == [] and parts(path)["weights"] == len(stream)
         back = read_scene(path.read_bytes())

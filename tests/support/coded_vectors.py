@@ -19,10 +19,13 @@ from eigenfield.coding.arrays.triangles import code_triangles, decode_triangles,
 from eigenfield.coding.arrays.weights import code_weights, decode_weights
 from eigenfield.coding.mesh.coder import decode_mesh, encode_mesh
 from eigenfield.core.errors import FormatError
+from eigenfield.core.payloads import mesh_key
+from eigenfield.gltf import read_scene
 from support import coded_meshes
 from support.arrays import GRID, array_cameras, array_triangles, smooth_weights
 
 DAMAGED = 25  # of each
+BEFORE = Path(__file__).parents[1] / "data" / "coded-1.7.glb"  # whose mesh is of mesh-1
 
 
 def streams():
@@ -32,6 +35,8 @@ def streams():
     yield "mesh-fine", encode_mesh(*coded_meshes.relief(step=0.25, charts=2, astray=0.2), fine=2)[0]
     yield "mesh-ball", encode_mesh(*coded_meshes.ball())[0]
     yield "mesh-soup", encode_mesh(*coded_meshes.soup(7, 60, 150))[0]
+    before = read_scene(BEFORE.read_bytes())
+    yield "mesh-before", before.payloads[mesh_key(before.proxy.mesh)][0].data
     yield "weights-line", code_weights(smooth_weights(4, noise=0.3), 0.05)[0]
     yield "weights-grid", code_weights(smooth_weights(6, noise=0.02), [0.01, 0.02, 0.05, 0.1, 0.2, 0.3], GRID)[0]
     steps = {"intrinsic_step": 0.02, "rotation_step": 1e-4, "centre_step": 1e-3}
@@ -44,7 +49,7 @@ def decoded(kind, stream):
     """Lists of numbers, or None where the bytes are refused."""
     try:
         if kind == "mesh":
-            mesh = decode_mesh(stream)
+            mesh = decode_mesh(stream, version=min(max(stream[0], 1), 2))
             parts = {"positions": mesh.vertices, "uv": mesh.uv, "indices": mesh.faces}
         elif kind == "weights":
             parts = {"values": decode_weights(stream)}

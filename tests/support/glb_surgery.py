@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import struct
 from collections.abc import Callable
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,8 @@ from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
 from eigenfield.coding.pictures import stacking as pictures
 from eigenfield.core.errors import FormatError
+from eigenfield.gltf.container import parse_glb
+from eigenfield.gltf.packed import unpack
 
 EXTENSION = "EIGENFIELD_eigen_textures"
 CODECS = ("png", "webp", "avif")
@@ -21,7 +24,15 @@ DOCUMENT = Path(__file__).parents[2] / "docs" / "format.md"
 
 
 def split(data: bytes) -> tuple[dict[str, Any], bytes]:
-    """JSON and binary chunk."""
+    """JSON and binary chunk; of a packed file the JSON that a plain one has over the same chunk."""
+    gltf, binary = split_packed(data)
+    if "packed" not in gltf["extensions"][EXTENSION]:
+        return gltf, binary
+    return deepcopy(unpack(parse_glb(data)).json), binary
+
+
+def split_packed(data: bytes) -> tuple[dict[str, Any], bytes]:
+    """JSON and binary chunk as they are."""
     length = struct.unpack_from("<I", data, 12)[0]
     return json.loads(data[20 : 20 + length]), data[20 + length + 8 :]
 

@@ -15,6 +15,7 @@ from support import glb_surgery
 PATH = Path(__file__).parents[2] / "docs" / "schema" / f"{limits.EXTENSION}.schema.json"
 SCHEMA: dict[str, Any] = json.loads(PATH.read_text(encoding="utf-8"))
 VALIDATOR = Draft202012Validator(SCHEMA)
+PACKED = Draft202012Validator({"$ref": "#/$defs/packed", "$defs": SCHEMA["$defs"]})
 
 
 def violation(extension: Any) -> str | None:
@@ -23,9 +24,12 @@ def violation(extension: Any) -> str | None:
     return None if error is None else f"{error.json_path}: {error.message[:300]}"
 
 
-def check_json(text: bytes) -> None:
-    """AssertionError where the JSON chunk `text` holds an extension that breaks the schema."""
-    found = violation(json.loads(text)["extensions"][limits.EXTENSION])
+def check_file(text: bytes, binary: bytes) -> None:
+    """AssertionError where a file of this JSON and binary chunk holds an extension that breaks the schema."""
+    data = glb_surgery.join_text(text, binary)
+    outer = glb_surgery.split_packed(data)[0]["extensions"][limits.EXTENSION]
+    wrong = best_match(PACKED.iter_errors(outer)) if "packed" in outer else None
+    found = violation(extension_of(data)) if wrong is None else wrong.message
     assert found is None, f"{PATH.name}: {found}"
 
 

@@ -6,6 +6,7 @@ import { mkdtemp, readFile, readdir, rm } from "node:fs/promises";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
+import { deflateRawSync } from "node:zlib";
 import { fileURLToPath, pathToFileURL } from "node:url";
 import { build } from "vite";
 import { python } from "./command.mjs";
@@ -32,12 +33,14 @@ before(async () => {
 
 after(() => rm(folder, { recursive: true, force: true }));
 
-const decoderOf = (name) => built.CODECS[`${name.split("-")[0]}-1`].decode;
+const decoderOf = (kind, version = 1) => built.CODECS[`${kind}-${version}`].decode;
 
 async function vector(name) {
   const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
   const expected = JSON.parse(await readFile(join(folder, `${name}.json`), "utf8"));
-  return { expected, decode: () => decoderOf(name)(bytes, "here") };
+  const kind = name.split("-")[0];
+  const version = kind === "mesh" ? Math.min(Math.max(bytes[0], 1), 2) : 1;
+  return { expected, decode: () => decoderOf(kind, version)(bytes, "here") };
 }
 
 test("the table has the schema's codecs, and what they need is known", async () => {
@@ -77,7 +80,7 @@ function assertAlike(found, expected, name) {
 
 test("what Python codes decodes to the same numbers", async () => {
   const whole = names.filter((name) => !name.includes("damaged"));
-  assert.equal(whole.length, 10);
+  assert.equal(whole.length, 11);
   for (const name of whole) {
     const { expected, decode } = await vector(name);
     assert.notEqual(expected, null, name);
@@ -86,7 +89,7 @@ test("what Python codes decodes to the same numbers", async () => {
 });
 
 test("a mesh decodes to the same bits", async () => {
-  for (const name of ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup"]) {
+  for (const name of ["mesh-relief", "mesh-coarse", "mesh-fine", "mesh-ball", "mesh-soup", "mesh-before"]) {
     const { expected, decode } = await vector(name);
     const found = decode();
     for (const part of ["positions", "uv", "indices"]) assert.deepEqual([...found[part]], expected[part], name);
@@ -123,11 +126,26 @@ test("names decode to the same names, damaged ones too or to an error of ours", 
   assert.ok(read >= 3 && refused > 20, `${read} read, ${refused} refused`);
 });
 
+test("deflated cameras are the same cameras, and damaged ones an error of ours", async () => {
+  const { decode } = built.CODECS["cameras-2"];
+  for (const name of ["cameras-line", "cameras-grid"]) {
+    const { expected } = await vector(name);
+    const plain = await readFile(join(folder, `${name}.bin`));
+    const bytes = Buffer.concat([Buffer.from([2]), deflateRawSync(plain.subarray(1))]);
+    assertAlike(await decode(new Uint8Array(bytes), "here"), expected, name);
+    const huge = Buffer.concat([Buffer.from([2]), deflateRawSync(Buffer.alloc(2 ** 23))]);
+    for (const wrong of [plain, bytes.subarray(0, -9), Buffer.from([2]), huge]) {
+      await assert.rejects(decode(new Uint8Array(wrong), "here"), { name: "SceneError" });
+    }
+  }
+});
+
 test("large numbers in few bytes allocate nothing", async () => {
   const counts = [["mesh-ball", 4], ["mesh-ball", 12], ["weights-grid", 6], ["cameras-line", 6], ["triangles-grid", 1]];
   for (const [name, at] of counts) {
     const bytes = new Uint8Array(await readFile(join(folder, `${name}.bin`)));
     new DataView(bytes.buffer).setUint32(at, 2 ** 26, true);
-    assert.throws(() => decoderOf(name)(bytes, "here"), { name: "SceneError" });
+    const kind = name.split("-")[0];
+    assert.throws(() => decoderOf(kind, kind === "mesh" ? 2 : 1)(bytes, "here"), { name: "SceneError" });
   }
 });

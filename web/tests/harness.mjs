@@ -11,7 +11,7 @@ import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { delimiter, extname, join, normalize, sep } from "node:path";
 import { fileURLToPath } from "node:url";
-import { inflateSync } from "node:zlib";
+import { inflateRawSync, inflateSync } from "node:zlib";
 import { chromium } from "playwright-core";
 
 export const WEB = fileURLToPath(new URL("..", import.meta.url));
@@ -24,6 +24,9 @@ const FLAGS = [
   "--ignore-gpu-blocklist",
   "--disable-background-networking",
 ];
+
+const SOURCE = readFileSync(join(WEB, "eigenfield-three/src/packed.ts"), "utf8");
+const DICTIONARY = Buffer.from([...SOURCE.matchAll(/^  '(.*)',$/gm)].map(([, line]) => line).join(""));
 
 const TYPES = {
   ".html": "text/html; charset=utf-8",
@@ -235,7 +238,22 @@ export function readGlb(bytes) {
   const data = Buffer.from(bytes);
   const length = data.readUInt32LE(12);
   const json = JSON.parse(data.toString("utf8", 20, 20 + length));
-  return { json, binary: data.subarray(28 + length, 28 + length + data.readUInt32LE(20 + length)) };
+  const binary = data.subarray(28 + length, 28 + length + data.readUInt32LE(20 + length));
+  return { json: unpacked(json, binary), binary };
+}
+
+/** The JSON that a plain file would have. */
+function unpacked(json, binary) {
+  const { EIGENFIELD_eigen_textures: extension, ...others } = json.extensions ?? {};
+  if (extension?.packed === undefined) return json;
+  const { byteOffset: start } = json.bufferViews[extension.packed];
+  const end = start + 4 + binary.readUInt32LE(start);
+  const { lengths, ...inner } = JSON.parse(inflateRawSync(binary.subarray(start + 4, end), { dictionary: DICTIONARY }));
+  let at = end;
+  const streams = lengths.map((byteLength) => ({ buffer: 0, byteOffset: (at += byteLength) - byteLength, byteLength }));
+  const made = { version: extension.version, ...inner };
+  const bufferViews = [...json.bufferViews.slice(0, -1), ...streams];
+  return { ...json, bufferViews, extensions: { ...others, EIGENFIELD_eigen_textures: made } };
 }
 
 /** The bytes of a GLB; `text` replaces the JSON's own. */

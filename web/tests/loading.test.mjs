@@ -297,7 +297,7 @@ const PRECISE_CHANGES = {
 /** First byte and length of each coded part within the binary chunk. */
 function streamsOf(json) {
   const { mesh, cameras, planes } = find(json);
-  const views = { mesh: mesh.bufferView, coded: cameras.coded, codedWeights: planes[0].bases[0].codedWeights };
+  const views = { mesh: mesh.bufferView, coded: cameras.coded.bufferView, codedWeights: planes[0].bases[0].codedWeights };
   return Object.entries(views).map(([name, view]) => {
     const { byteOffset, byteLength } = json.bufferViews[view];
     return { name, view, start: byteOffset, length: byteLength };
@@ -308,11 +308,11 @@ function streamsOf(json) {
 function named(e, codec = null) {
   const [plane] = e.planes;
   const [basis] = plane.bases;
-  e.mesh.codec = codec ?? "mesh-1";
-  e.cameras.coded = { bufferView: e.cameras.coded, codec: codec ?? "cameras-1" };
+  e.mesh.codec = codec ?? "mesh-2";
+  e.cameras.coded.codec = codec ?? "cameras-2";
   e.viewPlane.codedTriangles = { bufferView: e.viewPlane.codedTriangles, codec: codec ?? "triangles-1" };
   basis.codedWeights = { bufferView: basis.codedWeights, codec: codec ?? "weights-1" };
-  plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-1";
+  plane.mean.codec = basis.textures[0].codec = codec ?? "av1-10bit-2";
 }
 
 const STREAMS = {
@@ -332,7 +332,7 @@ test("streams may name their codecs; an unknown one is refused by name, and so i
   routes["/named.glb"] = { body: writeGlb({ json: own, binary }) };
   assert.deepEqual(await tryLoad(page, "named.glb"), { later: null, loaded: 6 });
   for (const [kind, stream] of Object.entries(STREAMS)) {
-    for (const codec of ["soup-9", kind === "mesh" ? "png" : "mesh-1", "toString"]) {
+    for (const codec of ["soup-9", kind === "mesh" ? "png" : "mesh-2", "toString"]) {
       const other = structuredClone(own);
       stream(find(other)).codec = codec;
       routes["/named.glb"] = { body: writeGlb({ json: other, binary }) };
@@ -355,7 +355,7 @@ test("damaged coded parts are refused by name", async () => {
   const { page, close } = await lab.open();
   const { json, binary } = readGlb(sceneBytes("coded.glb"));
   for (const { name, view, start, length } of streamsOf(json)) {
-    for (const [byte, value] of [[0, 2], [1, 255]]) {
+    for (const [byte, value] of [[0, 3], [1, 255]]) {
       const data = Buffer.from(binary);
       data[start + byte] = value;
       routes["/stream.glb"] = { body: writeGlb({ json, binary: data }) };
@@ -388,6 +388,34 @@ test("coded parts with any byte changed load or are refused, and nothing else", 
       assert.match(code, /^(loaded|damaged|truncated)$/, name);
     }
   }
+  await close();
+});
+
+test("a damaged packed extension is refused by name, and any byte of it changed loads or is refused", async () => {
+  const { page, close } = await lab.open();
+  const data = sceneBytes("coded.glb");
+  const length = data.readUInt32LE(12);
+  const json = JSON.parse(data.toString("utf8", 20, 20 + length));
+  const { byteOffset } = json.bufferViews[find(json).packed];
+  const start = 28 + length + byteOffset; // the length of the JSON, then the JSON
+  const size = data.readUInt32LE(start);
+  for (const value of [0, size - 2, size + 1, 2 ** 31]) {
+    const other = Buffer.from(data);
+    other.writeUInt32LE(value, start);
+    routes["/packed.glb"] = { body: other };
+    const { code, where } = await tryLoad(page, "packed.glb");
+    assert.deepEqual([code, where], ["damaged", `/extensions/${EXTENSION}/packed`], `${value} bytes`);
+  }
+  for (let k = 0; k < 24; k++) {
+    const other = Buffer.from(data);
+    other[start + 4 + Math.floor((k * size) / 24)] ^= 1 << k % 8;
+    routes["/packed.glb"] = { body: other };
+    const { code = "loaded" } = await tryLoad(page, "packed.glb");
+    assert.match(code, /^(loaded|damaged|truncated|needs|version|unsupported|codec-unknown)$/);
+  }
+  find(json).needs.push("repacked");
+  routes["/packed.glb"] = { body: writeGlb({ json, binary: readGlb(data).binary }) };
+  assert.equal((await tryLoad(page, "packed.glb")).code, "needs");
   await close();
 });
 

@@ -29,9 +29,11 @@ from typing import Any
 from eigenfield.coding.arrays.names import code_names, decode_names
 from eigenfield.coding.pictures import pictures_8bit as eight
 from eigenfield.coding.pictures import pictures_10bit as ten
+from eigenfield.coding.pictures.av1_units import frame_size
 from eigenfield.coding.video.av1 import decode_video, encode_video
 
 AVIF = "image/avif"
+AV1 = "video/AV1"
 
 
 @dataclass(frozen=True)
@@ -97,12 +99,20 @@ def _picture_8bit(mime: str, encode: Callable[..., bytes] | None, lossless: bool
 PICTURE_LIMITS = ("MAX_SIDE", "MAX_STACKED", "MAX_TEXELS")
 CODECS: dict[str, Codec] = {
     "mesh-1": Codec(
-        "mesh", _later("mesh.coder", "encode_mesh"), _later("mesh.coder", "decode_mesh"),
+        "mesh", None, partial(_later("mesh.coder", "decode_mesh"), version=1),
         "codedMesh", "1.2", ("MAX_VERTICES", "MAX_TRIANGLES"),
+    ),
+    "mesh-2": Codec(
+        "mesh", _later("mesh.coder", "encode_mesh"), _later("mesh.coder", "decode_mesh"),
+        "mesh-2", "1.8", ("MAX_VERTICES", "MAX_TRIANGLES"),
     ),
     "cameras-1": Codec(
         "cameras", _later("arrays.cameras", "code_cameras"), _later("arrays.cameras", "decode_cameras"),
         "codedCameras", "1.2", ("MAX_CAMERAS",),
+    ),
+    "cameras-2": Codec(
+        "cameras", _later("arrays.cameras", "code_deflated"), _later("arrays.cameras", "decode_deflated"),
+        "cameras-2", "1.8", ("MAX_CAMERAS",),
     ),
     "names-1": Codec("names", code_names, decode_names, "codedNames", "1.6", ("MAX_NAMES", "MAX_CAMERAS")),
     "triangles-1": Codec(
@@ -118,8 +128,12 @@ CODECS: dict[str, Codec] = {
     "avif": _picture_8bit(AVIF, eight.encode_avif, False),
     "jpeg": _picture_8bit("image/jpeg", None, False),
     "av1-10bit-1": PictureCodec(
-        "picture", ten.encode_10bit, ten.decode_10bit, "bits", "1.2", PICTURE_LIMITS,
+        "picture", None, ten.decode_avif_10bit, "bits", "1.2", PICTURE_LIMITS,
         partial(eight.header_size, mime=AVIF), AVIF, ten.PICTURE_BITS,
+    ),
+    "av1-10bit-2": PictureCodec(
+        "picture", ten.encode_10bit, ten.decode_10bit, "av1-10bit-2", "1.8", PICTURE_LIMITS,
+        frame_size, AV1, ten.PICTURE_BITS,
     ),
     "video-1": Codec("residual", encode_video, decode_video, None, "1.3", ("MAX_TEXELS", "MAX_VIDEO")),
 }  # fmt: skip

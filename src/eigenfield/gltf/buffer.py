@@ -23,6 +23,7 @@ class Buffer:
         accessors: The JSON's accessors.
         once: Buffer views of bytes that `shared_stream` has written.
         codecs: Places (`streams.PLACES`) and codecs of its streams.
+        packed: The streams of a packed extension, which lie behind all buffer views; None where it is plain.
     """
 
     parts: list[bytes] = field(default_factory=list)
@@ -31,11 +32,13 @@ class Buffer:
     accessors: list[dict[str, Any]] = field(default_factory=list)
     once: dict[bytes, int] = field(default_factory=dict)
     codecs: set[tuple[str, str]] = field(default_factory=set)
+    packed: list[bytes] | None = None
 
     def view(self, data: bytes, target: int | None = None) -> int:
-        """Append a buffer view at a multiple of 4; its index."""
+        """Append a buffer view at a multiple of 4; its index. Of a packed file no stream comes before."""
+        assert not self.packed
         entry: dict[str, Any] = {"buffer": 0, "byteOffset": self.length, "byteLength": len(data)}
-        if target is not None:
+        if target is not None and self.packed is None:
             entry["target"] = target
         self.views.append(entry)
         self.parts.append(data + bytes(-len(data) % 4))
@@ -45,7 +48,10 @@ class Buffer:
     def stream(self, payload: Payload, place: str) -> int:
         """As `view`, of a coded stream."""
         self.codecs.add((place, payload.codec))
-        return self.view(payload.data)
+        if self.packed is None:
+            return self.view(payload.data)
+        self.packed.append(payload.data)
+        return len(self.views) + len(self.packed) - 1
 
     def shared_stream(self, payload: Payload, place: str) -> int:
         """As `stream`; the same buffer view for the same bytes."""

@@ -11,7 +11,7 @@ from eigenfield.core.mesh import Mesh
 
 T = TypeVar("T")
 
-COARSE_TRIANGLES = (128, 64, 32)  # with fewer than the first the rim of Tarot's ball comes apart
+COARSE_TRIANGLES = (128, 64, 32, 16)  # with fewer than the first the rim of Tarot's ball comes apart
 PREVIEW_MAX_BYTES_RATIO = 0.1  # of the mesh to what is coded, and of the picture
 COARSE_MAX_EXCESS_RATIO = 1.5  # of the triangles of a simplified mesh to those asked for; beyond, it is clustered
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures import quantise
-from eigenfield.coding.pictures.pictures_8bit import encode_preview
+from eigenfield.coding.pictures.pictures_8bit import encode_preview, encode_small_preview
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
@@ -21,7 +21,7 @@ from eigenfield.gltf.cached import CachedPayloads
 from eigenfield.gltf.coarse import first_affordable
 from eigenfield.runtime.parallel import tracked_map
 
-SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30)  # texels a side and quality, beside a fit's pictures
+SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30), (48, 30)  # texels a side and quality, beside a fit's pictures
 MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
 
 
@@ -149,7 +149,9 @@ def _preview(scene: Scene, coded: int) -> bytes:
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
     if to_rgb is None:
         return encode_preview(stacked_picture(codes))
-    return first_affordable((encode_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded)
+    return first_affordable(
+        (encode_small_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded
+    )
 
 
 def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -12,7 +12,8 @@ from eigenfield.coding import limits
 from eigenfield.core.errors import FormatError
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, file_head, json_bytes, parse_glb, read_file
 from eigenfield.gltf.document import Document
-from eigenfield.gltf.layout import FileLayout, find_extension
+from eigenfield.gltf.layout import FileLayout, find_extension, unpacked_document
+from eigenfield.gltf.packed import is_packed, repack
 from eigenfield.gltf.read import layout_of, name_file_in_errors, read_scene
 from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
@@ -84,7 +85,11 @@ def without_residual(data: bytes) -> bytes:
     glb = parse_glb(data)
     if glb.missing:
         return encode_scene(replace(read_scene(data), residual=None))
-    document = Document(glb)
+    document = unpacked_document(glb)
+    if is_packed(glb):
+        kept = dict(document.glb.json["extensions"][limits.EXTENSION])
+        last = {"bufferView": len(document.glb.json["bufferViews"]) - 1}
+        return repack(glb, kept, residual=False) if last.items() <= kept.pop("residual", {}).items() else data
     views, accessors = list(glb.json["bufferViews"]), list(glb.json.get("accessors", []))
     extension = dict(glb.json["extensions"][limits.EXTENSION])
     residual = extension.pop("residual", None)
@@ -118,7 +123,12 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
         glb = parse_glb(data)
         if glb.missing:
             raise glb.cut_off()
-        find_extension(Document(glb))
+        document = unpacked_document(glb)
+        extension = find_extension(document).mapping()
+    if is_packed(glb):
+        with atomic_writer(target, overwrite=True) as file:
+            file.write(repack(glb, {**extension, "scores": dict(scores)}))
+        return
     glb.json["extensions"][limits.EXTENSION]["scores"] = dict(scores)
     text = json_bytes(glb.json)
     if len(text) > limits.MAX_JSON:

@@ -22,6 +22,8 @@ from eigenfield.core.payloads import Payload
 from eigenfield.core.scene import Residual
 from eigenfield.core.viewplane import ViewPlane
 from eigenfield.gltf import layout_geometry as geometry
+from eigenfield.gltf import packed
+from eigenfield.gltf.container import Glb, parse_glb
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
@@ -75,6 +77,22 @@ class FileLayout:
     def lost(self) -> int:
         """Eigen textures behind the end of a file that is cut off."""
         return sum(plane.lost for plane in self.planes or ())
+
+
+def open_document(data: bytes) -> Document:
+    """The container and the unpacked JSON of a file of these bytes.
+
+    Raises:
+        FormatError: As `parse_glb`, `find_extension` and `unpack`.
+    """
+    return unpacked_document(parse_glb(data))
+
+
+def unpacked_document(glb: Glb) -> Document:
+    """As `open_document`, of a container."""
+    if packed.is_packed(glb):
+        find_extension(Document(glb))  # whose needs may be unknown
+    return Document(packed.unpack(glb))
 
 
 def read_layout(document: Document, findings: Findings) -> FileLayout | None:

@@ -19,10 +19,10 @@ from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mean
 from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene, Scene
-from eigenfield.gltf.container import parse_glb, read_file
+from eigenfield.gltf.container import read_file
 from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
-from eigenfield.gltf.layout import FileLayout, read_layout
+from eigenfield.gltf.layout import FileLayout, open_document, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
 from eigenfield.gltf.layout_planes import BasisLayout, PictureLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
@@ -51,7 +51,7 @@ def layout_of(data: bytes) -> tuple[Document, FileLayout]:
     Raises:
         FormatError: As `load`.
     """
-    document = Document(parse_glb(data))
+    document = open_document(data)
     layout = read_layout(document, Findings(strict=True))
     assert layout is not None
     return document, layout
@@ -174,7 +174,7 @@ def validate(path: str | os.PathLike[str]) -> list[Finding]:
     """
     findings = Findings(strict=False)
     with findings.part(), name_file_in_errors(path):
-        document = Document(parse_glb(read_file(Path(path))))
+        document = open_document(read_file(Path(path)))
         layout = read_layout(document, findings)
         if layout is not None:
             _check_pictures(layout, findings)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -21,16 +22,16 @@ from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.version import __version__
-from eigenfield.gltf import strict_json
-from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
+from eigenfield.gltf import packed, strict_json
+from eigenfield.gltf.axes import NEAR_PLANE_RATIO, capture_to_gltf, opening_view, quaternion
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.cached import CachedPayloads, cached_payloads
 from eigenfield.gltf.coarse import shown_mesh
 from eigenfield.gltf.coded_pictures import PlanePictures, ScenePictures, code_pictures, shortest_decimals
 from eigenfield.gltf.container import BINARY_CHUNK, CHUNK, Glb, file_head, json_bytes
-from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32, Document
+from eigenfield.gltf.document import FLOAT, UINT8, UINT16, UINT32
 from eigenfield.gltf.findings import Findings
-from eigenfield.gltf.layout import read_layout
+from eigenfield.gltf.layout import read_layout, unpacked_document
 from eigenfield.gltf.name_pattern import name_pattern
 from eigenfield.gltf.streams import FEATURES, PLACES, codec_entry, minor
 from eigenfield.gltf.writable import check_writable
@@ -40,6 +41,8 @@ log = logging.getLogger("eigenfield.format")
 
 DEFAULT_AVIF_QUALITY = 70  # of the eigen textures
 _VERTICES, _INDICES = 34962, 34963  # glTF's targets of a buffer view
+NODE_DIGITS = 9  # of numbers for other viewers and of the view plane: all that readers of 32 bits keep
+PACKED_NODE_DIGITS = 6
 CODED_NAMES_MIN_SAVING_BYTES = 256  # with their two entries in the JSON
 
 
@@ -101,7 +104,7 @@ def _blocks(
     check_writable(scene, path)
     cached = cached_payloads(scene)
     coded = code_pictures(scene, cached, codec, DEFAULT_AVIF_QUALITY if quality is None else quality, progress)
-    buffer = Buffer()
+    buffer = Buffer(packed=[] if _packs(scene, cached) else None)
     gltf = _gltf(scene, buffer, coded, cached)
     text = json_bytes(gltf)
     if len(text) > limits.MAX_JSON:
@@ -115,6 +118,13 @@ def _blocks(
     return [head, CHUNK.pack(buffer.length, BINARY_CHUNK), binary], anew
 
 
+def _packs(scene: Scene, cached: CachedPayloads) -> bool:
+    """Whether the extension is packed: mesh, cameras and weights are coded, so that all else is in it, too."""
+    bases = [(p, b) for p, plane in enumerate(scene.appearance.planes) for b in range(len(plane.bases))]
+    coded = ["mesh", "cameras", *(f"planes[{p}].bases[{b}].weights" for p, b in bases)]
+    return all(cached.one(part) is not None for part in coded)
+
+
 def check_readable(text: bytes, binary: bytes) -> None:
     """Check that `load` takes what is written: a scene put together by hand may be anything.
 
@@ -122,7 +132,7 @@ def check_readable(text: bytes, binary: bytes) -> None:
         FormatError: That of `load`.
     """
     written = Glb(strict_json.parse(text, "byte 20"), memoryview(binary), len(text) + len(binary), len(text))
-    read_layout(Document(written), Findings(strict=True))
+    read_layout(unpacked_document(written), Findings(strict=True))
 
 
 def _plain_sizes(scene: Scene) -> dict[str, int]:
@@ -142,25 +152,27 @@ def _plain_sizes(scene: Scene) -> dict[str, int]:
 
 
 def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayloads) -> dict[str, Any]:
-    """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures."""
+    """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures; if packed, all accessors first."""
     mesh, poses = cached.one("mesh"), cached.one("cameras")
     shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy.mesh, coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
+    preview = coded.preview or coded.planes[0].mean
+    image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
+    plain = buffer.packed is None
+    order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
+    cameras = {} if plain else _cameras(scene, buffer, poses)
     proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
-    if coded.preview is None:
-        image = {"bufferView": buffer.stream(coded.planes[0].mean, "mean"), "mimeType": "image/png"}
-    else:
-        image = {"bufferView": buffer.view(coded.preview.data), "mimeType": PICTURES[coded.preview.codec].mime}
     planes = []
     for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
         weights = [cached.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
         planes.append(_plane(plane, made, weights, buffer, inline=index > 0 or coded.preview is not None))
-    cameras, view_plane = _cameras(scene, buffer, poses), _view_plane(scene, buffer, poses is not None)
+    cameras = cameras or _cameras(scene, buffer, poses)
+    view_plane = _view_plane(scene, buffer, poses is not None)
     entries = _by_gain_per_byte(scene, coded, planes)
     codecs = buffer.codecs | {("textures", picture.codec) for _, picture in entries}
     needs = _needs(scene, coded, {codec for _, codec in codecs}, cameras, planes)
+    version = _version(scene, needs, any(codec_entry(codec, place) for place, codec in codecs))
     extension: dict[str, Any] = {
-        "version": _version(scene, needs, any(codec_entry(codec, place) for place, codec in codecs)),
         "needs": needs,
         **proxy,
         "planes": planes,
@@ -169,39 +181,52 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
         "viewPlane": view_plane,
         **({} if scene.times == (0.0,) else {"times": list(scene.times)}),
         "reference": int(scene.rig.reference),
-        "settings": dict(scene.settings),
-        "scores": dict(scene.scores),
+        **({"settings": dict(scene.settings)} if scene.settings else {}),
+        **({"scores": dict(scene.scores)} if scene.scores else {}),
         "generator": scene.generator or f"eigenfield {__version__}",
     }
     for entry, picture in entries:  # last: a file that is still arriving can be drawn
         entry["bufferView"] = buffer.stream(picture, "textures")
     if scene.residual is not None:  # behind all that any view is drawn of: a file that is cut off there loses it alone
-        extension["residual"] = _residual(scene.residual, buffer)
-    perspective, nodes = _nodes(scene)
+        order = _frame_order(scene.residual, buffer) if plain else order
+        extension["residual"] = _residual(scene.residual, buffer) | order
+    if plain:
+        extension = {"version": version} | extension
+    else:
+        extension = {"version": version, "needs": [packed.FEATURE], packed.FEATURE: packed.write(extension, buffer)}
+    perspective, nodes = _nodes(scene, NODE_DIGITS if plain else PACKED_NODE_DIGITS)
+    named = partial(_named, plain)
     return {
-        "asset": {"version": "2.0", "generator": f"eigenfield {__version__}"},
+        "asset": {"version": "2.0", **({"generator": f"eigenfield {__version__}"} if plain else {})},
         "extensionsUsed": ["KHR_materials_unlit", limits.EXTENSION],
         "extensions": {limits.EXTENSION: extension},
         "scene": 0,
         "scenes": [{"nodes": [0, 1]}],
-        "nodes": nodes,
+        "nodes": [named("proxy", nodes[0]), named("reference camera", nodes[1])],
         "cameras": [{"type": "perspective", "perspective": perspective}],
-        "meshes": [{"name": "proxy", "primitives": [primitive]}],
+        "meshes": [named("proxy", {"primitives": [primitive]})],
         "materials": [
-            {
-                "name": "mean",
-                "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
-                "extensions": {"KHR_materials_unlit": {}},
-                "doubleSided": True,
-            }
+            named(
+                "mean",
+                {
+                    "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
+                    "extensions": {"KHR_materials_unlit": {}},
+                    "doubleSided": True,
+                },
+            )
         ],
         "textures": [{"source": 0, "sampler": 0}],
-        "samplers": [{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}],
+        "samplers": [{**({"magFilter": 9729, "minFilter": 9987} if plain else {}), "wrapS": 33071, "wrapT": 33071}],
         "images": [image],
         "accessors": buffer.accessors,
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
+
+
+def _named(plain: bool, name: str, entry: dict[str, Any]) -> dict[str, Any]:
+    """The entry with its name, which a packed file leaves out."""
+    return {"name": name} | entry if plain else entry
 
 
 def _by_gain_per_byte(
@@ -330,15 +355,20 @@ def _affine_numbers(numbers: NDArray[np.float64], count: int) -> list[float]:
 
 
 def _residual(residual: Residual, buffer: Buffer) -> dict[str, Any]:
-    order, count = residual.order, len(residual.order)
     made: dict[str, Any] = {"size": [residual.size[1], residual.size[0]], "scale": list(residual.scale)}
     if residual.full_chroma:
         made["full"] = True
     if residual.smooth_edges:
         made["smooth"] = True
-    if (order != np.arange(count)).any():
-        made["order"] = buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")
     return made | _stream(Payload(residual.codec, residual.video), "residual", buffer)
+
+
+def _frame_order(residual: Residual, buffer: Buffer) -> dict[str, int]:
+    """The order of a residual's frames, left out where it is that of the encoded cameras."""
+    order, count = residual.order, len(residual.order)
+    if (order == np.arange(count)).all():
+        return {}
+    return {"order": buffer.accessor(order, UINT16 if count < 65_536 else UINT32, "SCALAR")}
 
 
 def _needs(
@@ -361,8 +391,15 @@ def _needs(
 
 def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, Any]:
     sizes = np.array([[c.width, c.height] for c in scene.rig.cameras])
-    made = _names(scene.rig.names, None if stream is None else buffer)
-    made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
+    made: dict[str, Any] = {}
+    if stream is not None and (sizes == sizes[0]).all():
+        made["size"] = sizes[0].tolist()
+    else:
+        made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
+    if scene.appearance.colours is not None:
+        made["colour"] = buffer.accessor(scene.appearance.colours.ravel(), FLOAT, "SCALAR")
+    if scene.rig.held_out.any():
+        made["heldOut"] = np.flatnonzero(scene.rig.held_out).tolist()
     if stream is not None:
         made["coded"] = _stream(stream, "cameras", buffer)
     else:
@@ -371,13 +408,7 @@ def _cameras(scene: Scene, buffer: Buffer, stream: Payload | None) -> dict[str, 
         poses = np.array([np.hstack([c.R, c.t[:, None]]) for c in cameras])
         made["intrinsics"] = buffer.accessor(intrinsics.ravel(), FLOAT, "SCALAR")
         made["poses"] = buffer.accessor(poses.ravel(), FLOAT, "SCALAR")
-    if stream is not None and (sizes == sizes[0]).all():
-        made["size"] = sizes[0].tolist()
-    else:
-        made["sizes"] = buffer.accessor(sizes.ravel(), UINT32, "SCALAR")
-    if scene.appearance.colours is not None:
-        made["colour"] = buffer.accessor(scene.appearance.colours.ravel(), FLOAT, "SCALAR")
-    return made
+    return _names(scene.rig.names, None if stream is None else buffer) | made
 
 
 def _names(names: Sequence[str], buffer: Buffer | None) -> dict[str, Any]:
@@ -405,6 +436,10 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     plane = scene.rig.view_plane
     numbers = {"origin": plane.origin, "right": plane.right, "up": plane.up, "extent": plane.extent}
     made: dict[str, Any] = {name: (value + 0.0).tolist() for name, value in numbers.items()}  # + 0.0: no minus zero
+    if short:
+        size = max(np.abs(plane.origin).max(), plane.extent.max())
+        units = {"origin": size, "right": 1.0, "up": 1.0, "extent": size}
+        made = {name: _rounded(value, units[name]) for name, value in numbers.items()}
     if len(scene.rig.triangles):
         stream = _encode_at("triangles", scene.rig.triangles) if short else None
         if stream is not None:
@@ -414,22 +449,34 @@ def _view_plane(scene: Scene, buffer: Buffer, short: bool) -> dict[str, Any]:
     return made
 
 
-def _decimals(numbers: Iterable[float]) -> list[float]:
-    """To nine digits, all that readers of 32 bits keep."""
-    return [float(f"{number:.9g}") + 0.0 for number in numbers]  # + 0.0: no minus zero in the file
+def _decimals(numbers: Iterable[float], digits: int) -> list[float]:
+    return [float(f"{number:.{digits}g}") + 0.0 for number in numbers]  # + 0.0: no minus zero in the file
 
 
-def _nodes(scene: Scene) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+def _rounded(numbers: NDArray[np.float64], unit: float, digits: int = NODE_DIGITS) -> list[float]:
+    """To a place below the first digit of `unit`: what is nothing beside it becomes 0."""
+    places = digits - 1 - int(np.floor(np.log10(unit))) if unit > 0 else digits
+    return [round(float(number), places) + 0.0 for number in numbers]
+
+
+def _nodes(scene: Scene, digits: int) -> tuple[dict[str, Any], list[dict[str, Any]]]:
     camera = scene.rig.cameras[scene.rig.reference]
     turn = capture_to_gltf(scene.rig.view_plane)
     perspective, axes = opening_view(camera, scene.proxy.mesh)
-    proxy = {"name": "proxy", "mesh": 0, **_node_rotation(turn)}
-    view = {"name": "reference camera", "camera": 0, "translation": _decimals(turn @ camera.centre)}
-    perspective = dict(zip(perspective, _decimals(perspective.values()), strict=True))
-    return perspective, [proxy, view | _node_rotation(turn @ axes)]
+    proxy = {"mesh": 0, **_node_rotation(turn, digits)}
+    distance = perspective["znear"] / NEAR_PLANE_RATIO
+    view = {"camera": 0, **_node_translation(turn @ camera.centre, distance, digits)}
+    perspective = dict(zip(perspective, _decimals(perspective.values(), digits), strict=True))
+    return perspective, [proxy, view | _node_rotation(turn @ axes, digits)]
 
 
-def _node_rotation(rotation: NDArray[np.float64]) -> dict[str, list[float]]:
+def _node_translation(place: NDArray[np.float64], distance: float, digits: int) -> dict[str, list[float]]:
+    """A node's translation, left out where it is none. distance: to the nearest vertex."""
+    found = _rounded(place, max(float(np.abs(place).max()), distance), digits)
+    return {"translation": found} if any(found) else {}
+
+
+def _node_rotation(rotation: NDArray[np.float64], digits: int) -> dict[str, list[float]]:
     """A node's rotation, (3, 3); left out where it is none."""
-    found = _decimals(quaternion(rotation))
+    found = _rounded(np.array(quaternion(rotation)), 1.0, digits)
     return {} if found == [0, 0, 0, 1] else {"rotation": found}

@@ -1,6 +1,7 @@
 // Intrinsics and poses of cameras, as `docs/coding.md` codes them.
 
 import { damaged } from "./errors.js";
+import { inflated } from "./inflate.js";
 import * as limits from "./limits.js";
 import { checkNumbers, codedHeader } from "./range-decoder.js";
 import { readGrid, readLines, tableDecoder } from "./table-decoder.js";
@@ -13,6 +14,16 @@ const FROM_BEFORE = 2;
 export interface CodedCameras {
   intrinsics: Float32Array; // fx, fy, skew, cx, cy of each
   poses: Float32Array; // [R t], 12 of each, world to camera
+}
+
+const DEFLATED = 2; // version of the codec
+const MAX_INFLATED = 4 * NUMBERS * limits.MAX_CAMERAS + 1024; // bytes
+
+/** Cameras of the codec `cameras-2`. Raises SceneError `damaged`. */
+export async function inflateCameras(bytes: Uint8Array, where: string): Promise<CodedCameras> {
+  if (bytes[0] !== DEFLATED) throw damaged(where, `version ${bytes[0]}`);
+  const inner = await inflated(Uint8Array.from(bytes.subarray(1)), "deflate-raw", MAX_INFLATED, where);
+  return decodeCameras(Uint8Array.from([1, ...inner]), where);
 }
 
 export function decodeCameras(bytes: Uint8Array, where: string): CodedCameras {

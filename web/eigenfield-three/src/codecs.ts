@@ -1,11 +1,12 @@
 // How each kind of stream may be coded: docs/coding.md. A new codec is a decoder, an entry here, and its name in the
 // schema. The compiler wants an entry for each name there.
 
-import { decodeCameras, type CodedCameras } from "./camera-decoder.js";
+import { asAvif } from "./av1-picture.js";
+import { decodeCameras, inflateCameras, type CodedCameras } from "./camera-decoder.js";
 import { SceneError } from "./errors.js";
 import type { Value } from "./json.js";
 import * as limits from "./limits.js";
-import { decodeMesh, type DecodedMesh } from "./mesh-decoder.js";
+import { decodeMesh, decodeOldMesh, type DecodedMesh } from "./mesh-decoder.js";
 import { decodeNames } from "./name-decoder.js";
 import { decodeTenBits } from "./pictures-10bit.js";
 import { decodeBitmaps } from "./pictures-8bit.js";
@@ -17,7 +18,7 @@ import { decodeWeights, type CodedWeights } from "./weight-decoder.js";
 /** What decodes each kind of stream; `where` is the place that a SceneError names. */
 interface Decoders {
   mesh: (bytes: Uint8Array, where: string) => DecodedMesh;
-  cameras: (bytes: Uint8Array, where: string) => CodedCameras;
+  cameras: (bytes: Uint8Array, where: string) => CodedCameras | Promise<CodedCameras>;
   names: (bytes: Uint8Array, count: number, where: string) => Promise<string[]>;
   triangles: (bytes: Uint8Array, where: string) => CodedTriangles;
   weights: (bytes: Uint8Array, where: string) => CodedWeights;
@@ -58,8 +59,10 @@ function eightBits(mimeType: schema.MimeType): BitmapCodec {
 
 /** Every codec but those of a residual, which this plug-in does not draw. */
 export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
-  "mesh-1": { kind: "mesh", decode: decodeMesh, needs: "codedMesh", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
+  "mesh-1": { kind: "mesh", decode: decodeOldMesh, needs: "codedMesh", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
+  "mesh-2": { kind: "mesh", decode: decodeMesh, needs: "mesh-2", limits: ["MAX_VERTICES", "MAX_TRIANGLES"] },
   "cameras-1": { kind: "cameras", decode: decodeCameras, needs: "codedCameras", limits: ["MAX_CAMERAS"] },
+  "cameras-2": { kind: "cameras", decode: inflateCameras, needs: "cameras-2", limits: ["MAX_CAMERAS"] },
   "names-1": { kind: "names", decode: decodeNames, needs: "codedNames", limits: ["MAX_NAMES", "MAX_CAMERAS"] },
   "triangles-1": { kind: "triangles", decode: decodeTriangles, needs: "codedTriangles", limits: ["MAX_CAMERAS"] },
   "weights-1": { kind: "weights", decode: decodeWeights, needs: "codedWeights", limits: ["MAX_WEIGHTS"] },
@@ -68,6 +71,13 @@ export const CODECS: { readonly [K in Kind as Names[K]]: Codec<K> } = {
   avif: eightBits("image/avif"),
   jpeg: eightBits("image/jpeg"),
   "av1-10bit-1": { ...eightBits("image/avif"), bits: 10, decode: decodeTenBits, needs: "bits" },
+  "av1-10bit-2": {
+    ...eightBits("video/AV1"),
+    bits: 10,
+    decode: (bytes, picture, size, down) => decodeTenBits(asAvif(bytes, picture.where), picture, size, down),
+    bitmaps: (bytes, picture, size, down) => decodeBitmaps(asAvif(bytes, picture.where), picture, size, down),
+    needs: "av1-10bit-2",
+  },
 };
 
 /** The codec of a stream that names none; that of a picture follows from its type. */
@@ -88,12 +98,12 @@ export function codecOf<K extends Kind>(kind: K, named: Value, usual: Names[Kind
   throw new SceneError("codec-unknown", `${text}; take a newer viewer.`, named.where);
 }
 
-/** The name of the codec of pictures of this type and so many bits, if there is one. */
-export function pictureCodec(mimeType: string, bits: number): schema.PictureCodec | undefined {
+/** The name of the codec of pictures of this type and so many bits, or of any, if there is one. */
+export function pictureCodec(mimeType: string, bits?: number): schema.PictureCodec | undefined {
   const names = Object.keys(CODECS) as Names[Kind][];
   const fits = (name: Names[Kind]): name is schema.PictureCodec => {
     const codec = CODECS[name];
-    return codec.kind === "picture" && codec.mimeType === mimeType && codec.bits === bits;
+    return codec.kind === "picture" && codec.mimeType === mimeType && (bits ?? codec.bits) === codec.bits;
   };
   return names.find(fits);
 }

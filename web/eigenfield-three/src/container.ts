@@ -37,7 +37,7 @@ export async function openContainer(arrival: Arrival): Promise<Container> {
   if (size > limits.MAX_JSON) throw damaged("12", `${size} bytes of JSON`);
   if (20 + size > length) throw damaged("12", "a chunk longer than the file");
   const text = decodeText(await arrival.read(20, 20 + size));
-  return { length, text, json: parseJson(text), binary: () => binaryStart(arrival, 20 + size, length) };
+  return { length, text, json: parseJson(text, "20"), binary: () => binaryStart(arrival, 20 + size, length) };
 }
 
 async function binaryStart(arrival: Arrival, from: number, length: number): Promise<number> {
@@ -60,12 +60,12 @@ function decodeText(bytes: ArrayBuffer): string {
   }
 }
 
-function parseJson(text: string): Json {
-  if (depthOf(text) > limits.MAX_DEPTH) throw damaged("20", "its JSON is nested too deep");
+export function parseJson(text: string, where: string): Json {
+  if (depthOf(text) > limits.MAX_DEPTH) throw damaged(where, "its JSON is nested too deep");
   try {
     return JSON.parse(text) as Json;
   } catch {
-    throw damaged("20", "its JSON cannot be read");
+    throw damaged(where, "its JSON cannot be read");
   }
 }
 

@@ -48,7 +48,7 @@ export interface SceneDocument {
   preview: number | null; // buffer view of `images[0]`
 }
 
-const LAYOUT_FEATURES: Feature[] = ["namePattern", "precision", "regions", "sharedPicture", "stacks", "toRGB"];
+const LAYOUT_FEATURES: Feature[] = ["namePattern", "packed", "precision", "regions", "sharedPicture", "stacks", "toRGB"];
 const CODEC_FEATURES = Object.values(CODECS).flatMap(({ needs }) => needs ?? []);
 export const KNOWN_NEEDS: ReadonlySet<string> = new Set([...LAYOUT_FEATURES, ...CODEC_FEATURES]);
 
@@ -122,7 +122,8 @@ export function readDocument(json: Json): SceneDocument {
   };
 }
 
-function checkVersion(extension: Value<SceneJson>): string {
+/** Raises SceneError: `version`, `needs`. */
+export function checkVersion(extension: Value<SceneJson>): string {
   const version = extension.key("version").text(limits.MAX_NAME);
   if (!/^1\.\d+$/.test(version)) {
     throw new SceneError(

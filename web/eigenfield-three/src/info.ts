@@ -110,7 +110,7 @@ async function readCalibration(scene: SceneDocument, bytes: ViewBytes): Promise<
     return { lenses: await readTable(intrinsics, scene, bytes), poses: await readTable(poses, scene, bytes) };
   }
   const { view, codec, where } = calibration;
-  const coded = codec.decode(new Uint8Array(await bytes(view)), where);
+  const coded = await codec.decode(new Uint8Array(await bytes(view)), where);
   const count = coded.poses.length / 12;
   if (count !== heldOut.length) throw damaged(where, `${count} cameras in it, and ${heldOut.length} names`);
   const table = (numbers: Float32Array): Table => ({ numbers: checkFinite(numbers, where), where });

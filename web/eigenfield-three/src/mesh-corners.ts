@@ -21,7 +21,7 @@ export interface Vertices {
   place: Int32Array; // of each vertex
   chart: Int32Array; // of each vertex
   kinds: Uint8Array; // of the charts
-  maps: Uint32Array; // bits of six float32 numbers a chart
+  maps: Uint32Array; // of each chart the bits of four float32 numbers, and the codes of two offsets
 }
 
 /** Corners (3 face + k) at every vertex: those of vertex v from first[v] to first[v + 1]. */
@@ -41,6 +41,7 @@ export function readCorners(
   count: number,
   first: Int32Array,
   corners: Int32Array,
+  offsetDigits: number,
   where: string,
 ): Vertices {
   const faces = built.faces.length / 3;
@@ -129,7 +130,8 @@ export function readCorners(
       return chart;
     }
     const linear = last >= 0 && decoder.flag(CHART + 3, CHART + 3, CHART + 3, M_CHART);
-    for (let k = 0; k < 6; k++) out.maps[6 * chart + k] = linear && k < 4 ? out.maps[6 * last + k]! : decoder.raw(32);
+    for (let k = 0; k < 4; k++) out.maps[6 * chart + k] = linear ? out.maps[6 * last + k]! : decoder.raw(32);
+    for (let k = 4; k < 6; k++) out.maps[6 * chart + k] = decoder.raw(offsetDigits);
     return chart;
   };
 

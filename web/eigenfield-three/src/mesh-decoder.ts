@@ -8,6 +8,8 @@ import { CONTEXTS, MIXTURES, readDepths, readTextures } from "./mesh-values.js";
 import { RangeDecoder, checkNumbers, codedHeader } from "./range-decoder.js";
 
 const HEADER = 144;
+const VERSION = 2;
+const OFFSET_RANGE = 3; // binary digits of an offset beyond those of u and v
 const MOST_DIGITS = 18;
 const MOST_FINE = 8;
 
@@ -17,8 +19,18 @@ export interface DecodedMesh {
   indices: Uint32Array; // three a face
 }
 
+/** A mesh of the codec `mesh-1`. Raises SceneError: `damaged`, `truncated`. */
+export function decodeOldMesh(bytes: Uint8Array, where: string): DecodedMesh {
+  return decode(bytes, where, 1);
+}
+
+/** A mesh of the codec `mesh-2`. Raises SceneError: `damaged`, `truncated`. */
 export function decodeMesh(bytes: Uint8Array, where: string): DecodedMesh {
-  const header = codedHeader(bytes, HEADER, where);
+  return decode(bytes, where, VERSION);
+}
+
+function decode(bytes: Uint8Array, where: string, version: number): DecodedMesh {
+  const header = codedHeader(bytes, HEADER, where, version);
   const [flat, digits, fine] = [header.getUint8(1), header.getUint8(2), header.getUint8(3)];
   const [places, faces, count] = [4, 8, 12].map((at) => header.getUint32(at, true)) as [number, number, number];
   const matrix = Float64Array.from({ length: 16 }, (_, k) => header.getFloat64(16 + 8 * k, true));
@@ -32,12 +44,16 @@ export function decodeMesh(bytes: Uint8Array, where: string): DecodedMesh {
   decoder.checkEnd(where);
   const around = cornerLists(built.faces, places);
   if (flat) readDepths(decoder, built, around.first, around.corners);
-  const vertices = readCorners(decoder, built, count, around.first, around.corners, where);
+  const offsetDigits = version === VERSION ? digits + OFFSET_RANGE : 32;
+  const vertices = readCorners(decoder, built, count, around.first, around.corners, offsetDigits, where);
   const world = worldPositions(built.points, matrix);
   const lists = cornerLists(vertices.faces, count);
   const codes = readTextures(decoder, vertices, world, lists.first, lists.corners);
   decoder.checkEnd(where);
-  return checked(assembled(built, vertices, world, codes, 2 ** digits), where);
+  const floats = new Float32Array(vertices.maps.buffer);
+  const offset = (at: number): number =>
+    version === VERSION ? vertices.maps[at]! / 2 ** (digits + 1) - 2 : floats[at]!;
+  return checked(assembled(built, vertices, world, codes, 2 ** digits, offset), where);
 }
 
 /** Lattice points through a homogeneous matrix, three a point. */
@@ -58,6 +74,7 @@ function assembled(
   world: Float64Array,
   codes: Int32Array,
   scale: number,
+  offset: (at: number) => number,
 ): DecodedMesh {
   const positions = new Float32Array(3 * place.length);
   const uv = new Float32Array(2 * place.length);
@@ -69,7 +86,7 @@ function assembled(
     for (let axis = 0; axis < 2; axis++) {
       const row = from + 2 * axis;
       uv[2 * vertex + axis] = mapped
-        ? map[row]! * built.points[3 * at]! + map[row + 1]! * built.points[3 * at + 1]! + map[from + 4 + axis]!
+        ? map[row]! * built.points[3 * at]! + map[row + 1]! * built.points[3 * at + 1]! + offset(from + 4 + axis)
         : codes[2 * vertex + axis]! / scale;
     }
   });

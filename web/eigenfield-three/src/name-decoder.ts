@@ -1,13 +1,15 @@
 // Names of cameras, as `docs/coding.md` codes them.
 
 import { damaged } from "./errors.js";
+import { inflated } from "./inflate.js";
 import * as limits from "./limits.js";
 
 const MOST_BYTES = 4 * limits.MAX_NAME; // of one name in UTF-8
 
 /** `count` names. Raises SceneError `damaged`. */
 export async function decodeNames(bytes: Uint8Array, count: number, where: string): Promise<string[]> {
-  const columns = await inflated(bytes, Math.min(limits.MAX_NAMES, MOST_BYTES * count), where);
+  const most = Math.min(limits.MAX_NAMES, MOST_BYTES * count);
+  const columns = await inflated(Uint8Array.from(bytes), "deflate", most, where);
   const length = columns.length / count;
   if (length === 0 || !Number.isInteger(length)) throw damaged(where, `${columns.length} bytes of ${count} names`);
   const decoder = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true });
@@ -24,31 +26,4 @@ export async function decodeNames(bytes: Uint8Array, count: number, where: strin
     }
   }
   return names;
-}
-
-/** What a zlib stream of at most `most` bytes holds. */
-async function inflated(bytes: Uint8Array, most: number, where: string): Promise<Uint8Array> {
-  const pieces: Uint8Array[] = [];
-  let size = 0;
-  const stream = new Blob([Uint8Array.from(bytes)]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const reader = stream.getReader();
-  try {
-    for (let next = await reader.read(); !next.done && size <= most; next = await reader.read()) {
-      pieces.push(next.value);
-      size += next.value.length;
-    }
-  } catch {
-    throw damaged(where, "names that do not inflate");
-  }
-  if (size > most) {
-    await reader.cancel();
-    throw damaged(where, `more than ${most} bytes of names`);
-  }
-  const whole = new Uint8Array(size);
-  let at = 0;
-  for (const piece of pieces) {
-    whole.set(piece, at);
-    at += piece.length;
-  }
-  return whole;
 }

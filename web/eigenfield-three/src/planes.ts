@@ -123,7 +123,7 @@ function readPicture(
 /** What a picture's type and bits say it is, and its codec if it names one. */
 function formatOf(value: Value<MeanJson | TextureJson>): Codec<"picture"> {
   const mimeType = value.key("mimeType").text(limits.MAX_NAME);
-  if (!pictureCodec(mimeType, EIGHT)) throw value.key("mimeType").wrong("an unknown type");
+  if (!pictureCodec(mimeType)) throw value.key("mimeType").wrong("an unknown type");
   const depth = value.key("bits");
   const bits = depth.exists ? depth.integer(1, MOST_BITS) : EIGHT;
   const usual = pictureCodec(mimeType, bits);

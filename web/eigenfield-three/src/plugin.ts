@@ -8,6 +8,7 @@ import { planeCoordinates, readCameras, readTriangles, readWeights, sceneInfo } 
 import { EXTENSION } from "./limits.js";
 import { decodeMean, type Mean } from "./means.js";
 import type { EigenfieldOptions } from "./options.js";
+import { unpacked } from "./packed.js";
 import { checkGeometry, countsOf, readCodedMesh } from "./proxy.js";
 import { ViewWeights } from "./weights.js";
 
@@ -31,7 +32,17 @@ export class EigenfieldPlugin implements GLTFLoaderPlugin {
   }
 
   async beforeRoot(): Promise<void> {
-    if (this.ours) this.scene = readDocument(this.parser.json);
+    if (!this.ours) return;
+    const { json } = this.parser;
+    Object.assign(json, await unpacked(json, (offset, length) => this.read(offset, length)));
+    this.scene = readDocument(json);
+  }
+
+  private async read(offset: number, length: number): Promise<ArrayBuffer> {
+    if (this.options.stream) return this.options.stream.read(offset, length);
+    const bytes = ((await this.parser.getDependency("buffer", 0)) as ArrayBuffer).slice(offset, offset + length);
+    if (bytes.byteLength < length) throw cutOff("/buffers/0");
+    return bytes;
   }
 
   /** The picture for other viewers is not needed, and so not decoded. */

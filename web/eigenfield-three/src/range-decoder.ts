@@ -133,9 +133,9 @@ export class RangeDecoder {
 }
 
 /** The header's view of a coded part of at least `size` bytes, its version checked. */
-export function codedHeader(bytes: Uint8Array, size: number, where: string): DataView {
+export function codedHeader(bytes: Uint8Array, size: number, where: string, version = 1): DataView {
   if (bytes.length < size) throw cutOff(where);
-  if (bytes[0] !== 1) throw damaged(where, `coded numbers of version ${bytes[0]}`);
+  if (bytes[0] !== version) throw damaged(where, `coded numbers of version ${bytes[0]}`);
   return new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
 }
 

@@ -33,15 +33,28 @@ export interface SceneJson {
   generator?: string;
 }
 
+/** The root extension of a packed file; what it holds is then as this schema says. */
+export interface PackedJson {
+  version: string;
+  /** More is in what is packed. */
+  needs: "packed"[];
+  /** Index of a buffer view. */
+  packed: number;
+}
+
 /** What `needs` may name. */
 export type Feature =
+  | "av1-10bit-2"
   | "bits"
+  | "cameras-2"
   | "codedCameras"
   | "codedMesh"
   | "codedNames"
   | "codedTriangles"
   | "codedWeights"
+  | "mesh-2"
   | "namePattern"
+  | "packed"
   | "precision"
   | "regions"
   | "sharedPicture"
@@ -50,10 +63,10 @@ export type Feature =
   | "toRGB";
 
 /** Codecs of a mesh. */
-export type MeshCodec = "mesh-1";
+export type MeshCodec = "mesh-1" | "mesh-2";
 
 /** Codecs of intrinsics and poses. */
-export type CamerasCodec = "cameras-1";
+export type CamerasCodec = "cameras-1" | "cameras-2";
 
 /** Codecs of the cameras' names. */
 export type NamesCodec = "names-1";
@@ -65,7 +78,7 @@ export type TrianglesCodec = "triangles-1";
 export type WeightsCodec = "weights-1";
 
 /** Codecs of pictures. */
-export type PictureCodec = "av1-10bit-1" | "avif" | "webp" | "png" | "jpeg";
+export type PictureCodec = "av1-10bit-1" | "av1-10bit-2" | "avif" | "webp" | "png" | "jpeg";
 
 /** Codecs of a residual. */
 export type VideoCodec = "video-1";
@@ -153,7 +166,7 @@ export interface MeanJson {
 }
 
 /** Type of a picture. */
-export type MimeType = "image/png" | "image/jpeg" | "image/webp" | "image/avif";
+export type MimeType = "image/png" | "image/jpeg" | "image/webp" | "image/avif" | "video/AV1";
 
 /** Bits of a sample. */
 export type Bits = 8 | 10;

@@ -31,12 +31,14 @@ from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh, signed_areas
 from eigenfield.imaging.graph import vertex_components
 
-VERSION = 1
+VERSION, OLD_VERSION = 2, 1
 HEADER = struct.Struct("<BBBBIII16d")  # version, flat, digits of u and v, fine; places, faces, vertices; the lattice
+OLD_OFFSET_DIGITS = 32  # the bits of a float32
+OFFSET_RANGE_DIGITS = 3  # of an offset of a map beyond those of u and v: from -2 to 2, in halves of their step
 MESH_MAX_STEPS = 2**20 - 1  # of lattice coordinates, either way
 MESH_MAX_FINE_DIGITS = 8  # binary, the last ones of x and y
 MESH_MAX_UV_DIGITS = 18  # binary, of texture coordinates in 0..1
-MAPPED_CHART_MIN_VERTICES = 24  # of a chart with a map of its own, which takes 24 bytes
+MAPPED_CHART_MIN_VERTICES = 24  # of a chart with a map of its own, which takes 20 bytes
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,24 +102,32 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         place, kinds, maps = source.number[welded.place], welded.kinds, welded.maps
         given = corner_kernels.Corners(welded.faces, welded.label, place, kinds, maps, blank, blank.copy())
         vertices = corner_kernels.new_vertices(v, n, m)
-        complete = complete and code_corners(coder, given, source.face_order, built, vertices, first, corners)
+        offset_digits = uv_bits + OFFSET_RANGE_DIGITS
+        complete = complete and code_corners(
+            coder, given, source.face_order, built, vertices, first, corners, offset_digits
+        )
         assert complete
         codes = welded.codes[given.order]
         code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
-        found[:] = [_mesh(lattice, uv_bits, built, vertices, codes)]
+        found[:] = [_mesh(lattice, uv_bits, built, vertices, codes, VERSION)]
 
     header = HEADER.pack(VERSION, int(lattice.flat), uv_bits, fine, n, m, v, *lattice.matrix.reshape(-1))
     body = range_coder.coded_bytes(run, CONTEXTS, MIXTURES, room=4 * (n + m + v) + 1024)
     return range_coder.pad_bytes(header + body, max(n, m, v)), found[0]
 
 
-def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
+def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mesh:
     """The mesh of `encode_mesh`.
+
+    Args:
+        data: The stream.
+        where: Its place, for errors.
+        version: Of the codec: VERSION or OLD_VERSION.
 
     Raises:
         FormatError: `coded-truncated`, `coded-version`, `coded-size`, `coded-damaged`.
     """
-    range_coder.check_header(data, HEADER.size, VERSION, where)
+    range_coder.check_header(data, HEADER.size, version, where)
     _, flat, uv_bits, fine, n, m, v, *numbers = HEADER.unpack_from(data)
     if n > limits.MAX_VERTICES or v > limits.MAX_VERTICES or m > limits.MAX_TRIANGLES:
         raise range_coder.damaged_error(f"{v} vertices and {m} faces, more than a scene may have", where)
@@ -135,12 +145,14 @@ def decode_mesh(data: bytes, where: str = "mesh") -> Mesh:
     if lattice.flat:
         code_depths(coder, built, first, corners)
     vertices = corner_kernels.new_vertices(v, n, m)
-    if not code_corners(coder, corner_kernels.no_corners(), np.zeros(0, np.int32), built, vertices, first, corners):
+    offset_digits = uv_bits + OFFSET_RANGE_DIGITS if version == VERSION else OLD_OFFSET_DIGITS
+    none = corner_kernels.no_corners()
+    if not code_corners(coder, none, np.zeros(0, np.int32), built, vertices, first, corners, offset_digits):
         raise range_coder.damaged_error("corners of faces that cannot be", where)
     codes = np.zeros((v, 2), np.int64)
     code_textures(coder, vertices, lattice.points(built.points), codes, *corner_lists(vertices.faces, v))
     range_coder.check_end(coder, where)
-    mesh = _mesh(lattice, uv_bits, built, vertices, codes)
+    mesh = _mesh(lattice, uv_bits, built, vertices, codes, version)
     assert mesh.uv is not None
     if not (np.abs(mesh.vertices) <= limits.MAX_NUMBER).all() or not (np.abs(mesh.uv) <= limits.MAX_NUMBER).all():
         raise range_coder.damaged_error("positions or texture coordinates that are not finite", where)
@@ -158,7 +170,7 @@ def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
     scale = 2.0**uv_bits
     if not (np.abs(uv) * scale <= MESH_MAX_STEPS).all():
         raise ValueError("texture coordinates that are not finite, or far beyond 0 to 1")
-    label, kinds, maps = _chart_kinds(mesh.faces, exact, uv, 0.5 / scale)
+    label, kinds, maps = _chart_kinds(mesh.faces, exact, uv, uv_bits)
     codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)
     alike = np.concatenate([steps.astype(np.int64), codes, label[:, None]], axis=1)
     _, first, same = np.unique(alike, axis=0, return_index=True, return_inverse=True)
@@ -190,22 +202,23 @@ def _source(welded: _Welded) -> Source:
     )  # fmt: skip
 
 
-def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDArray[np.int64]) -> Mesh:
+def _mesh(lattice: Lattice, uv_bits: int, built: Any, vertices: Any, codes: NDArray[np.int64], version: int) -> Mesh:
     uv = codes / 2.0**uv_bits
     mapped = vertices.kinds[vertices.chart] == MAPPED
     place = vertices.place
-    uv[mapped] = _mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]])
+    bits = uv_bits if version == VERSION else None
+    uv[mapped] = _mapped_texture(built.points[place[mapped]], vertices.maps[vertices.chart[mapped]], bits)
     with np.errstate(over="ignore", invalid="ignore"):
         return Mesh(lattice.points(built.points)[place].astype(np.float32), vertices.faces, uv.astype(np.float32))
 
 
 def _chart_kinds(
-    faces: NDArray[np.int32], places: NDArray[np.float64], uv: NDArray[np.float64], tolerance: float
+    faces: NDArray[np.int32], places: NDArray[np.float64], uv: NDArray[np.float64], uv_bits: int
 ) -> tuple[NDArray[np.int32], NDArray[np.int8], NDArray[np.int64]]:
-    """(v,) the chart of every vertex, (charts,) kinds, (charts, 6) bits of the maps' float32 numbers.
+    """(v,) the chart of every vertex, (charts,) kinds, (charts, 6) maps as `Vertices` has them.
 
     Charts are components connected by vertices. Those of a relief, laid out as a camera sees it, are an affine map of
-    the lattice coordinates `places` (v, 3): a chart is MAPPED if u and v are within `tolerance` of a x + b y + c.
+    the lattice coordinates `places` (v, 3): a chart is MAPPED if u and v are within half a step of a x + b y + c.
     """
     label = vertex_components(faces, len(places))
     charts = int(label.max(initial=-1)) + 1
@@ -217,38 +230,53 @@ def _chart_kinds(
     last = None
     for chart in range(charts):
         members = order[first[chart] : first[chart + 1]]
-        found = _affine(places[members, :2], uv[members], last, tolerance) if len(members) else None
+        found = _affine(places[members, :2], uv[members], last, uv_bits) if len(members) else None
         if found is not None:
-            kinds[chart], maps[chart], last = MAPPED, found.view(np.uint32), found
+            last, offset = found
+            kinds[chart], maps[chart] = MAPPED, np.concatenate([last.view(np.uint32), offset])
     return label, kinds, maps
 
 
 def _affine(
-    xy: NDArray[np.float64], uv: NDArray[np.float64], last: NDArray[np.float32] | None, tolerance: float
-) -> NDArray[np.float32] | None:
-    """(6,) a u-row, a v-row, the offset; with the linear part of the last if that will do, which is cheaper."""
+    xy: NDArray[np.float64], uv: NDArray[np.float64], last: NDArray[np.float32] | None, uv_bits: int
+) -> tuple[NDArray[np.float32], NDArray[np.int64]] | None:
+    """(4,) a u-row, a v-row, and (2,) the codes of the offset; with the linear part of the last if that will do, which
+    is cheaper."""
     if last is not None:
-        same = _with_offset(last[:4], xy, uv, tolerance)
+        same = _offset(last, xy, uv, uv_bits)
         if same is not None:
-            return same
+            return last, same
     if len(xy) < MAPPED_CHART_MIN_VERTICES:
         return None
     middle = xy.mean(axis=0)
     slope = np.linalg.lstsq(xy - middle, uv - uv.mean(axis=0), rcond=None)[0]
-    return _with_offset(np.ascontiguousarray(slope.T, np.float32).reshape(4), xy, uv, tolerance)
+    linear = np.ascontiguousarray(slope.T, np.float32).reshape(4)
+    offset = _offset(linear, xy, uv, uv_bits)
+    return None if offset is None else (linear, offset)
 
 
-def _with_offset(
-    linear: NDArray[np.float32], xy: NDArray[np.float64], uv: NDArray[np.float64], tolerance: float
-) -> NDArray[np.float32] | None:
+def _offset(
+    linear: NDArray[np.float32], xy: NDArray[np.float64], uv: NDArray[np.float64], uv_bits: int
+) -> NDArray[np.int64] | None:
+    """The codes of the offset of a map; None where a vertex would be more than half a step off."""
     rest = uv - xy @ linear.astype(np.float64).reshape(2, 2).T
-    offset = ((rest.min(axis=0) + rest.max(axis=0)) / 2).astype(np.float32)
-    return np.concatenate([linear, offset]) if np.abs(rest - offset).max() <= tolerance else None
+    codes = np.rint((rest.min(axis=0) + rest.max(axis=0)) * 2.0**uv_bits) + 2.0 ** (uv_bits + 2)
+    if not ((codes >= 0) & (codes < 2.0 ** (uv_bits + OFFSET_RANGE_DIGITS))).all():
+        return None
+    near = np.abs(rest - _offset_numbers(codes, uv_bits)).max() <= 0.5 / 2.0**uv_bits
+    return codes.astype(np.int64) if near else None
 
 
-def _mapped_texture(places: NDArray[np.int64], maps: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(v, 2) texture coordinates at lattice coordinates places (v, 3) by maps (v, 6)."""
+def _offset_numbers(codes: NDArray[Any], uv_bits: int) -> NDArray[np.float64]:
+    """The offsets of these codes, in halves of a step from -2."""
+    return np.asarray(codes / 2.0 ** (uv_bits + 1) - 2.0, np.float64)
+
+
+def _mapped_texture(places: NDArray[np.int64], maps: NDArray[np.int64], uv_bits: int | None) -> NDArray[np.float64]:
+    """(v, 2) texture coordinates at lattice coordinates places (v, 3) by maps (v, 6). uv_bits: None where the offsets
+    are the bits of float32 numbers."""
     x, y = places[:, 0].astype(np.float64), places[:, 1].astype(np.float64)
     with np.errstate(all="ignore"):
         m = maps.astype(np.uint32).view(np.float32).astype(np.float64)
-        return np.stack([m[:, 0] * x + m[:, 1] * y + m[:, 4], m[:, 2] * x + m[:, 3] * y + m[:, 5]], axis=1)
+        offset = m[:, 4:] if uv_bits is None else _offset_numbers(maps[:, 4:], uv_bits)
+        return np.stack([m[:, 0] * x + m[:, 1] * y, m[:, 2] * x + m[:, 3] * y], axis=1) + offset

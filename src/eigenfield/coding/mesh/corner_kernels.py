@@ -39,7 +39,7 @@ class Vertices(NamedTuple):
         latest: (n,) int32, the vertex that came last at a place, or -1.
         older: (v,) int32, the vertex before it at the same place, or -1.
         kinds: (charts,) int8.
-        maps: (charts, 6) int64, the bits of float32 numbers.
+        maps: (charts, 6) int64, the bits of float32 numbers; or of those the first four, and the codes of two offsets.
         counts: (3,) int64 vertices and charts so far, and the number of the last chart with a map, plus 1.
     """
 
@@ -184,9 +184,9 @@ def _code_corner(coder, built, out, beside, state, face, k, vertex):
 
 
 @kernel()
-def _code_chart(coder, source, out, given):
-    """What a new chart is, and its map: that of an earlier chart, or the linear part of the last and an offset, or six
-    float32 numbers. False for what cannot be."""
+def _code_chart(coder, source, out, given, offset_digits):
+    """What a new chart is, and its map: that of an earlier chart, or the linear part of the last and an offset, or four
+    float32 numbers and an offset. False for what cannot be."""
     chart = out.counts[1]
     out.counts[1] = chart + 1
     writing = coder.writing[0]
@@ -224,13 +224,14 @@ def _code_chart(coder, source, out, given):
         if k < 4 and linear:
             out.maps[chart, k] = out.maps[last, k]
         else:
-            out.maps[chart, k] = code_raw(coder, out.maps[chart, k], 32)
+            out.maps[chart, k] = code_raw(coder, out.maps[chart, k], 32 if k < 4 else offset_digits)
     return True
 
 
 @kernel()
-def code_corners(coder, source, face_order, built, out, first, corners):
-    """Code or decode the vertices of all corners, given corner lists of the built faces; whether they can be."""
+def code_corners(coder, source, face_order, built, out, first, corners, offset_digits):
+    """Code or decode the vertices of all corners, given corner lists of the built faces and the binary digits of a
+    map's offset; whether they can be."""
     room = out.place.shape[0]
     beside, state = np.zeros(3, np.int64), np.zeros(3, np.int64)
     writing = coder.writing[0]
@@ -269,7 +270,7 @@ def code_corners(coder, source, face_order, built, out, first, corners):
             out.faces[face, k] = vertex
         if chart < 0:
             chart = out.counts[1]
-            if not _code_chart(coder, source, out, given[0]):
+            if not _code_chart(coder, source, out, given[0], offset_digits):
                 return False
         for k in range(3):
             if fresh[k]:

@@ -7,12 +7,11 @@ import functools
 import logging
 import shutil
 import subprocess
-import tempfile
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.coding.pictures.av1_units import picture_units
 from eigenfield.coding.pictures.pictures_10bit import MIDDLE_CODE, MIN_SIDE_TEXELS, PIXEL_FORMAT, SVT_CODER
 
 log = logging.getLogger("eigenfield.encode")
@@ -22,7 +21,7 @@ AOM_SPEED = 2
 FFMPEG_INTERRUPTED_STATUS = 255  # of the program when Ctrl-C has stopped it too
 _OPTIONS = (
     "-c:v", "libaom-av1", "-usage", "good", "-cpu-used", str(AOM_SPEED), "-tune", "psnr", "-b:v", "0", "-threads", "1",
-    "-still-picture", "1", "-color_range", "pc", "-f", "avif",
+    "-still-picture", "1", "-color_range", "pc", "-f", "obu",
 )  # fmt: skip
 
 
@@ -61,13 +60,11 @@ def _run(program: str, codes: NDArray[np.uint16], crf: int) -> bytes:
     height, width = codes.shape
     flat = np.full(height * width // 2, MIDDLE_CODE, "<u2")
     source = ("-f", "rawvideo", "-pix_fmt", PIXEL_FORMAT, "-color_range", "pc", "-s", f"{width}x{height}", "-i", "-")
-    with tempfile.TemporaryDirectory() as folder:  # an AVIF is not written from its first byte to its last
-        file = Path(folder) / "picture.avif"
-        command = [program, "-loglevel", "error", *source, "-frames:v", "1", "-crf", str(crf), *_OPTIONS, str(file)]
-        values = codes.astype("<u2").tobytes() + flat.tobytes()
-        done = subprocess.run(command, input=values, capture_output=True, check=False)
-        if done.returncode == FFMPEG_INTERRUPTED_STATUS:
-            raise KeyboardInterrupt
-        if done.returncode:
-            raise RuntimeError(" ".join(done.stderr.decode(errors="replace").split())[-200:] or str(done.returncode))
-        return file.read_bytes()
+    command = [program, "-loglevel", "error", *source, "-frames:v", "1", "-crf", str(crf), *_OPTIONS, "-"]
+    values = codes.astype("<u2").tobytes() + flat.tobytes()
+    done = subprocess.run(command, input=values, capture_output=True, check=False)
+    if done.returncode == FFMPEG_INTERRUPTED_STATUS:
+        raise KeyboardInterrupt
+    if done.returncode or not done.stdout:
+        raise RuntimeError(" ".join(done.stderr.decode(errors="replace").split())[-200:] or str(done.returncode))
+    return picture_units(done.stdout)

@@ -1,7 +1,8 @@
-"""Grey pictures of 10-bit codes as AVIF: eigen textures and means as a fit leaves them.
+"""Grey pictures of 10-bit codes as AV1: eigen textures and means as a fit leaves them.
 
-SVT-AV1 codes them as 4:2:0 with flat chroma, full range, tuned for squared error; dav1d decodes them. A reader of 8
-bits (a browser) finds the same picture in codes of 8 bits.
+SVT-AV1 codes them as 4:2:0 with flat chroma, full range, tuned for squared error; dav1d decodes them. A picture is the
+bare sequence header and frame (`av1-10bit-2`), or an AVIF file (`av1-10bit-1`, which is read only). AVIF's boxes take
+289 bytes of each picture. A reader of 8 bits (a browser) finds the same picture in codes of 8 bits.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import contextlib
 import io
 import os
 from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from functools import partial
 from typing import Any
 
@@ -17,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding import limits
+from eigenfield.coding.pictures.av1_units import picture_units, units
 from eigenfield.core.errors import FormatError
 from eigenfield.runtime.parallel import ordinary_scheduling
 
@@ -48,7 +51,7 @@ def svt_coder(preset: int) -> Coder:
 
 
 def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
-    """A picture as an .avif, by one thread, the same bytes each time.
+    """A picture as bare AV1, by one thread, the same bytes each time.
 
     Args:
         codes: (H, W) 0..MAX_CODE, sides even and at least MIN_SIDE_TEXELS.
@@ -59,23 +62,20 @@ def encode_10bit(codes: NDArray[np.uint16], crf: int, preset: int) -> bytes:
     import av
 
     height, width = codes.shape
-    buffer = io.BytesIO()
-    with av.open(buffer, "w", format="avif") as container:
-        stream = container.add_stream("libsvtav1", rate=1)
-        stream.width, stream.height, stream.pix_fmt = width, height, PIXEL_FORMAT
-        stream.codec_context.color_range = 2  # full
-        stream.codec_context.thread_count = 1
-        stream.options = {
-            "crf": str(crf), "preset": str(preset), "svtav1-params": "tune=1:keyint=1:aq-mode=0:lp=1",
-        }  # fmt: skip
-        with ordinary_scheduling():
-            stream.codec_context.open()
-        flat = np.full((height // 2, width // 2), MIDDLE_CODE, np.uint16)
-        frame = frame_of((codes, flat, flat))
-        frame.pts = 0
-        for packet in [*stream.encode(frame), *stream.encode()]:
-            container.mux(packet)
-    return buffer.getvalue()
+    context: Any = av.CodecContext.create("libsvtav1", "w")
+    context.width, context.height, context.pix_fmt = width, height, PIXEL_FORMAT
+    context.framerate = context.time_base = Fraction(1)
+    context.color_range = 2  # full
+    context.thread_count = 1
+    context.options = {
+        "crf": str(crf), "preset": str(preset), "svtav1-params": "tune=1:keyint=1:aq-mode=0:lp=1",
+    }  # fmt: skip
+    with ordinary_scheduling():
+        context.open()
+    flat = np.full((height // 2, width // 2), MIDDLE_CODE, np.uint16)
+    frame = frame_of((codes, flat, flat))
+    frame.pts = 0
+    return picture_units(b"".join(bytes(packet) for packet in [*context.encode(frame), *context.encode()]))
 
 
 # SVT-AV1's preset. 2 takes longer, and needs about 8 % more bytes for the same textures, for the same means 1 % fewer
@@ -84,10 +84,10 @@ SVT_CODER = svt_coder(4)
 
 
 def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[np.uint16]:
-    """(H, W) codes 0..MAX_CODE of the first channel.
+    """(H, W) codes 0..MAX_CODE of the first channel of a bare AV1 picture.
 
     Args:
-        data: The file.
+        data: The picture.
         colour: Not used: all are grey.
         where: Its place, for errors.
 
@@ -96,11 +96,30 @@ def decode_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[
     """
     import av
 
+    context: Any = av.CodecContext.create("libdav1d", "r")
+    context.options = {"max_pixels": str(limits.MAX_TEXELS)}
+    context.thread_count = 1
+    whole = bytes(data)
+    with decoder_errors("picture", where):  # unit by unit: more frames than one take no memory
+        packets = [*(av.Packet(whole[start:end]) for _, start, _, end in units(whole)), None]
+        frame = next(frame for packet in packets for frame in context.decode(packet))
+    return _codes(frame, where)
+
+
+def decode_avif_10bit(data: bytes | memoryview, colour: bool, where: str) -> NDArray[np.uint16]:
+    """As `decode_10bit`, of an AVIF file."""
+    import av
+
     with decoder_errors("picture", where), av.open(io.BytesIO(data), format="mov") as container:
         stream = container.streams.video[0]
         stream.codec_context.options = {"max_pixels": str(limits.MAX_TEXELS)}
         stream.codec_context.thread_count = 1
         frame = next(container.decode(stream))
+    return _codes(frame, where)
+
+
+def _codes(frame: Any, where: str) -> NDArray[np.uint16]:
+    """The first channel of a frame. FormatError `picture-channels`."""
     if frame.format.components[0].bits != PICTURE_BITS:
         bits = frame.format.components[0].bits
         raise FormatError("picture-channels", f"a picture of {bits} bits, {PICTURE_BITS} are announced", where=where)

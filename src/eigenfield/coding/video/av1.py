@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.coding.pictures.av1_units import units
 from eigenfield.coding.pictures.pictures_10bit import PICTURE_BITS, PIXEL_FORMAT, decoder_errors, frame_of, samples_of
 from eigenfield.core.errors import FormatError
 from eigenfield.runtime.parallel import ordinary_scheduling
@@ -81,7 +82,8 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
     context.options = {"max_pixels": str(size[0] * size[1])}
     context.thread_count = 1  # with more, dav1d's threads may wait for each other for ever on a damaged video
     number = 0
-    for unit in chain(_units(data), [None]):
+    # a unit shows one frame at most, so that a decoder that is given one at a time never has more to hand out
+    for unit in chain((data[start:end] for _, start, _, end in units(data)), [None]):
         with decoder_errors("residual", where):
             frames = context.decode(None if unit is None else av.Packet(unit))
         for frame in frames:
@@ -94,27 +96,3 @@ def decode_video(data: bytes, size: tuple[int, int], count: int, where: str) -> 
             if number == count:
                 return
     raise damage_error(f"ends after {number} of {count} frames")
-
-
-def _units(data: bytes) -> Iterator[bytes]:
-    """The open bitstream units of a video, as far as they are whole: each shows one frame at most, so that a decoder
-    that is given one at a time never has more to hand out."""
-    start = 0
-    while start < len(data):
-        header = data[start]
-        at = start + (2 if header & 4 else 1)  # an extension's byte
-        length = shift = 0
-        if not header & 2:  # no length: to the end
-            yield data[start:]
-            return
-        while True:  # little-endian, 7 bits a byte
-            if at >= len(data) or shift > 28:
-                return
-            length |= (data[at] & 127) << shift
-            shift, at = shift + 7, at + 1
-            if data[at - 1] < 128:
-                break
-        if at + length > len(data):
-            return
-        yield data[start : at + length]
-        start = at + length

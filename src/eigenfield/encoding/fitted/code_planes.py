@@ -27,7 +27,7 @@ CODE_MIN_UNIT = 1e-4  # what a code stands for, in the photographs' range
 # what every texture is off by adds up to grey levels.
 ZERO_CODE = 341
 PICTURE_MAX_ROWS = 4096  # of a picture of several textures
-PICTURES_CODEC = "av1-10bit-1"  # of means and textures
+PICTURES_CODEC = "av1-10bit-2"  # of means and textures
 PRECISION_CODEC = "png"
 
 

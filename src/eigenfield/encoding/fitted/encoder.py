@@ -43,7 +43,7 @@ class FittedEncoder:
         return self.with_figures(self.encode_without_figures(quality))
 
     def encode_without_figures(self, quality: int) -> EncodedScene:
-        """The scene coded at a quality; its settings have placeholders of the same length for the PSNR."""
+        """The scene coded at a quality; its settings have placeholders for the PSNR."""
         options = self.plan.options
         coder = {"coder": "libaom"} if self.fits.patient else {}
         own = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}

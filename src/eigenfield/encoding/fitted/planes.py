@@ -133,7 +133,7 @@ class Fits:
     def psnr_figures(self, planes: Sequence[Plane] | None = None) -> dict[str, dict[str, float]]:
         """dB of each plane's channels before and after coding to `planes`, for a scene's settings.
 
-        None stands for planes that are not measured yet: UNMEASURED_PSNR_DB, which takes no fewer letters.
+        None stands for planes that are not measured yet: UNMEASURED_PSNR_DB.
         """
         fits = [fit for _, fit in self.planes]
         coded = [UNMEASURED_PSNR_DB] * len(fits) if planes is None else map(coded_psnr, fits, planes)

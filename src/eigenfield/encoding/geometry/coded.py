@@ -24,8 +24,8 @@ DEPTH_ERROR_PX = 0.04  # by which a rounded depth moves a point in the camera th
 WORLD_STEP_PX = 0.1  # in the reference camera at the median depth, of a mesh that is not all before that camera
 CAMERA_STEP_PX = 0.04
 UV_BITS = 12
-MESH_CODEC = "mesh-1"
-CAMERAS_CODEC = "cameras-1"
+MESH_CODEC = "mesh-2"
+CAMERAS_CODEC = "cameras-2"
 
 
 def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:
