@@ -1,11 +1,31 @@
-"""The proxy as a file keeps it: a mesh, and the lattice that its vertices stand on."""
+"""The proxy as a file keeps it: a mesh, the lattice that its vertices stand on, and sheets with an opacity."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """Parts of a mesh that are drawn one over the other, each as opaque as a picture over the atlas says.
+
+    A pixel is composited back to front: what a sheet shows in its nearest point, times its opacity there, covers what
+    is behind. Sheets share neither vertices nor texels.
+
+    Attributes:
+        faces: Number of faces of each sheet; the mesh has them sheet by sheet, back to front.
+        opacity: (H, W) float32 in 0..1 over the whole atlas, at a density of its own. It is read as colours are, by
+            the same filter, and clipped to 0..1.
+    """
+
+    faces: tuple[int, ...]
+    opacity: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,7 +36,9 @@ class Proxy:
         mesh: With UVs.
         lattice: Pixels and inverse depths of the camera in which a relief was made; None for other meshes, and before
             it was searched.
+        sheets: None: one opaque surface.
     """
 
     mesh: Mesh
     lattice: Lattice | None = None
+    sheets: Sheets | None = None
