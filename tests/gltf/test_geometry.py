@@ -33,6 +33,7 @@ from support.coded_scenes import coded
 from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
 from support.schema import extension_of
+from support.soft_scenes import soft_scene
 from support.surfaces import ball, relief
 
 
@@ -125,6 +126,20 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value.mesh
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
+
+
+def test_sheets_keep_their_faces_and_one_of_no_size_is_left_out():
+    scene = soft_scene()
+    mesh, sheets, cameras = scene.proxy.mesh, scene.proxy.sheets, scene.rig.cameras
+    assert sheets is not None
+    made = coded_mesh(scene.proxy, cameras, 4).value
+    assert made.sheets is not None and made.sheets.faces == sheets.faces and made.sheets.opacity is sheets.opacity
+    vertices = mesh.vertices.copy()
+    middle = np.unique(mesh.faces[242:370])
+    vertices[middle] = vertices[middle[0]]
+    made = coded_mesh(Proxy(replace(mesh, vertices=vertices), None, sheets), cameras, 4).value
+    assert made.sheets is not None and made.sheets.faces == (242, 98) and len(made.mesh.faces) == 340
+    assert made.mesh.uv is not None and made.mesh.uv[made.mesh.faces[242:], 0].min() > 2 / 3
 
 
 def test_cameras_are_near_what_they_were():

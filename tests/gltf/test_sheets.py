@@ -11,6 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from PIL import Image
 
 from eigenfield.coding import limits
@@ -114,7 +116,6 @@ def test_scores_and_outline_leave_them_alone(data, tmp_path):
     assert scene.proxy.sheets is None and len(scene.proxy.mesh.faces) == 468
 
 
-SHEETS = ("sheets",)
 WRONG = {
     "faces-missing": (not_ours("sheets", "faces"), "json-missing"),
     "opacity-missing": (not_ours("sheets", "opacity"), "json-missing"),
@@ -161,6 +162,15 @@ def test_an_opacity_of_colours_is_refused(tmp_path, plain):
         gltf["buffers"][0]["byteLength"] = len(binary)
 
     assert outcome(tmp_path / "a.glb", changed(plain, change)) == "picture-channels"
+
+
+@given(st.lists(st.tuples(st.floats(0, 1), st.integers(0, 255)), min_size=1, max_size=6))
+@settings(max_examples=60, deadline=None)
+def test_flipped_bytes_never_surprise(tmp_path_factory, data, flips):
+    changed = bytearray(data)
+    for place, value in flips:
+        changed[min(int(place * len(changed)), len(changed) - 1)] = value
+    outcome(tmp_path_factory.getbasetemp() / "sheets.glb", bytes(changed))
 
 
 def test_a_file_that_ends_before_its_textures_is_refused(tmp_path, plain):
