@@ -200,9 +200,9 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
 
 def test_small_files_have_a_smaller_mesh_for_other_viewers():
     mesh = bumpy_square(40)
-    faces = [len(shown_mesh(mesh, coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
+    faces = [len(shown_mesh(Proxy(mesh), coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
     assert faces == sorted(faces) and faces[0] <= 16 < faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
-    assert len(shown_mesh(bumpy_square(2), 10).faces) == 2
+    assert len(shown_mesh(Proxy(bumpy_square(2)), 10).faces) == 2
 
 
 def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
@@ -323,3 +323,9 @@ def test_what_pictures_of_several_textures_share_is_said_once(tmp_path):
     assert len(basis["textures"]) > 1 and all("mimeType" not in entry for entry in basis["textures"])
     back = ef.load(path).appearance.planes[0].bases[0]
     np.testing.assert_array_equal(back.values(), scene.appearance.planes[0].bases[0].values())
+
+
+def test_sheets_have_more_triangles_for_other_viewers_where_they_can():
+    proxy = soft_scene().proxy
+    faces = [len(shown_mesh(proxy, coded).faces) for coded in (100, 10**6)]
+    assert faces[0] <= 24 and 128 < faces[1] <= 256
