@@ -109,17 +109,6 @@ def test_vertices_without_a_face_and_faces_without_area_are_left_out():
     assert len(back.faces) == 1 and len(back.vertices) == 3
 
 
-def joined(meshes):
-    """One mesh of several, which share no vertex; and the number of faces of each."""
-    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
-    faces = [mesh.faces + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
-    whole = Mesh(
-        np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces).astype(np.int32),
-        np.concatenate([mesh.uv for mesh in meshes]),
-    )  # fmt: skip
-    return whole, tuple(len(mesh.faces) for mesh in meshes)
-
-
 def parts_of(mesh, counts):
     """Each sheet as a mesh of its own."""
     return [replace(mesh, faces=faces) for faces in np.split(mesh.faces, np.cumsum(counts)[:-1])]
@@ -130,7 +119,7 @@ def parts_of(mesh, counts):
        st.booleans())  # fmt: skip
 def test_sheets_come_back_in_their_order_each_with_its_faces(soups, flat):
     """Their vertices are at few points, so that most places of one sheet are at those of another."""
-    mesh, counts = joined([coded_meshes.soup(*soup)[0] for soup in soups])
+    mesh, counts = coded_meshes.joined([coded_meshes.soup(*soup)[0] for soup in soups])
     lattice = world_lattice([0, 0, 0], 1.0)
     if flat:
         mesh, lattice = (
@@ -154,7 +143,7 @@ def test_sheets_come_back_in_their_order_each_with_its_faces(soups, flat):
 def test_a_sheet_on_another_costs_no_depth_of_either():
     """At the same points of the lattice they are places of their own: neither moves."""
     mesh, lattice = coded_meshes.relief(20, 24)
-    twice, counts = joined([mesh, mesh])
+    twice, counts = coded_meshes.joined([mesh, mesh])
     data, back = encode_mesh(twice, lattice, sheets=counts)
     alone = encode_mesh(mesh, lattice)[1]
     for part in parts_of(back, counts):
