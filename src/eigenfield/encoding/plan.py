@@ -24,7 +24,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
-from eigenfield.encoding.fitted.planes import byte_lambda
+from eigenfield.encoding.fitted.planes import byte_lambda, coded_opacity
 from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.encoding.geometry.simplify_relief import simplify_proxy_rd
@@ -264,15 +264,23 @@ def _coded_proxy(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atla
     A relief is simplified by rate and distortion, unless a number of triangles was asked for.
     """
     if proxy.sheets is not None:
-        return Coded(proxy, Payloads())  # TEMP
+        return _coded_sheets(proxy, views, resolved_value(options.quality))
     if not _simplifies(options):
-        mesh = coded_mesh(proxy, views.rig.cameras, views.rig.reference)
-        return Coded(Proxy(mesh.value), mesh.payloads)
+        return coded_mesh(proxy, views.rig.cameras, views.rig.reference)
     rig = views.rig
     texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
     lambda_ = byte_lambda(resolved_value(options.quality))
-    mesh = simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, lambda_, texels)
-    return Coded(Proxy(mesh.value), mesh.payloads)
+    return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, lambda_, texels)
+
+
+def _coded_sheets(proxy: Proxy, views: CaptureViews, quality: int) -> Coded[Proxy]:
+    """A proxy with sheets as a fitted file keeps it: the mesh as it came, and their opacity."""
+    made = coded_mesh(proxy, views.rig.cameras, views.rig.reference)
+    sheets = made.value.sheets
+    assert sheets is not None
+    opacity = coded_opacity(sheets.opacity, quality)
+    coded = replace(made.value, sheets=replace(sheets, opacity=opacity.value))
+    return Coded(coded, made.payloads | opacity.payloads)
 
 
 def _scale(capture: CalibratedObservations, asked: float | None) -> dict[str, float]:
