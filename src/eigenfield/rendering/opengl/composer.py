@@ -42,8 +42,8 @@ void main() {
 }
 """
 PLACE_GLSL = "in vec3 point;\nout vec4 place;\nvoid main() { place = placeOf(point); }\n"
-SUM_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(sumTextures(own), 1.0); }\n"
-FINER_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(finerValue(own), 1.0); }\n"
+SUM_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = sumTextures(own); }\n"
+FINER_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = finerValue(own); }\n"
 
 
 @dataclass(frozen=True, eq=False)
