@@ -8,10 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.scene import Scene
 from eigenfield.rendering import Renderer, ViewWeights, draw_texture
+from support.composed import finer
 from support.scenes import smooth_pictures
 
 
@@ -39,14 +41,15 @@ def stacked(scene: Scene, mesh: Mesh, count: int = 3, size: tuple[int, int] | No
 
 
 def sheet_pictures(
-    scene: Scene, texture: np.ndarray, opacity: np.ndarray, camera, filter: str, samples: int
+    scene: Scene, texture: np.ndarray, camera: Camera, filter: str, samples: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Picture and opacity of each sheet alone, back to front, by drawing it as an opaque surface."""
     sheets, mesh = scene.proxy.sheets, scene.proxy.mesh
     assert sheets is not None
     starts = np.concatenate([[0], np.cumsum(sheets.faces)])
     drawn = []
-    both = np.concatenate([texture, opacity[..., None]], axis=2)
+    opacity = finer(sheets.opacity[..., None], *scene.appearance.atlas)
+    both = np.concatenate([texture, opacity], axis=2, dtype=np.float32)
     big = camera.resize(camera.width * samples, camera.height * samples)
     for first, last in pairwise(starts):
         alone = replace(mesh, faces=mesh.faces[first:last])
@@ -57,9 +60,8 @@ def sheet_pictures(
 def composited(
     scene: Scene,
     weights: ViewWeights,
-    camera,
+    camera: Camera,
     *,
-    opacity: np.ndarray | None = None,
     filter: str = "bicubic",
     samples: int = 1,
     background: Sequence[float] = (0.0,),
@@ -70,17 +72,12 @@ def composited(
         scene: With sheets.
         weights: What is blended.
         camera: The camera.
-        opacity: At the atlas's size. Default: that of the sheets.
         filter: As of `Renderer.draw`.
         samples: k.
         background: As of `Renderer.draw`.
     """
-    sheets = scene.proxy.sheets
-    assert sheets is not None
     own = replace(scene, proxy=replace(scene.proxy, sheets=None))
-    texture = Renderer(own).texture(weights)
-    given = sheets.opacity if opacity is None else opacity
-    colours, opacities = sheet_pictures(scene, texture, given, camera, filter, samples)
+    colours, opacities = sheet_pictures(scene, Renderer(own).texture(weights), camera, filter, samples)
     picture = np.broadcast_to(np.float32(background), colours[0].shape).astype(np.float64)
     open_ = np.ones(picture.shape[:2])
     for colour, part in zip(colours, opacities, strict=True):

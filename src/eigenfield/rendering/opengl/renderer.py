@@ -73,6 +73,7 @@ class OpenGLRenderer:
         self._scene = scene
         self._composer: Composer | None = None
         self._multisample = multisample
+        self._dtype = "f1" if scene.proxy.sheets is None else "f2"  # 8 bits are too few to blend sheets in
         self._owned = context is None
         self._kept: tuple[tuple[int, int], Any, Any] | None = None
         self.context: Any = make_context() if context is None else context
@@ -129,8 +130,9 @@ class OpenGLRenderer:
             OptionError: `textures`, `background`.
         """
         frame = self.paint(camera, weights, textures=textures, colour=colour)  # R, G and B are times coverage
-        codes = np.frombuffer(frame.read(components=4), np.uint8).reshape(camera.height, camera.width, 4)[::-1]
-        data = codes.astype(np.float32) / np.float32(255)
+        kept, full = (np.uint8, 255) if self._dtype == "f1" else (np.float16, 1)
+        values = np.frombuffer(frame.read(components=4, dtype=self._dtype), kept)
+        data = values.reshape(camera.height, camera.width, 4)[::-1].astype(np.float32) / np.float32(full)
         image, coverage = data[..., :3], np.ascontiguousarray(data[..., 3])
         image = image + (1 - coverage)[..., None] * background_of(background, 3)
         return Picture(np.ascontiguousarray(image), coverage)
@@ -145,7 +147,7 @@ class OpenGLRenderer:
     ) -> Any:
         """Draw R, G, B times coverage, and coverage, into a framebuffer, bottom row first.
 
-        It stays on the GPU until the next call overwrites it.
+        It stays on the GPU until the next call overwrites it. It has 8 bits, or halves if there are sheets.
 
         Args:
             camera: As of `draw`.
@@ -215,13 +217,9 @@ class OpenGLRenderer:
         if self._kept is None or self._kept[0] != (width, height):
             self._release_frames()
             context, size = self.context, (width, height)
-            resolved = context.framebuffer([context.renderbuffer(size, 4)], context.depth_renderbuffer(size))
-            drawn = resolved
-            if self._scene.proxy.sheets is not None:  # 8 bits are too few to blend in
-                drawn = context.framebuffer(
-                    [context.renderbuffer(size, 4, dtype="f2")], context.depth_renderbuffer(size)
-                )
-            elif self._multisample:
+            values = context.renderbuffer(size, 4, dtype=self._dtype)
+            drawn = resolved = context.framebuffer([values], context.depth_renderbuffer(size))
+            if self._multisample and self._dtype == "f1":
                 samples = min(self._multisample, context.max_samples)
                 depth = context.depth_renderbuffer(size, samples=samples)
                 drawn = context.framebuffer([context.renderbuffer(size, 4, samples=samples)], depth)
