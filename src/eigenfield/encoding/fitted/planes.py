@@ -89,8 +89,7 @@ PLANE_PRESETS = (
     PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0),
     PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
 )
-OPACITY_SHARE = 0.7  # of the density that it comes with, along an axis
-OPACITY_STEP = 4.0  # quantiser step, of `step_of`
+OPACITY_STEP = 1.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
@@ -200,15 +199,15 @@ def byte_lambda(quality: int) -> float:
 
 
 def coded_opacity(opacity: NDArray[np.float32], quality: int) -> Coded[NDArray[np.float32]]:
-    """The opacity of sheets at a quality, coarser than it came and coded.
+    """The opacity of sheets as a file of a quality has it, with the even sides that the encoder takes.
 
     Args:
         opacity: (H, W) in 0..1, about a texel for a photograph's pixel.
         quality: 0 to 100.
     """
-    rows, columns = plane_size((opacity.shape[0], opacity.shape[1]), OPACITY_SHARE)
-    coarse = cv2.resize(opacity, (columns, rows), interpolation=cv2.INTER_AREA)
-    return code_opacity(coarse.clip(0, 1), OPACITY_STEP * step_of(quality), SVT_CODER)
+    rows, columns = (max(MIN_SIDE_TEXELS, side + side % 2) for side in opacity.shape)
+    even = opacity if opacity.shape == (rows, columns) else cv2.resize(opacity, (columns, rows))
+    return code_opacity(even, OPACITY_STEP * step_of(quality), SVT_CODER)
 
 
 def plane_size(size: tuple[int, int], share: float) -> tuple[int, int]:
