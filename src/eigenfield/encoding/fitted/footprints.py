@@ -138,7 +138,8 @@ def _add_sheets(
     surface: Surface, sheets: Sheets, camera: Camera, counts: NDArray[np.uint8], into: _Points | None
 ) -> None:
     """As `_add_opaque`, of sheets."""
-    rest, starts = np.ones(counts.shape, np.float32), np.zeros((0, 0), np.int64)
+    rest = np.ones(counts.shape, np.float32)
+    starts: NDArray[np.int64] = np.zeros((0, counts.shape[1]), np.int64)
     coordinates, shares = (np.zeros((0, 2), np.float32), np.zeros(0, np.uint16)) if into is None else into
     if into is not None:
         starts = (np.cumsum(counts, dtype=np.int64) - counts.reshape(-1)).reshape(counts.shape)

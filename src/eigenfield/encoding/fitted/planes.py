@@ -206,7 +206,7 @@ def coded_opacity(opacity: NDArray[np.float32], quality: int) -> Coded[NDArray[n
         quality: 0 to 100.
     """
     rows, columns = (max(MIN_SIDE_TEXELS, side + side % 2) for side in opacity.shape)
-    even = opacity if opacity.shape == (rows, columns) else cv2.resize(opacity, (columns, rows))
+    even = opacity if opacity.shape == (rows, columns) else np.asarray(cv2.resize(opacity, (columns, rows)), np.float32)
     return code_opacity(even, OPACITY_STEP * step_of(quality), SVT_CODER)
 
 
