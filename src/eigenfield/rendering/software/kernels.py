@@ -27,17 +27,17 @@ def draw_texels(
 ):  # fmt: skip
     """As `imaging.raster.draw_band`, but for where in the atlas each pixel lands instead of its triangle.
 
-    1 / depth, and texel coordinates over depth, are linear functions of the pixel.
+    1 / depth, and texel coordinates over depth, are linear functions of the pixel. Pixels are not cleared before.
 
     Args:
         faces: (m, 3).
         texels: (n, 2) texel coordinates of the vertices.
         edges, bounds, listing, first, last, slack: As of `draw_band`.
-        inverse_depth: (H, W + LANE_PX) float32 1 / depth, written; the last columns are room for vectors.
+        inverse_depth: (H, W + LANE_PX) float32 1 / depth, 0 where nothing is drawn yet, written; the last columns are
+            room for vectors.
         column_of, row_of: Likewise texel coordinates over depth, written.
         seen: (m,) set to 1 for triangles that were nearest for a while; threads share it and only ever write ones.
     """
-    inverse_depth[first:last] = 0
     for f in listing:
         e = edges[f]
         a, b, c, q = edge_spans(e, slack)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.rendering.software.kernels import TILE_TEXELS
+from eigenfield.rendering.software.resample_kernels import mark_read
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,10 +122,5 @@ def tiles_read(needed: NDArray[np.bool_], rows: Taps, columns: Taps, shape: tupl
         shape: (tile rows, tile columns) of the coarse atlas.
     """
     found = np.zeros(shape, np.bool_)
-    for row in np.flatnonzero(needed.any(axis=1)):
-        line = np.zeros(shape[1] + 1, np.int64)  # +1 where a run begins, -1 after its end
-        at = np.flatnonzero(needed[row])
-        np.add.at(line, columns.first[at], 1)
-        np.add.at(line, columns.last[at] + 1, -1)
-        found[rows.first[row] : rows.last[row] + 1] |= np.cumsum(line)[:-1] > 0
+    mark_read(needed, rows.first, rows.last, columns.first, columns.last, found)
     return found

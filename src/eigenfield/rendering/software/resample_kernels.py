@@ -16,6 +16,22 @@ from eigenfield.runtime.jit import kernel
 IMAGE_BORDER_TEXELS = 2  # that repeat an image's edge: taps need not be clamped
 
 
+@kernel()
+def mark_read(needed, top, bottom, left, right, found):
+    """The coarse tiles that fine ones read.
+
+    Args:
+        needed: (tile rows, tile columns) bool, the fine tiles.
+        top, bottom: (tile rows,) first and last row of coarse tiles that each row of fine ones reads.
+        left, right: (tile columns,) likewise for columns.
+        found: (coarse tile rows, coarse tile columns) bool, set.
+    """
+    for row in range(needed.shape[0]):
+        for column in range(needed.shape[1]):
+            if needed[row, column]:
+                found[top[row] : bottom[row] + 1, left[column] : right[column] + 1] = True
+
+
 @kernel(fastmath=True)
 def compose_image(tiles, places, codes, groups, coefficients, offset, tile_columns, rectangle, image):
     """Equation 8 without the mean on some tiles of an image.
