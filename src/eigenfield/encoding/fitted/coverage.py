@@ -15,6 +15,7 @@ from eigenfield.runtime.parallel import parallel_map
 
 PRECISION_CELL_TEXELS = 64  # side of a cell of the mean that has one precision
 PRECISION_MIN_FACTOR = 2**-1.5  # lower ones gain nothing (Tarot, Shop), and show where few cameras look
+SHEET_CELL_TEXELS, SHEET_MIN_FACTOR = 32, 2**-5  # of sheets, which may show next to nothing; chosen on Fern
 PRECISION_LEVELS_PER_OCTAVE = 4  # fewer numbers, fewer bytes
 PRECISION_MAX_MEAN_FACTOR = 0.97  # mean precision, above which the map saves fewer bytes than it takes
 OBSERVED_MIN_SHARE_RATIO = 0.3  # of the median share: less beside a chart counts as unseen
@@ -42,7 +43,7 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface) -> None:
 
 
 def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
-    """(h, w) in PRECISION_MIN_FACTOR to 1: how finely each place of a mean is to be coded, None where all of it alike.
+    """(h, w) in PRECISION_MIN_FACTOR (of sheets SHEET_MIN_FACTOR) to 1: how finely each place of a mean is to be coded, None where all of it alike.
 
     Least squared error over all pictures for a number of bits has steps in inverse proportion to the root of the
     pixels that a texel answers for (reverse water-filling); what is seen as often as most is the measure.
@@ -50,11 +51,13 @@ def mean_precision(scales: Scales) -> NDArray[np.float32] | None:
     known = (scales.mean > 0).astype(np.float32)
     if not known.any():
         return None
-    share = np.minimum(scales.mean / np.median(scales.mean[known > 0]), 1).astype(np.float32)
-    rows, columns = (max(1, round(side / PRECISION_CELL_TEXELS)) for side in share.shape)
+    share = np.minimum(scales.mean_noise / scales.usual, 1).astype(np.float32)
+    opaque = scales.mean_noise is scales.mean
+    cell, least = (PRECISION_CELL_TEXELS, PRECISION_MIN_FACTOR) if opaque else (SHEET_CELL_TEXELS, SHEET_MIN_FACTOR)
+    rows, columns = (max(1, round(side / cell)) for side in share.shape)
     covered = cv2.resize(known, (columns, rows), interpolation=cv2.INTER_AREA)
     cells = cv2.resize(share * known, (columns, rows), interpolation=cv2.INTER_AREA) / np.maximum(covered, 1e-6)
-    level = np.rint(-PRECISION_LEVELS_PER_OCTAVE / 2 * np.log2(np.maximum(cells, PRECISION_MIN_FACTOR**2)))
+    level = np.rint(-PRECISION_LEVELS_PER_OCTAVE / 2 * np.log2(np.maximum(cells, least**2)))
     precision = np.exp2(-level / PRECISION_LEVELS_PER_OCTAVE)
     if np.average(precision, weights=covered) > PRECISION_MAX_MEAN_FACTOR:
         return None

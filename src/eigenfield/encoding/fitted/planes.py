@@ -89,7 +89,7 @@ PLANE_PRESETS = (
     PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0),
     PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
 )
-OPACITY_STEP = 1.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
+OPACITY_STEP = 2.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96

@@ -48,8 +48,7 @@ def plane_lambda(scales: Scales, rate: Rate) -> float:
         scales: Of the data that it was fitted to.
         rate: How finely it is coded.
     """
-    seen = scales.mean[scales.mean > 0]
-    return lambda_of_step(rate.mean_step) * float(np.median(seen)) if len(seen) else 0.0
+    return lambda_of_step(rate.mean_step) * scales.usual if scales.mean.any() else 0.0
 
 
 def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rate, lambda_: float) -> CodedBasis:
@@ -62,7 +61,8 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
         rate: How finely it is coded.
         lambda_: Of the plane.
     """
-    coded = code_basis(_basis_of(block, grid), rate.texture_step, rate.trial or rate.coder)
+    step = rate.texture_step * _coarsening(scales)
+    coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)
     errors, sizes = _effects(coded, block, scales)
     count = int(np.argmin(np.cumsum([0.0, *(errors + lambda_ * sizes)])))  # of the strongest
     log.debug("%d of %d components coded", count, block.count)
@@ -70,18 +70,32 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
     if count == 0 or (count in ends and rate.trial is None):
         return first_pictures(coded, ends.index(count))
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
-    return code_basis(_basis_of(few, grid), rate.texture_step, rate.coder)
+    return code_basis(_basis_of(few, grid), step, rate.coder)
+
+
+def _coarsening(scales: Scales) -> float:
+    """How much coarser the components of sheets are coded than those of an opaque surface.
+
+    For the same error in the pictures, steps are in inverse proportion to the root of a texel's noise, were its errors
+    independent of those of the texels behind. They are partly alike: half of that, in octaves, is best (Fern).
+    """
+    if scales.coarse_noise is scales.coarse:
+        return 1.0
+    usual = scales.usual * scales.mean.size / scales.coarse.size
+    return float((usual / max(float(scales.coarse_noise[scales.coarse > 0].mean()), 1e-12)) ** 0.25)
 
 
 def _effects(coded: CodedBasis, block: Block, scales: Scales) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The change of squared error over all cameras by each component, and its bytes with those of its weights."""
-    share = scales.coarse[block.window]
+    share, noise = scales.coarse[block.window], scales.coarse_noise[block.window]
     errors: list[float] = []
     sizes: list[float] = []
     for picture in coded.pictures:
         part = slice(len(errors), len(errors) + picture.count)
         before, after = block.textures[part], coded.basis.values(part.start, part.stop).transpose(0, 3, 1, 2)
-        more = np.einsum("nchw,nchw,hw->n", after, after - 2 * before, share, dtype=np.float64)  # (b - a)^2 - b^2
+        # noise (b - a)^2 - share b^2: errors of sheets are independent, what they show of a component is alike
+        more = np.einsum("nchw,nchw,hw->n", after, after - 2 * before, noise, dtype=np.float64)
+        more += np.einsum("nchw,nchw,hw->n", before, before, noise - share, dtype=np.float64)
         errors += more.tolist()
         sizes += [len(picture.data) / picture.count + RATE_WEIGHT_BYTES * len(block.weights)] * picture.count
     return np.array(errors), np.array(sizes)

@@ -18,7 +18,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, next_direction, take_step
+from eigenfield.encoding.fitted.kernels import SHARE_ONE, add_laplacian, adjoint, next_direction, take_step
 from eigenfield.encoding.fitted.model import PRODUCT_CHUNK_TEXELS, AtlasComposer, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData
 from eigenfield.encoding.fitted.passes import PASS_TASK_OBSERVATIONS, NormalEquations, Textures, render_and_backproject
@@ -37,11 +37,18 @@ class Scales:
         mean: (rows, columns) float32 of the mean.
         coarse: (h, w) float32 of a component whose weights have mean square 1.
         smooth: strength of the Laplacians of mean and components.
+        mean_noise: (rows, columns) float32: the squared error that an error of 1 in a texel of the mean alone makes. On
+            an opaque surface it is `mean`, and where several sheets share a pixel it is less.
+        coarse_noise: (h, w) float32, likewise of a component.
+        usual: `mean` of a texel that all observations see, and nothing else in its pixels.
     """
 
     mean: NDArray[np.float32]
     coarse: NDArray[np.float32]
     smooth: tuple[float, float]
+    mean_noise: NDArray[np.float32]
+    coarse_noise: NDArray[np.float32]
+    usual: float
 
 
 def measure_scales(data: FitData, model: PlaneModel) -> Scales:
@@ -52,15 +59,27 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
         data: The observations.
         model: A model of the same grids.
     """
+    fine, coarse = _texel_sums(data, model, squared=False)
+    smooth = MEAN_SMOOTHNESS_RATIO * _median(fine), TEXTURE_SMOOTHNESS_RATIO * _median(coarse)
+    if not len(data.footprints.shares):
+        return Scales(fine, coarse, smooth, fine, coarse, _median(fine))
+    density = data.footprints.detail * np.sqrt(fine.size / np.prod(data.size))
+    return Scales(fine, coarse, smooth, *_texel_sums(data, model, squared=True), len(data) / float(density) ** 2)
+
+
+def _texel_sums(data: FitData, model: PlaneModel, squared: bool) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """G^T 1 on the grids of mean and components, G with its shares or with their squares."""
     fine, coarse = np.zeros((1, *model.mean.shape[1:]), np.float32), np.zeros((1, *model.grid), np.float32)
 
     def piece(part: tuple[int, int]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
         mean, grid = np.zeros_like(fine), np.zeros_like(coarse)
         for index in range(*part):
-            footprint, weight = data.footprint(index), data.observations.weights(index)
-            ones = np.ones((1, *footprint[0].shape), np.float32)
-            adjoint(*footprint, data.size, ones, weight, mean)
-            adjoint(*footprint, data.size, ones, weight, grid)
+            counts, points, shares = data.footprint(index)
+            if squared:
+                shares = (np.square(shares, dtype=np.float32) / SHARE_ONE).astype(np.uint16)
+            weight, ones = data.observations.weights(index), np.ones((1, *counts.shape), np.float32)
+            adjoint(counts, points, shares, data.size, ones, weight, mean)
+            adjoint(counts, points, shares, data.size, ones, weight, grid)
         return mean, grid
 
     for mean, grid in parallel_map(piece, pieces(len(data), PASS_TASK_OBSERVATIONS)):
@@ -68,9 +87,7 @@ def measure_scales(data: FitData, model: PlaneModel) -> Scales:
         coarse += grid
     np.maximum(fine, 0, out=fine)
     np.maximum(coarse, 0, out=coarse)
-    return Scales(
-        fine[0], coarse[0], (MEAN_SMOOTHNESS_RATIO * _median(fine), TEXTURE_SMOOTHNESS_RATIO * _median(coarse))
-    )
+    return fine[0], coarse[0]
 
 
 def _median(values: NDArray[np.float32]) -> float:
