@@ -44,7 +44,7 @@ def coded_scene() -> EncodedScene:
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
     made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
-    found = made.value
+    found = made.value.mesh
     assert len(found.faces) == len(mesh.faces) and made.payloads.bytes < mesh.vertices.nbytes / 4
     most = MESH_STEP_PX / 2 * np.sqrt(2) + DEPTH_ERROR_PX * 1.5
     for camera in cameras:
@@ -60,7 +60,7 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     mesh = relief(made_in, 0.5, virtual)
     assert relief_lattice(mesh, cameras, DEPTH_ERROR_PX) is not None
     made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
-    found = made.value
+    found = made.value.mesh
     assert made.payloads.bytes < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
@@ -122,7 +122,7 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value
+    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value.mesh
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
 

@@ -219,10 +219,11 @@ def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan
     atlas = _atlas_size(options, proxy.mesh, views.rig)
     if options.fit == "none":
         return EncodePlan(asked, options, prepared, views, proxy.mesh, Payloads(), atlas)
-    mesh = _coded_mesh(proxy, views, options, atlas)
-    cameras = coded_cameras(views.rig.cameras, mesh.value, grid_of(views.coordinates))
+    coded = _coded_mesh(proxy, views, options, atlas)
+    mesh = coded.value.mesh
+    cameras = coded_cameras(views.rig.cameras, mesh, grid_of(views.coordinates))
     views = views.with_cameras(cameras.value)
-    return EncodePlan(asked, options, prepared, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
+    return EncodePlan(asked, options, prepared, views, mesh, coded.payloads | cameras.payloads, atlas)
 
 
 def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]:
@@ -237,8 +238,8 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]
     return side, side
 
 
-def _coded_mesh(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
-    """The mesh as a fitted file keeps it.
+def _coded_mesh(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Proxy]:
+    """The proxy as a fitted file keeps it.
 
     A relief is simplified by rate and distortion, unless a number of triangles was asked for.
     """
