@@ -23,13 +23,16 @@ vec4 surfaceValue(vec2 uv) {
   return plain;
 }
 
+// What is seen of a value of the surface.
+vec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }
+
 // What an opaque surface shows at texture coordinates.
-vec3 surfaceColour(vec2 uv) { return clamp(surfaceValue(uv).rgb * exposureScale + exposureBias, 0.0, 1.0); }
+vec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }
 
 // What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is
-// blended with the factors ONE and ONE_MINUS_SRC_ALPHA into half-floats: only the picture of all sheets is cut to 0..1.
+// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.
 vec4 sheetColour(vec2 uv) {
   vec4 value = surfaceValue(uv);
   float opacity = clamp(value.a, 0.0, 1.0);
-  return vec4((value.rgb * exposureScale + exposureBias) * opacity, opacity);
+  return vec4(seenColour(value) * opacity, opacity);
 }

@@ -106,7 +106,7 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
         return Composite(size, part.number, tiled.mean, matrix, (part,), True)
     base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
     for plane, own in zip(planes, scene.appearance.channel_slices, strict=True):
-        _add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
+        add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
     parts = tuple(_part(own, bases, size, used) for own, bases in groups)
     return Composite(size, _numbers(used), base, matrix, parts, False)
 
@@ -204,14 +204,22 @@ def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
     return number
 
 
-def _add_mean(
+def add_mean(
     mean: NDArray[np.float32],
     atlas: tuple[int, int],
     places: NDArray[np.int64],
     share: NDArray[np.float32],
     base: NDArray[np.float32],
 ) -> None:
-    """base (tiles, D, TILE_AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
+    """Add a mean at the atlas's size to some tiles.
+
+    Args:
+        mean: (h, w, C).
+        atlas: (H, W).
+        places: (tiles,) the tiles' numbers in the atlas.
+        share: (D, C) from its channels to those of the tiles.
+        base: (tiles, D, TILE_AREA), added to.
+    """
     height, width, depth = mean.shape
     taps = None if (height, width) == atlas else (make_taps(atlas[0], height), make_taps(atlas[1], width))
     layers = empty_layers(height, width, depth)

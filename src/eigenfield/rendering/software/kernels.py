@@ -18,7 +18,7 @@ TILE_TEXELS = 16  # texels along a side of a tile
 TILE_AREA = TILE_TEXELS * TILE_TEXELS
 CODE_LANES = 16  # texels whose codes of four components lie together
 PREFETCH_SAMPLES = 32  # by which a texel is fetched before it is needed
-LAYER_CHANNELS = 3  # channels of a layer; the fourth number of a texel is padding
+LAYER_CHANNELS = 3  # channels of a layer; the fourth number of the first layer's texels is their opacity
 
 
 @kernel()
@@ -139,7 +139,6 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
                 out[i, 0] = red[i]
                 out[i, 1] = green[i]
                 out[i, 2] = blue[i]
-                out[i, 3] = np.float32(0)
 
 
 @kernel(fastmath=True)
@@ -265,6 +264,24 @@ def store_line(line, scale, eight_bit, out):
 
 
 @kernel(fastmath=True)
+def store_layer(line, layer, scale, eight_bit, out):
+    """Write a line's channels of one layer.
+
+    Args:
+        line: (pixels * LAYER_CHANNELS,).
+        layer: Number of the layer.
+        scale, eight_bit: As of `store_line`.
+        out: (pixels, C), written.
+    """
+    first, channels = layer * LAYER_CHANNELS, out.shape[1]
+    if channels == LAYER_CHANNELS:
+        store_line(line, scale, eight_bit, out.reshape(-1))
+    else:
+        for k in range(first, min(first + LAYER_CHANNELS, channels)):
+            store_line(line[k - first :: LAYER_CHANNELS], scale, eight_bit, out[:, k])
+
+
+@kernel(fastmath=True)
 def cover_line(near, per_pixel, coverage):
     """The part of each pixel's samples that show the surface.
 
@@ -328,7 +345,7 @@ def shade_rows(
         picture: (H, W, C) uint8 or float32, written.
         coverage: (H, W), written.
     """
-    pixels, channels = picture.shape[1], picture.shape[2]
+    pixels = picture.shape[1]
     most = pixels * samples
     for row in range(first, last):
         most = max(most, 4 * (spans[row, 1] - spans[row, 0]))
@@ -358,8 +375,4 @@ def shade_rows(
                 for at in range(end - one):
                     for k in range(LAYER_CHANNELS):
                         line[multisampled[one + at] * LAYER_CHANNELS + k] = edges[at * LAYER_CHANNELS + k]
-            if channels == LAYER_CHANNELS:
-                store_line(line, scale, eight_bit, picture[row].reshape(-1))
-            else:
-                for k in range(layer * LAYER_CHANNELS, min(layer * LAYER_CHANNELS + LAYER_CHANNELS, channels)):
-                    store_line(line[k - layer * LAYER_CHANNELS :: LAYER_CHANNELS], scale, eight_bit, picture[row, :, k])
+            store_layer(line, layer, scale, eight_bit, picture[row])
