@@ -26,7 +26,7 @@ from eigenfield.gltf.cached import CachedPayloads
 from eigenfield.gltf.coarse import first_affordable
 from eigenfield.runtime.parallel import tracked_map
 
-MASKED_PREVIEWS = (128, 64), (96, 32), (64, 16), (48, 16)  # texels a side and colours, of sheets
+MASKED_PREVIEWS = (128, 64), (96, 32), (64, 32), (48, 16)  # texels a side and colours, of sheets
 SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30), (48, 30)  # texels a side and quality, beside a fit's pictures
 MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
 

@@ -156,7 +156,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     """The JSON, while `buffer` fills: mesh, opacity, mean, weights, calibration, textures; if packed, all accessors
     first."""
     mesh, poses = cached.one("mesh"), cached.one("cameras")
-    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy.mesh, coded.bytes + len(mesh.data))
+    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy, coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
     preview = coded.preview or coded.planes[0].mean
     image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
