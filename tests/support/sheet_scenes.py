@@ -7,19 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
-import eigenfield as ef
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.scene import Scene
 from eigenfield.gltf import save
-from eigenfield.rendering import viewpoint
 from support.coded_scenes import GRID, coded
-from support.composed import finer
 from support.scenes import bumpy_square
-from support.sheets import composited
-from support.viewer_scenes import PLACES, scene
+from support.viewer_scenes import references, scene
 
 STRIPS = 3  # of the atlas, one for each sheet
 OPACITY = (80, 96)  # rows and columns: coarser than the atlas
@@ -77,17 +72,6 @@ def write(folder: Path) -> None:
     save(coded(sheet_scene(), GRID), folder / "sheets-coded.glb", overwrite=True)
     listing = folder / "references.json"
     pictures = json.loads(listing.read_text(encoding="utf-8"))
-    for name in ("sheets", "folded", "sheets-coded"):
-        loaded = ef.load(folder / f"{name}.glb")
-        assert loaded.proxy.sheets is not None
-        opacity = finer(loaded.proxy.sheets.opacity[..., None], *loaded.appearance.atlas)[..., 0].astype(np.float32)
-        for filter in ("bilinear", "bicubic"):
-            for number, at in enumerate(PLACES):
-                camera, weights = viewpoint(loaded, at=at)
-                image, _ = composited(loaded, weights, camera, opacity=opacity, filter=filter)
-                file = f"{name}-{filter}-{number}.png"
-                Image.fromarray(np.clip(np.rint(255 * image), 0, 255).astype(np.uint8)).save(folder / file)
-                missing = dict.fromkeys(("camera", "free", "count")) | {"snapped": False}
-                size = {"width": camera.width, "height": camera.height}
-                pictures.append({"scene": f"{name}.glb", "file": file, "filter": filter, "at": at, **missing, **size})
+    for name in ("sheets.glb", "folded.glb", "sheets-coded.glb"):
+        pictures += references(folder, name)
     listing.write_text(json.dumps(pictures, indent=1), encoding="utf-8")

@@ -23,6 +23,9 @@ import {
 import { within } from "./composer.js";
 import { ERROR, OVER, PRECISIONS, makeDepthMaterial, type SurfaceMaterial } from "./material.js";
 
+/** Name of the child of a mesh that draws its sheets: its geometry is the whole picture. */
+export const SHEETS = "sheets";
+
 const PIXEL_BYTES = 16; // half-floats of R, G, B and coverage; three bytes of depth and one that says so; depth
 
 const SCREEN_VERTEX = `
@@ -90,7 +93,7 @@ export class SheetStack {
     this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = false;
     const { shown, photograph, toPhotograph } = material.uniforms;
     this.screen = new RawShaderMaterial({
-      name: "sheets",
+      name: SHEETS,
       glslVersion: GLSL3,
       vertexShader: SCREEN_VERTEX,
       fragmentShader: SCREEN_FRAGMENT,
@@ -127,6 +130,7 @@ export class SheetStack {
     everywhere.setAttribute("position", new BufferAttribute(new Float32Array([-1, -1, 0, 3, -1, 0, -1, 3, 0]), 3));
     Object.assign(everywhere, { boundingBox, boundingSphere }); // it is sorted and left out as the mesh would be
     const shown = new Mesh(everywhere, this.screen);
+    shown.name = SHEETS;
     shown.raycast = () => undefined;
     shown.onBeforeRender = (renderer, _scene, camera) => {
       prepare(renderer, camera);
