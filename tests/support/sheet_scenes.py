@@ -56,7 +56,7 @@ def _strip(number: int, mesh: Mesh) -> Mesh:
 
 
 def _leaning(folded: bool) -> Mesh:
-    """A square that is nearer than the opaque one at its left and farther at its right; or bent to and fro like an S."""
+    """A square that leans through the opaque one, nearer at its left; or is bent to and fro like an S."""
     mesh = bumpy_square(24)
     along, y, _ = mesh.vertices.T.astype(np.float64)
     x, z = along, 0.4 * along
