@@ -144,7 +144,7 @@ export function makeMaterial(doubleSided: boolean, sheets: boolean): SurfaceMate
     uniforms,
     defines: { BICUBIC: FILTERS.bicubic },
     side: doubleSided ? DoubleSide : FrontSide,
-    ...(sheets ? OVER : {}),
+    ...(sheets ? { ...OVER, depthWrite: false } : {}), // sheets have their depth before
   });
   material.name = "eigen textures";
   return material as SurfaceMaterial;
