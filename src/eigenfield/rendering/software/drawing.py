@@ -216,6 +216,7 @@ def rasterise_surface(surface: Surface, camera: Camera, sampling: Sampling, fram
 
     def draw(band: Band) -> None:
         rows, some = band
+        frame.inverse_depth[slice(*rows)] = 0
         draw_texels(*triangles, some, *rows, RASTER_EDGE_SLACK_FRACTION, *middles, frame.seen)
 
     def smooth(band: Band) -> None:

@@ -18,7 +18,7 @@ TILE_TEXELS = 16  # texels along a side of a tile
 TILE_AREA = TILE_TEXELS * TILE_TEXELS
 CODE_LANES = 16  # texels whose codes of four components lie together
 PREFETCH_SAMPLES = 32  # by which a texel is fetched before it is needed
-LAYER_CHANNELS = 3  # channels of a layer; the fourth number of the first layer's texels is their opacity
+LAYER_CHANNELS = 3  # channels of a layer; the fourth number of a texel is its opacity, 0 in opaque scenes
 
 
 @kernel()
@@ -27,17 +27,17 @@ def draw_texels(
 ):  # fmt: skip
     """As `imaging.raster.draw_band`, but for where in the atlas each pixel lands instead of its triangle.
 
-    1 / depth, and texel coordinates over depth, are linear functions of the pixel.
+    1 / depth, and texel coordinates over depth, are linear functions of the pixel. Pixels are not cleared before.
 
     Args:
         faces: (m, 3).
         texels: (n, 2) texel coordinates of the vertices.
         edges, bounds, listing, first, last, slack: As of `draw_band`.
-        inverse_depth: (H, W + LANE_PX) float32 1 / depth, written; the last columns are room for vectors.
+        inverse_depth: (H, W + LANE_PX) float32 1 / depth, 0 where nothing is drawn yet, written; the last columns are
+            room for vectors.
         column_of, row_of: Likewise texel coordinates over depth, written.
         seen: (m,) set to 1 for triangles that were nearest for a while; threads share it and only ever write ones.
     """
-    inverse_depth[first:last] = 0
     for f in listing:
         e = edges[f]
         a, b, c, q = edge_spans(e, slack)
@@ -104,7 +104,24 @@ def add_four(total, codes, a, b, c, d):
 
 
 @kernel(fastmath=True)
-def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, layers):
+def write_texels(values, fourth, out):
+    """Write a tile of a layer.
+
+    Args:
+        values: (LAYER_CHANNELS, TILE_AREA) float32.
+        fourth: (TILE_AREA,).
+        out: (TILE_AREA, 4), written.
+    """
+    red, green, blue = values[0], values[1], values[2]
+    for i in range(TILE_AREA):
+        out[i, 0] = red[i]
+        out[i, 1] = green[i]
+        out[i, 2] = blue[i]
+        out[i, 3] = fourth[i]
+
+
+@kernel(fastmath=True)
+def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, opacity, layers):
     """Equation 8 on some tiles: mean + offset + sum of coefficients times codes.
 
     A tile's components lie together, so that its total stays in the first cache.
@@ -117,11 +134,11 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
         groups: (g,) the groups that are summed.
         coefficients: (4 G, C) float32.
         offset: (C,) float32.
+        opacity: (tiles of the atlas, TILE_AREA) float32 fourth numbers of the texels; or (1, TILE_AREA) for all tiles.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
     channels = codes.shape[1]
     totals = np.zeros((LAYER_CHANNELS, TILE_AREA), np.float32)
-    red, green, blue = totals[0], totals[1], totals[2]
     for t in tiles:
         for first in range(0, channels, LAYER_CHANNELS):
             for k in range(first, min(first + LAYER_CHANNELS, channels)):
@@ -134,11 +151,8 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
                         total, codes[t, k, g],
                         coefficients[j, k], coefficients[j + 1, k], coefficients[j + 2, k], coefficients[j + 3, k],
                     )  # fmt: skip
-            out = layers[first // LAYER_CHANNELS, places[t]]
-            for i in range(TILE_AREA):
-                out[i, 0] = red[i]
-                out[i, 1] = green[i]
-                out[i, 2] = blue[i]
+            fourth = opacity[places[t] % opacity.shape[0]]
+            write_texels(totals, fourth, layers[first // LAYER_CHANNELS, places[t]])
 
 
 @kernel(fastmath=True)

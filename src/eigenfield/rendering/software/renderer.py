@@ -20,7 +20,6 @@ from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture, camera_colour, undo_colour
 from eigenfield.rendering.software import drawing
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
-from eigenfield.rendering.software.sheet_kernels import OPACITY_LANE
 from eigenfield.rendering.software.sheets import make_stack, set_up_sheets, shade_sheets
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
@@ -62,7 +61,10 @@ class Renderer:
         self._detail = drawing.median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
         sheets, used = scene.proxy.sheets, self._surface.used
         self._stack = None if sheets is None else make_stack(sheets, self._surface.size)
-        self._composite = make_composite(scene, used if self._stack is None else used & self._stack.visible)
+        if self._stack is None:
+            self._composite = make_composite(scene, used)
+        else:
+            self._composite = make_composite(scene, used & self._stack.visible, self._stack.opacity)
         self._spare: deque[Buffers] = deque(maxlen=RENDER_SPARE_BUFFERS)
 
     def draw(
@@ -186,10 +188,7 @@ class Renderer:
             if spare.frame.fits(height, width, sampling):
                 return spare
         frame = drawing.Framebuffer(self._surface, height, width, sampling)
-        layers = empty_layers(*self._surface.size, self.channels)
-        if self._stack is not None:
-            layers[0, :, :, OPACITY_LANE] = self._stack.opacity
-        return Buffers(frame, make_buffers(self._composite), layers)
+        return Buffers(frame, make_buffers(self._composite), empty_layers(*self._surface.size, self.channels))
 
 
 def background_of(background: Sequence[float] | float, channels: int) -> NDArray[np.float32]:

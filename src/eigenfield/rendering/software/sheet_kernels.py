@@ -19,6 +19,7 @@ from eigenfield.rendering.software.simd import blend_texels, fetch_early
 from eigenfield.runtime.jit import kernel
 
 OPACITY_LANE = 3  # of the first layer: the number of a texel that holds its opacity
+SKIP_SAMPLES = 16  # of a line that are looked through at a time
 LEAST_TRANSMITTANCE = np.float32(1 / 4096)  # where less of what is behind shows through, nothing does
 
 
@@ -34,15 +35,20 @@ def find_samples(near, column, row, first, last, through, places, nears, columns
         nears, columns, rows: (n,) their numbers of `near`, `column` and `row`, written.
     """
     found = 0
-    for i in range(first, last):
-        places[found], nears[found], columns[found], rows[found] = i, near[i], column[i], row[i]
-        found += (near[i] > 0) & (through[i] > 0)
+    for start in range(first, last, SKIP_SAMPLES):
+        end, most = min(start + SKIP_SAMPLES, last), np.float32(0)
+        for i in range(start, end):
+            most = max(most, near[i] * through[i])
+        if most > 0:
+            for i in range(start, end):
+                places[found], nears[found], columns[found], rows[found] = i, near[i], column[i], row[i]
+                found += (near[i] > 0) & (through[i] > 0)
     return found
 
 
 @kernel(fastmath=True, inline=True)
 def blend_line(taps, texture, layer, count, places, rows, columns, down, across, through, parts, sums):
-    """Composite one layer of a sheet's samples under what is in front of them.
+    """Composite one layer of a sheet's samples under what is in front of them; returns how many hide what is behind.
 
     Args:
         taps: 2 or 4.
@@ -56,7 +62,7 @@ def blend_line(taps, texture, layer, count, places, rows, columns, down, across,
         parts: (n,) how much of each sample is seen, written by the first layer.
         sums: (n, LAYER_CHANNELS) what the sheets show, added to.
     """
-    ahead = np.uintp(PREFETCH_SAMPLES)
+    ahead, opaque = np.uintp(PREFETCH_SAMPLES), 0
     for sample in range(count):
         i = np.uintp(sample)
         fetch_early(texture, rows[taps - 1, i + ahead] + columns[0, i + ahead])
@@ -83,15 +89,56 @@ def blend_line(taps, texture, layer, count, places, rows, columns, down, across,
             hidden = rest < LEAST_TRANSMITTANCE
             through[place] = np.float32(0) if hidden else rest
             parts[i] = light if hidden else light * opacity
+            opaque += hidden
         part = parts[i]
         sums[place, 0] += part * texel[0]
         sums[place, 1] += part * texel[1]
         sums[place, 2] += part * texel[2]
+    return opaque
+
+
+@kernel(fastmath=True)
+def add_samples(values, samples, factor, line):
+    """Add the sum of each pixel's samples, times a factor.
+
+    Args:
+        values: (pixels * samples,).
+        samples: Of a row that belong to one pixel.
+        factor: float32.
+        line: (pixels,), added to.
+    """
+    if samples == 1:
+        for pixel in range(line.shape[0]):
+            line[pixel] += factor * values[pixel]
+    else:
+        for pixel in range(line.shape[0]):
+            for i in range(pixel * samples, pixel * samples + samples):
+                line[pixel] += factor * values[i]
+
+
+@kernel(fastmath=True)
+def add_background(through, samples, background, sums, line):
+    """Add each pixel's samples, with the background behind them.
+
+    Args:
+        through: (pixels * samples,) what the sheets let through.
+        samples: Of a row that belong to one pixel.
+        background: (LAYER_CHANNELS,).
+        sums: (pixels * samples, LAYER_CHANNELS) what the sheets show.
+        line: (pixels * LAYER_CHANNELS,), added to.
+    """
+    red, green, blue = background[0], background[1], background[2]
+    for i in range(through.shape[0]):
+        place = np.uintp(LAYER_CHANNELS * (i if samples == 1 else i // samples))
+        line[place] += sums[i, 0] + red * through[i]
+        line[place + np.uintp(1)] += sums[i, 1] + green * through[i]
+        line[place + np.uintp(2)] += sums[i, 2] + blue * through[i]
 
 
 @kernel(fastmath=True)
 def draw_sheet(
-    faces, texels, edges, bounds, listing, first, last, slack, middles, seen, layers, size, bicubic, room, through, sums
+    faces, texels, edges, bounds, listing, first, last, slack, middles, seen, layers, size, bicubic, room, through,
+    waiting, sums,
 ):  # fmt: skip
     """Draw a sheet under those in front of it, in rows [first, last) of samples.
 
@@ -105,15 +152,21 @@ def draw_sheet(
         room: Memory of a line: `places`, the other results of `find_samples`, `parts`, `rows`, `columns`, `down` and
             `across` of `blend_line`.
         through: (last - first, n) what sheets in front let through, 0..1, changed.
+        waiting: (last - first,) how many samples of each line let something through, changed.
         sums: (L, last - first, n, LAYER_CHANNELS) what these show, added to.
     """
     top, bottom, left, right = last, first, through.shape[1], 0
     for f in listing:
         top, bottom = min(top, max(first, bounds[f, 0])), max(bottom, min(last, bounds[f, 1]))
         left, right = min(left, bounds[f, 2]), max(right, bounds[f, 3])
+    while top < bottom and waiting[top - first] == 0:
+        top += 1
+    while top < bottom and waiting[bottom - 1 - first] == 0:
+        bottom -= 1
     if top >= bottom:
         return
     near, column_of, row_of = middles
+    near[top:bottom, left:right] = 0
     draw_texels(faces, texels, edges, bounds, listing, top, bottom, slack, near, column_of, row_of, seen)
     height, width = size
     tile_row = -(-width // TILE_TEXELS) * TILE_AREA * 4
@@ -135,9 +188,10 @@ def draw_sheet(
         for layer in range(layers.shape[0]):
             texture, total = layers[layer].reshape(-1), sums[layer, line - first]
             if bicubic:
-                blend_line(4, texture, layer, count, places, rows, columns, down, across, light, parts, total)
+                opaque = blend_line(4, texture, layer, count, places, rows, columns, down, across, light, parts, total)
             else:
-                blend_line(2, texture, layer, count, places, rows, columns, down, across, light, parts, total)
+                opaque = blend_line(2, texture, layer, count, places, rows, columns, down, across, light, parts, total)
+            waiting[line - first] -= opaque
 
 
 @kernel(fastmath=True)
@@ -163,7 +217,7 @@ def draw_sheets(
     """
     pixels, depth = picture.shape[1], layers.shape[0]
     lines, n = (last - first) * samples, pixels * samples
-    through = np.ones((lines, n), np.float32)
+    through, waiting = np.ones((lines, n), np.float32), np.full(lines, n)
     sums = np.zeros((depth, lines, n, LAYER_CHANNELS), np.float32)
     rows, columns = np.zeros((4, n + PREFETCH_SAMPLES), np.int32), np.zeros((4, n + PREFETCH_SAMPLES), np.int32)
     down, across = np.empty((4, n), np.float32), np.empty((4, n), np.float32)
@@ -174,25 +228,19 @@ def draw_sheets(
         some = listing[ends[sheet] : ends[sheet + 1]]
         draw_sheet(
             faces, texels, edges, bounds, some, first * samples, last * samples, slack, middles, seen, layers, size,
-            bicubic, room, through, sums,
+            bicubic, room, through, waiting, sums,
         )  # fmt: skip
     line = np.empty(pixels * LAYER_CHANNELS, np.float32)
     share = np.float32(1) / np.float32(samples * samples)
     scale = share * np.float32(255 if eight_bit else 1)
     for row in range(first, last):
         sources = range((row - first) * samples, (row - first + 1) * samples)
-        for pixel in range(pixels):
-            light = np.float32(0)
-            for source in sources:
-                for i in range(pixel * samples, pixel * samples + samples):
-                    light += through[source, i]
-            coverage[row, pixel] = np.float32(1) - share * light
+        covered = coverage[row]
+        covered[:] = 1
+        for source in sources:
+            add_samples(through[source], samples, -share, covered)
         for layer in range(depth):
-            for pixel in range(pixels):
-                for k in range(LAYER_CHANNELS):
-                    total = np.float32(0)
-                    for source in sources:
-                        for i in range(pixel * samples, pixel * samples + samples):
-                            total += sums[layer, source, i, k] + through[source, i] * background[layer, k]
-                    line[pixel * LAYER_CHANNELS + k] = total
+            line[:] = 0
+            for source in sources:
+                add_background(through[source], samples, background[layer], sums[layer, source], line)
             store_layer(line, layer, scale, eight_bit, picture[row])
