@@ -2718,7 +2718,10 @@ function Za(e, t) {
 		uniforms: n,
 		defines: { BICUBIC: Va.bicubic },
 		side: e ? l : f,
-		...t ? Xa : {}
+		...t ? {
+			...Xa,
+			depthWrite: !1
+		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
