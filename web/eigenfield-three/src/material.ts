@@ -29,13 +29,15 @@ in vec3 position;
 in vec2 uv;
 out vec2 surfaceUv;
 out vec3 surfacePlace;
-invariant gl_Position; // sheets are drawn twice
 void main() {
   surfaceUv = uv;
   surfacePlace = position;
   gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
 }
 `;
+
+/** As VERTEX, to the same bits in every program: sheets are drawn twice. */
+const SHEET_VERTEX = VERTEX.replace("void main", "invariant gl_Position;\nvoid main");
 
 export const PRECISIONS = `
 precision highp float;
@@ -86,7 +88,7 @@ const SHEET_FRAGMENT = `${SURFACE}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
-  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0 + 0.5);
+  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0);
   return vec3(uvec3(code >> 16, code >> 8, code) & 255u) / 255.0;
 }
 void main() {
@@ -139,7 +141,7 @@ export function makeMaterial(doubleSided: boolean, sheets: boolean): SurfaceMate
   };
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
+    vertexShader: sheets ? SHEET_VERTEX : VERTEX,
     fragmentShader: sheets ? SHEET_FRAGMENT : FRAGMENT,
     uniforms,
     defines: { BICUBIC: FILTERS.bicubic },
@@ -156,7 +158,7 @@ export function makeDepthMaterial(sheets: SurfaceMaterial): RawShaderMaterial {
   return new RawShaderMaterial({
     name: "depth of sheets",
     glslVersion: GLSL3,
-    vertexShader: VERTEX,
+    vertexShader: SHEET_VERTEX,
     fragmentShader: DEPTH_FRAGMENT,
     colorWrite: false,
     side,

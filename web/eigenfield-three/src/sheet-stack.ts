@@ -42,19 +42,19 @@ uniform float slices;
 uniform vec2 corner;           // of the viewport in what is drawn into
 uniform vec2 size;             // of the viewport
 uniform mat4 toPlace;          // from clip space
-uniform vec2 clipDepth;        // clip space's depth is x times that of a pixel, plus y
 out vec4 fragment;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy - corner);
   vec4 colour = texelFetch(sheets, at, 0);
   if (colour.a <= 0.0) discard;
+  colour.rgb = clamp(colour.rgb, 0.0, 1.0);
   vec4 known = texelFetch(solid, at, 0);
   float depth = fract(texelFetch(nearest, at, 0).r * slices);
   if (known.a > 0.5) depth = dot(floor(255.0 * known.rgb + 0.5), vec3(65536.0, 256.0, 1.0)) / 16777215.0;
   if (shown == 3) {
-    vec2 clip = 2.0 * (gl_FragCoord.xy - corner) / size - 1.0;
-    vec4 place = toPlace * vec4(clip, depth * clipDepth.x + clipDepth.y, 1.0);
-    colour.rgb = errorColour(colour.rgb / colour.a, place.xyz / place.w) * colour.a;
+    vec2 pixel = (gl_FragCoord.xy - corner) / size;
+    vec4 place = toPlace * vec4(2.0 * vec3(pixel, depth) - 1.0, 1.0);
+    colour.rgb = errorColour(min(colour.rgb / colour.a, 1.0), place.xyz / place.w) * colour.a;
   }
   gl_FragDepth = depth;
   fragment = colour;
@@ -83,10 +83,9 @@ export class SheetStack {
     this.depth.transparent = material.transparent = true; // or three.js would sort them by their materials
     this.sheets = new Mesh(geometry, faces.flatMap(() => [this.depth, material]));
     this.sheets.frustumCulled = false;
-    this.sheets.onBeforeRender = (renderer, _scene, camera, _geometry, _material, group) => {
+    this.sheets.onBeforeRender = (renderer, _scene, _camera, _geometry, _material, group) => {
       const { materialIndex = 0 } = group as unknown as { materialIndex?: number };
-      const sheet = materialIndex >> 1;
-      const before = camera.reversedDepth ? sheet : faces.length - 1 - sheet;
+      const before = faces.length - 1 - (materialIndex >> 1); // sheets
       renderer.getContext().depthRange(before / faces.length, (before + 1) / faces.length);
     };
     this.scene.add(this.sheets);
@@ -108,7 +107,6 @@ export class SheetStack {
         corner: { value: new Vector2() },
         size: { value: new Vector2() },
         toPlace: { value: new Matrix4() },
-        clipDepth: { value: new Vector2() },
       },
       transparent: true,
       ...OVER,
@@ -148,6 +146,7 @@ export class SheetStack {
   private draw(renderer: WebGLRenderer, camera: Camera, mesh: Mesh): void {
     const eye = (camera as { viewport?: Vector4 }).viewport; // one of two
     const { x, y, z: width, w: height } = eye ?? renderer.getCurrentViewport(viewport);
+    if (!width || !height) return;
     if (this.target?.width !== width || this.target.height !== height) {
       this.target?.dispose();
       this.target = makeTarget(width, height);
@@ -157,7 +156,6 @@ export class SheetStack {
     this.camera.matrixWorld.copy(camera.matrixWorld);
     this.camera.matrixWorldInverse.copy(camera.matrixWorldInverse);
     this.camera.projectionMatrix.copy(camera.projectionMatrix);
-    Object.assign(this.camera, { _reversedDepth: camera.reversedDepth });
     within(renderer, camera, () => {
       renderer.setRenderTarget(target);
       renderer.state.buffers.color.setMask(true);
@@ -174,7 +172,6 @@ export class SheetStack {
     set("nearest", target.depthTexture);
     uniforms["corner"]?.value.set(x, y);
     uniforms["size"]?.value.set(width, height);
-    uniforms["clipDepth"]?.value.set(...(camera.reversedDepth ? [1, 0] : [2, -1]));
     const toClip = uniforms["toPlace"]?.value as Matrix4;
     toClip.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(mesh.matrixWorld).invert();
     this.screen.uniformsNeedUpdate = true;
