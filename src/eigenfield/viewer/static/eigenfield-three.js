@@ -2667,12 +2667,12 @@ var Ba = "// The composed texture (compose.glsl) on the surface of the proxy.\n/
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, Ua = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\ninvariant gl_Position; // sheets are drawn twice\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Wa = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ga = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ka = `${Wa}
+}, Ua = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Wa = Ua.replace("void main", "invariant gl_Position;\nvoid main"), Ga = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ka = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", qa = `${Ga}
 ${ga}${Ba}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, qa = `${Ka}${Ga}
+`, Ja = `${qa}${Ka}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -2682,11 +2682,11 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Ja = `${Ka}
+`, Ya = `${qa}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
-  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0 + 0.5);
+  uint code = uint(clamp(depth, 0.0, 1.0) * 16777215.0);
   return vec3(uvec3(code >> 16, code >> 8, code) & 255u) / 255.0;
 }
 void main() {
@@ -2696,12 +2696,12 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Ya = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Xa = {
+`, Xa = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Za = {
 	blending: a,
 	blendSrc: C,
 	blendDst: w
 };
-function Za(e, t) {
+function Qa(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
@@ -2713,59 +2713,59 @@ function Za(e, t) {
 		toPhotograph: { value: new v() }
 	}, r = new E({
 		glslVersion: p,
-		vertexShader: Ua,
-		fragmentShader: t ? Ja : qa,
+		vertexShader: t ? Wa : Ua,
+		fragmentShader: t ? Ya : Ja,
 		uniforms: n,
 		defines: { BICUBIC: Va.bicubic },
 		side: e ? l : f,
 		...t ? {
-			...Xa,
+			...Za,
 			depthWrite: !1
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function Qa(e) {
+function $a(e) {
 	let { side: t } = e;
 	return new E({
 		name: "depth of sheets",
 		glslVersion: p,
-		vertexShader: Ua,
-		fragmentShader: Ya,
+		vertexShader: Wa,
+		fragmentShader: Xa,
 		colorWrite: !1,
 		side: t
 	});
 }
 // eigenfield-three/src/gpu.ts
-function $a(e, t) {
+function eo(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function eo(e, [t, n], r, i, a) {
-	return ro(e, e.TEXTURE_2D_ARRAY, () => {
+function to(e, [t, n], r, i, a) {
+	return io(e, e.TEXTURE_2D_ARRAY, () => {
 		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, a ? e.RGBA16F : e.RGBA8, t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function to(e, t, n) {
+function no(e, t, n) {
 	let { width: r, height: i } = n;
-	io(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
+	ao(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, r, i, 1, e.RGBA, e.UNSIGNED_BYTE, n));
 }
-function no(e, [t, n], r = !1) {
-	return ro(e, e.TEXTURE_2D, () => {
+function ro(e, [t, n], r = !1) {
+	return io(e, e.TEXTURE_2D, () => {
 		e.texStorage2D(e.TEXTURE_2D, 1, r ? e.RG8 : e.RGBA8, t, n), e.texParameteri(e.TEXTURE_2D, e.TEXTURE_MIN_FILTER, e.NEAREST);
 	});
 }
-function ro(e, t, n) {
+function io(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return io(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return ao(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function io(e, t, n, r) {
+function ao(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -2779,9 +2779,9 @@ function io(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-var ao = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", oo = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
-function so(e, t) {
-	let n = fo(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
+var oo = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", so = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform vec2 size; // of what is drawn\nuniform highp sampler2D precisions;\nuniform ivec2 nodes; // columns and rows of it that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nvoid main() {\n  float code = dot(texelFetch(picture, ivec2(gl_FragCoord.xy), 0), factors);\n  if (nodes.x == 0) stored = vec4(code);\n  else stored = vec4(clamp((code - zero) / precisionAt(gl_FragCoord.xy / size) / 4.0, -65504.0, 65504.0));\n}\n";
+function co(e, t) {
+	let n = po(e), [r, i] = [e.createFramebuffer(), e.createVertexArray()], [a, o, s, c, l] = [
 		"factors",
 		"size",
 		"precisions",
@@ -2789,7 +2789,7 @@ function so(e, t) {
 		"zero"
 	].map((t) => e.getUniformLocation(n, t)), u = ({ picture: t, rows: u }, d, f, p, m) => {
 		e.useProgram(n), e.uniform2f(o ?? null, t.width, u), e.uniform1i(s ?? null, +!!m), e.uniform2i(c ?? null, m?.precision.width ?? 0, m?.precision.height ?? 0), e.uniform1f(l ?? null, m?.zero ?? 0), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.viewport(0, 0, t.width, u);
-		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), co(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
+		for (let { channel: n, layer: r, component: i } of f) e.colorMask(i === 0, i === 1, i === 2, i === 3), e.framebufferTextureLayer(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, d, 0, r), lo(t) ? e.uniform4f(a ?? null, 255, 65280, 0, 0) : e.uniform4fv(a ?? null, [
 			0,
 			1,
 			2,
@@ -2798,13 +2798,13 @@ function so(e, t) {
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let { picture: s, row: c, rows: l } = n, d = co(s) ? t.codes : t.picture;
+			let { picture: s, row: c, rows: l } = n, d = lo(s) ? t.codes : t.picture;
 			if (!d) return;
-			let f = () => po(e, 0, d, () => {
-				co(s) ? uo(e, s, c, l) : lo(e, s, c, l), mo(e, () => u(n, r, i, a, o));
+			let f = () => mo(e, 0, d, () => {
+				lo(s) ? fo(e, s, c, l) : uo(e, s, c, l), ho(e, () => u(n, r, i, a, o));
 			});
-			o ? po(e, 1, t.precision, () => {
-				lo(e, o.precision, 0, o.precision.height), f();
+			o ? mo(e, 1, t.precision, () => {
+				uo(e, o.precision, 0, o.precision.height), f();
 			}) : f();
 		},
 		free() {
@@ -2812,30 +2812,30 @@ function so(e, t) {
 		}
 	};
 }
-function co(e) {
+function lo(e) {
 	return "data" in e;
 }
-function lo(e, t, n, r) {
+function uo(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function uo(e, { data: t, width: n, stride: r }, i, a) {
+function fo(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
-function fo(e) {
+function po(e) {
 	let t = e.createProgram();
-	for (let [n, r] of [[e.VERTEX_SHADER, ao], [e.FRAGMENT_SHADER, oo]]) {
+	for (let [n, r] of [[e.VERTEX_SHADER, oo], [e.FRAGMENT_SHADER, so]]) {
 		let i = e.createShader(n);
 		i && (e.shaderSource(i, r), e.compileShader(i), e.attachShader(t, i), e.deleteShader(i));
 	}
 	return e.linkProgram(t), t;
 }
-function po(e, t, n, r) {
+function mo(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), io(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), ao(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function mo(e, t) {
+function ho(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -2850,7 +2850,7 @@ function mo(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/parts.ts
-function ho(e, t, n) {
+function go(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -2860,7 +2860,7 @@ function ho(e, t, n) {
 	return e.planes.forEach((c, l) => {
 		let { channels: u, bases: d } = c, f = e.colours.slice(i, i + u);
 		i += u;
-		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = _o(c);
+		let p = t.needs.means[l]?.size ?? [1, 1], m = t.means[l], h = vo(c);
 		m && r.push({
 			stored: m,
 			grid: p,
@@ -2888,7 +2888,7 @@ function ho(e, t, n) {
 						n + e[1] / i[1]
 					],
 					colours: f,
-					...yo(l, u, h),
+					...bo(l, u, h),
 					basis: {
 						ready: m,
 						column: o,
@@ -2900,7 +2900,7 @@ function ho(e, t, n) {
 		}
 	}), r;
 }
-function go({ planes: e, sheets: t }, { means: n, needs: r }) {
+function _o({ planes: e, sheets: t }, { means: n, needs: r }) {
 	let i = n[e.length], a = r.means[e.length]?.size;
 	return !t || !i || !a ? null : {
 		stored: i,
@@ -2916,12 +2916,12 @@ function go({ planes: e, sheets: t }, { means: n, needs: r }) {
 			0,
 			0
 		]],
-		..._o(t.opacity),
+		...vo(t.opacity),
 		basis: null
 	};
 }
-function _o({ mean: e, channels: t, precision: n }) {
-	let { scale: r, zero: i } = e, a = n ? 4 : vo([e]), o = {
+function vo({ mean: e, channels: t, precision: n }) {
+	let { scale: r, zero: i } = e, a = n ? 4 : yo([e]), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
 	};
@@ -2931,11 +2931,11 @@ function _o({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function vo(e) {
+function yo(e) {
 	return Lr(e) ? 1 : 255;
 }
-function yo(e, t, n) {
-	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = vo(e), o = 4 * t * ra(n), s = {
+function bo(e, t, n) {
+	let r = e.flatMap((e) => e.scale), i = e.flatMap((e) => e.zero), a = yo(e), o = 4 * t * ra(n), s = {
 		scale: new Float32Array(o),
 		bias: new Float32Array(o)
 	};
@@ -2946,7 +2946,7 @@ function yo(e, t, n) {
 	return s;
 }
 // eigenfield-three/src/sheet-stack.ts
-var bo = "sheets", xo = 16, So = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Co = `${Wa}${Ga}
+var xo = "sheets", So = 16, Co = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", wo = `${Ga}${Ka}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -2954,24 +2954,24 @@ uniform float slices;
 uniform vec2 corner;           // of the viewport in what is drawn into
 uniform vec2 size;             // of the viewport
 uniform mat4 toPlace;          // from clip space
-uniform vec2 clipDepth;        // clip space's depth is x times that of a pixel, plus y
 out vec4 fragment;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy - corner);
   vec4 colour = texelFetch(sheets, at, 0);
   if (colour.a <= 0.0) discard;
+  colour.rgb = clamp(colour.rgb, 0.0, 1.0);
   vec4 known = texelFetch(solid, at, 0);
   float depth = fract(texelFetch(nearest, at, 0).r * slices);
   if (known.a > 0.5) depth = dot(floor(255.0 * known.rgb + 0.5), vec3(65536.0, 256.0, 1.0)) / 16777215.0;
   if (shown == 3) {
-    vec2 clip = 2.0 * (gl_FragCoord.xy - corner) / size - 1.0;
-    vec4 place = toPlace * vec4(clip, depth * clipDepth.x + clipDepth.y, 1.0);
-    colour.rgb = errorColour(colour.rgb / colour.a, place.xyz / place.w) * colour.a;
+    vec2 pixel = (gl_FragCoord.xy - corner) / size;
+    vec4 place = toPlace * vec4(2.0 * vec3(pixel, depth) - 1.0, 1.0);
+    colour.rgb = errorColour(min(colour.rgb / colour.a, 1.0), place.xyz / place.w) * colour.a;
   }
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, wo = new te(), To = class {
+`, To = new te(), Eo = class {
 	scene = new D();
 	camera = new n();
 	sheets;
@@ -2983,16 +2983,16 @@ void main() {
 		e.forEach((e, n) => {
 			for (let i of [0, 1]) t.addGroup(r, 3 * e, 2 * n + i);
 			r += 3 * e;
-		}), this.depth = Qa(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
-			let { materialIndex: s = 0 } = o, c = s >> 1, l = r.reversedDepth ? c : e.length - 1 - c;
-			t.getContext().depthRange(l / e.length, (l + 1) / e.length);
+		}), this.depth = $a(n), this.depth.transparent = n.transparent = !0, this.sheets = new y(t, e.flatMap(() => [this.depth, n])), this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (t, n, r, i, a, o) => {
+			let { materialIndex: s = 0 } = o, c = e.length - 1 - (s >> 1);
+			t.getContext().depthRange(c / e.length, (c + 1) / e.length);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: i, photograph: a, toPhotograph: o } = n.uniforms;
 		this.screen = new E({
-			name: bo,
+			name: xo,
 			glslVersion: p,
-			vertexShader: So,
-			fragmentShader: Co,
+			vertexShader: Co,
+			fragmentShader: wo,
 			uniforms: {
 				shown: i,
 				photograph: a,
@@ -3003,15 +3003,14 @@ void main() {
 				slices: { value: e.length },
 				corner: { value: new k() },
 				size: { value: new k() },
-				toPlace: { value: new v() },
-				clipDepth: { value: new k() }
+				toPlace: { value: new v() }
 			},
 			transparent: !0,
-			...Xa
+			...Za
 		});
 	}
 	get bytes() {
-		return this.target ? xo * this.target.width * this.target.height : 0;
+		return this.target ? So * this.target.width * this.target.height : 0;
 	}
 	attach(n, r) {
 		for (let e of [n.material].flat()) e.visible = !1;
@@ -3032,7 +3031,7 @@ void main() {
 			boundingSphere: a
 		});
 		let s = new y(o, this.screen);
-		s.name = bo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
+		s.name = xo, s.raycast = () => void 0, s.onBeforeRender = (e, t, i) => {
 			r(e, i), this.draw(e, i, n);
 		}, n.add(s);
 	}
@@ -3040,19 +3039,20 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(wo);
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Eo(a, o));
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(To);
+		if (!a || !o) return;
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = Do(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Object.assign(this.camera, { _reversedDepth: t.reversedDepth }), Ra(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), Ra(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen, l = (e, t) => {
 			Object.assign(c[e] ?? {}, { value: t });
 		};
-		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), c.clipDepth?.value.set(...t.reversedDepth ? [1, 0] : [2, -1]), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
+		l("sheets", s.textures[0]), l("solid", s.textures[1]), l("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function Eo(e, t) {
+function Do(e, t) {
 	let n = new ne(e, t, {
 		count: 2,
 		type: m,
@@ -3063,21 +3063,21 @@ function Eo(e, t) {
 	return r && (r.type = ee), n;
 }
 // eigenfield-three/src/pieces.ts
-function Do(e) {
+function Oo(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Oo = 128, ko = .98;
-async function Ao(e, t, n, r) {
+var ko = 128, Ao = .98;
+async function jo(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Oo, Oo).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = Rr(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(ko, ko).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Oo, Oo);
-		let { data: u } = d.getImageData(0, 0, Oo, Oo);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, ko, ko);
+		let { data: u } = d.getImageData(0, 0, ko, ko);
 		(l ? [
 			0,
 			1,
@@ -3086,30 +3086,30 @@ async function Ao(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Do(u), f.sort((e, t) => e - t);
-	let p = f[Math.floor(ko * f.length)] ?? 0;
+	}), Oo(u), f.sort((e, t) => e - t);
+	let p = f[Math.floor(Ao * f.length)] ?? 0;
 	return p > 0 ? .45 / p : 1;
 }
 // eigenfield-three/src/means.ts
-async function jo(e, t, n = 1) {
-	let { mean: r, meanSize: i } = e, a = e.precision && await Mo(await t(e.precision.view), e.precision);
+async function Mo(e, t, n = 1) {
+	let { mean: r, meanSize: i } = e, a = e.precision && await No(await t(e.precision.view), e.precision);
 	return {
 		pieces: await r.codec.decode(await t(r.view), r, i, n),
 		precision: a
 	};
 }
-async function Mo(e, t) {
+async function No(e, t) {
 	let { type: n } = Un(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function No({ pieces: e, precision: t }) {
-	Do(e), t?.close();
+function Po({ pieces: e, precision: t }) {
+	Oo(e), t?.close();
 }
 // eigenfield-three/src/textures.ts
-var Po = 3, Fo = class {
+var Fo = 3, Io = class {
 	parts;
 	options;
 	means;
@@ -3181,7 +3181,7 @@ var Po = 3, Fo = class {
 		});
 	}
 	dispose() {
-		this.detach(), this.disposed = !0, this.decoded?.forEach(No), this.decoded = null;
+		this.detach(), this.disposed = !0, this.decoded?.forEach(Po), this.decoded = null;
 	}
 	detach() {
 		let e = this.renderer?.getContext();
@@ -3204,13 +3204,13 @@ var Po = 3, Fo = class {
 		let i = this.entries.filter(({ first: e }) => e < r.usable), a = [], o = 0;
 		try {
 			for (let e of i) {
-				for (; a.length < Po && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
+				for (; a.length < Fo && o < i.length;) a.push(this.decode(i[o++], r.scaleDown));
 				let s = await a[0] ?? [];
-				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Do(s), t !== this.turn) return;
+				if (a.shift(), t === this.turn && this.pack(s, e, n, r.usable), Oo(s), t !== this.turn) return;
 				this.onTexture();
 			}
 		} finally {
-			for (let e of a) e.then(Do).catch(() => void 0);
+			for (let e of a) e.then(Oo).catch(() => void 0);
 		}
 		n.free(), this.packer = null, this.onComplete();
 	}
@@ -3238,12 +3238,12 @@ var Po = 3, Fo = class {
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs, r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? Qi();; i /= 2) {
-			let a = aa(this.needs, $a(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => eo(e, X(t, o), ta(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
+			let a = aa(this.needs, eo(e, i)), { meanDown: o, scaleDown: s, usable: c } = a, l = o > 1 || s > 1, u = [...t.map(({ size: t, channels: n, tenBits: r }) => to(e, X(t, o), ta(n), l, r)), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return eo(e, a ? X(t, s) : [1, 1], a ? na(a, n) : 1, l, i);
-			})], d = la(this.needs, o, s), f = no(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? no(e, d, !0) : null, h = no(e, ua(r));
+				return to(e, a ? X(t, s) : [1, 1], a ? na(a, n) : 1, l, i);
+			})], d = la(this.needs, o, s), f = ro(e, d), p = [...t, ...n].some(({ tenBits: e }) => e), m = p ? ro(e, d, !0) : null, h = ro(e, ua(r));
 			if (f && h && (m || !p) && u.every((e) => e !== null)) return [...this.means, ...this.bases].forEach((e, t) => e.sourceTexture = u[t] ?? null), {
-				packer: so(e, {
+				packer: co(e, {
 					picture: f,
 					codes: m,
 					precision: h
@@ -3261,15 +3261,15 @@ var Po = 3, Fo = class {
 	}
 	async loadMeans(e, t, n) {
 		let { scene: r, bytes: i } = this.parts, a = ti(r), { decoded: o } = this;
-		this.decoded = null, (!o || n > 1) && (o?.forEach(No), o = await Promise.all(a.map((e) => jo(e, i, n)))), o.forEach((n, r) => {
+		this.decoded = null, (!o || n > 1) && (o?.forEach(Po), o = await Promise.all(a.map((e) => Mo(e, i, n)))), o.forEach((n, r) => {
 			let i = this.means[r]?.sourceTexture, o = a[r]?.mean;
-			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), No(n);
+			t === this.turn && o && i instanceof WebGLTexture && this.putMean(e, n, o, i), Po(n);
 		}), t === this.turn && (this.hasMeans = !0, this.version += 1);
 	}
 	putMean(e, t, n, r) {
 		let { pieces: i, precision: a } = t, o = Lr([n]), [s] = i;
 		if (s && i.length === 1 && !o && "close" in s.picture) {
-			to(e, r, s.picture);
+			no(e, r, s.picture);
 			return;
 		}
 		let c = o ? 255 * Rr(n) : 1;
@@ -3290,7 +3290,7 @@ var Po = 3, Fo = class {
 		let { basis: n, picture: r } = e, i = this.parts.bytes(r.view).then((e) => r.codec.decode(e, r, n.size, t));
 		return i.catch(() => void 0), i;
 	}
-}, Io = 1.5, Lo = .001, Ro = class extends u {
+}, Lo = 1.5, Ro = .001, zo = class extends u {
 	parts;
 	mesh;
 	info;
@@ -3324,9 +3324,9 @@ var Po = 3, Fo = class {
 		if (!a) throw Error("a field needs a mesh");
 		this.mesh = a, this.info = r, this.total = Ei(n), this.counts = Ti(n).map(({ count: e }) => e), this.filter = t.filter ?? "bicubic", this.weightMode = r.facesPlane ? "ray" : "eye";
 		let o = 0;
-		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Fo(e, Ho(a), t);
+		this.rowOf = Int32Array.from(n.heldOut, (e) => e ? -1 : o++), this.textures = new Io(e, Uo(a), t);
 		let s = [a.material].flat().some((e) => e.side !== f);
-		this.material = Za(s, n.sheets !== null), this.stack = n.sheets && new To(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
+		this.material = Qa(s, n.sheets !== null), this.stack = n.sheets && new Eo(n.sheets.faces, a.geometry, this.material), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0);
 		let c = r.cameras[r.reference];
@@ -3377,7 +3377,7 @@ var Po = 3, Fo = class {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Io * Math.max(1, this.detail * Math.sqrt(e * t) / n);
+		return Lo * Math.max(1, this.detail * Math.sqrt(e * t) / n);
 	}
 	get columns() {
 		return this.counts.reduce((e, t) => e + t, 0);
@@ -3394,7 +3394,7 @@ var Po = 3, Fo = class {
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Vo(t, n), [i, a] = Mi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
+		let r = Ho(t, n), [i, a] = Mi(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r);
 		this.setView();
 		let l = Va[this.filter];
 		this.material.defines.BICUBIC !== l && (this.material.defines.BICUBIC = l, this.material.needsUpdate = !0), this.material.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -3404,8 +3404,8 @@ var Po = 3, Fo = class {
 		if (!r) return;
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
-			let { scene: e } = this.parts, t = go(e, this.textures);
-			s = new Aa(i, ho(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
+			let { scene: e } = this.parts, t = _o(e, this.textures);
+			s = new Aa(i, go(e, this.textures, r), t, o, this.mesh, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n), this.material.uniforms.composed.value = s.texture, this.material.uniforms.finest.value = this.finestOf(i, o);
 	}
@@ -3442,7 +3442,7 @@ var Po = 3, Fo = class {
 	aimPhotograph() {
 		let e = this.camera === null ? void 0 : this.info.cameras[this.camera], { photograph: t } = this;
 		if (!e || !t) return;
-		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Uo(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
+		let { K: n, R: r, t: i, width: a, height: o } = e, s = new v().set(...r[0], i[0], ...r[1], i[1], ...r[2], i[2], 0, 0, 0, 1), c = new v().set(...n[0], 0, ...n[1], 0, 0, 0, 0, 0, ...n[2], 0), l = t.flipY && !Wo(t.image), u = new v().makeScale(1 / a, (l ? -1 : 1) / o, 1);
 		l && (u.elements[13] = 1), this.material.uniforms.toPhotograph.value.multiplyMatrices(u, c.multiply(s)), this.material.uniforms.photograph.value = t;
 	}
 	gainOf(e) {
@@ -3453,7 +3453,7 @@ var Po = 3, Fo = class {
 		for (let { channels: t, bases: a } of n.planes) {
 			let o = n.colours.slice(i, i += t), s = a.find(({ count: t }) => t > e);
 			if (!(!s || e < 0)) {
-				Ao(s, e, o, r).then((t) => {
+				jo(s, e, o, r).then((t) => {
 					this.gains.set(e, t), this.dispatchEvent({ type: "texture" });
 				}).catch(() => void 0);
 				break;
@@ -3463,7 +3463,7 @@ var Po = 3, Fo = class {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Lo * Math.max(...r);
+		return Math.abs(i) <= Ro * Math.max(...r);
 	}
 	mapsOf(e) {
 		let { usable: t } = this;
@@ -3477,33 +3477,33 @@ var Po = 3, Fo = class {
 		}, n;
 	}
 	fail(e) {
-		if (Wo(e)) return;
+		if (Go(e)) return;
 		let t = oe(e), n = `The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, `${t.message} ${n}`, t.where)
 		});
 	}
-}, zo = new v(), Bo = new A();
-function Vo(e, t) {
-	return Bo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(zo.copy(t.matrixWorld).invert()), [
-		Bo.x,
-		Bo.y,
-		Bo.z
+}, Bo = new v(), Vo = new A();
+function Ho(e, t) {
+	return Vo.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Bo.copy(t.matrixWorld).invert()), [
+		Vo.x,
+		Vo.y,
+		Vo.z
 	];
 }
-function Ho(e) {
+function Uo(e) {
 	let { attributes: t, index: n } = e.geometry;
 	return Object.values(t).reduce((e, t) => e + t.array.byteLength, 0) + (n?.array.byteLength ?? 0);
 }
-function Uo(e) {
+function Wo(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
-function Wo(e) {
+function Go(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Go = class {
+var Ko = class {
 	received = 0;
 	chunks = [];
 	waiters = [];
@@ -3546,53 +3546,53 @@ var Go = class {
 		}
 		return n.buffer;
 	}
-}, Ko = 1179937895, qo = 1313821514, Jo = 5130562;
-async function Yo(e) {
+}, qo = 1179937895, Jo = 1313821514, Yo = 5130562;
+async function Xo(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? es(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? ts(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Ko) throw es(!1);
+	if (new DataView(t).getUint32(0, !0) !== qo) throw ts(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== qo) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== Jo) throw M("16", "it does not begin with JSON");
 	if (o > pe) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = Zo(await e.read(20, 20 + o));
+	let s = Qo(await e.read(20, 20 + o));
 	return {
 		length: i,
 		text: s,
-		json: Qo(s, "20"),
-		binary: () => Xo(e, 20 + o, i)
+		json: $o(s, "20"),
+		binary: () => Zo(e, 20 + o, i)
 	};
 }
-async function Xo(e, t, n) {
+async function Zo(e, t, n) {
 	let r = t;
 	for (let t = 1; t < 64 && r + 8 <= n; t++) {
 		let t = new DataView(await e.read(r, r + 8)), i = t.getUint32(0, !0);
 		if (r + 8 + i > n) throw M(String(r), "a chunk longer than the file");
-		if (t.getUint32(4, !0) === Jo) return r + 8;
+		if (t.getUint32(4, !0) === Yo) return r + 8;
 		r += 8 + i;
 	}
 	throw M(String(t), "no binary chunk");
 }
-function Zo(e) {
+function Qo(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function Qo(e, t) {
-	if ($o(e) > 64) throw M(t, "its JSON is nested too deep");
+function $o(e, t) {
+	if (es(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function $o(e) {
+function es(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3603,20 +3603,20 @@ function $o(e) {
 	}
 	return n;
 }
-function es(e) {
+function ts(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/packed.ts
-var ts = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ns = 4;
-async function rs(e, t) {
+var ns = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", rs = 4;
+async function is(e, t) {
 	let n = new K(e, ""), r = n.key("extensions").key(fe), i = r.key("packed");
 	if (!i.exists) return e;
 	ni(r);
 	let a = Cr(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < ns) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, ns)).getUint32(0, !0);
-	if (ns + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new K(Qo(await as(await t(o.offset + ns, s), i.where), i.where), i.where).object(), u = is(new K(c, `${i.where}/lengths`), o, ns + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < rs) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, rs)).getUint32(0, !0);
+	if (rs + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new K($o(await os(await t(o.offset + rs, s), i.where), i.where), i.where).object(), u = as(new K(c, `${i.where}/lengths`), o, rs + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -3629,7 +3629,7 @@ async function rs(e, t) {
 		}
 	};
 }
-function is(e, t, n) {
+function as(e, t, n) {
 	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -3641,8 +3641,8 @@ function is(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function as(e, t) {
-	let n = new TextEncoder().encode(ts), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function os(e, t) {
+	let n = new TextEncoder().encode(ns), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -3661,8 +3661,8 @@ async function as(e, t) {
 	}
 }
 // eigenfield-three/src/proxy.ts
-var os = 65535;
-function ss(e, t) {
+var ss = 65535;
+function cs(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3672,46 +3672,46 @@ function ss(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function cs({ view: n, codec: r, where: i }, a) {
+async function ls({ view: n, codec: r, where: i }, a) {
 	let { positions: o, uv: s, indices: c } = r.decode(new Uint8Array(await a(n)), i);
 	if (!c.length) throw M(i, "a mesh without faces");
 	let l = new t();
 	l.setAttribute("position", new e(o, 3)), l.setAttribute("uv", new e(s, 2));
-	let u = o.length / 3 <= os;
+	let u = o.length / 3 <= ss;
 	return l.setIndex(new e(u ? Uint16Array.from(c) : c, 1)), l;
 }
-function ls(e) {
+function us(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/grid.ts
-function us(e) {
+function ds(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = ds(e, n, r) ?? (n === r ? null : ds(e, r, n));
+		let r = t / n, i = fs(e, n, r) ?? (n === r ? null : fs(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function ds(e, t, n) {
-	let [r, i] = [ps(e, 0), ps(e, 1)];
-	if (t === 1 && ms(i) > 0 || n === 1 && ms(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => hs(i, e) - hs(i, t));
+function fs(e, t, n) {
+	let [r, i] = [ms(e, 0), ms(e, 1)];
+	if (t === 1 && hs(i) > 0 || n === 1 && hs(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => gs(i, e) - gs(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => hs(r, e) - hs(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => gs(r, e) - gs(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return fs(n, t, (e, t) => hs(r, o(t, e))) && fs(t, n, (e, t) => hs(i, o(e, t))) ? {
+	return ps(n, t, (e, t) => gs(r, o(t, e))) && ps(t, n, (e, t) => gs(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function fs(e, t, n) {
+function ps(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -3721,33 +3721,33 @@ function fs(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function ps(e, t) {
+function ms(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function ms(e) {
+function hs(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var hs = (e, t) => e[t] ?? 0, gs = 1e-6, _s = 32, vs = class {
+var gs = (e, t) => e[t] ?? 0, _s = 1e-6, vs = 32, ys = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = us(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = ds(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(ys(e), this.isLine ? 0 : ys(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(bs(e), this.isLine ? 0 : bs(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => ks(e, t, this.places) : e === "bilinear" && this.grid ? js(this.places, this.grid) : Ss(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => As(e, t, this.places) : e === "bilinear" && this.grid ? Ms(this.places, this.grid) : Cs(this.places, this.triangles);
 	}
 };
-function ys(e) {
+function bs(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function bs(e) {
+function xs(e) {
 	let t = {
 		camera: [
 			0,
@@ -3767,7 +3767,7 @@ function bs(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function xs(e, t, n, r, i, a) {
+function Ss(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -3775,49 +3775,49 @@ function xs(e, t, n, r, i, a) {
 		m
 	];
 }
-function Ss(e, t) {
+function Cs(e, t) {
 	if (!t.length) {
-		let t = Os(e, Ds(e));
-		return (n, r) => Es(n, r, e, t);
+		let t = ks(e, Os(e));
+		return (n, r) => Ds(n, r, e, t);
 	}
-	let n = ws(e, t, 3), r = Ts(t);
+	let n = Ts(e, t, 3), r = Es(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * _s + $(i)] ?? []) {
+		for (let r of n[$(a) * vs + $(i)] ?? []) {
 			let [n, l, u] = [
-				Cs(t, r, 0),
-				Cs(t, r, 1),
-				Cs(t, r, 2)
-			], d = xs(i, a, e, n, l, u), f = Math.min(...d);
+				ws(t, r, 0),
+				ws(t, r, 1),
+				ws(t, r, 2)
+			], d = Ss(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Es(i, a, e, r) : bs(c.map((e, n) => [Cs(t, o, n), e]));
+		return s < -1e-9 ? Ds(i, a, e, r) : xs(c.map((e, n) => [ws(t, o, n), e]));
 	};
 }
-var Cs = (e, t, n) => e[3 * t + n] ?? 0;
+var ws = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * _s)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * vs)));
 }
-function ws(e, t, n) {
+function Ts(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * _s + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * vs + t]?.push(i);
 	}
 	return r;
 }
-function Ts(e) {
+function Es(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Cs(e, n, r), Cs(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [ws(e, n, r), ws(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -3826,7 +3826,7 @@ function Ts(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Es(e, t, n, r) {
+function Ds(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -3841,12 +3841,12 @@ function Es(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return bs([[o, 1 - c], [s, c]]);
+	return xs([[o, 1 - c], [s, c]]);
 }
-function Ds(e) {
+function Os(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Os(e, t) {
+function ks(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -3867,7 +3867,7 @@ function Os(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function ks(e, t, n) {
+function As(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -3881,12 +3881,12 @@ function ks(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || As(n, r, i, a) <= gs) return Es(e, t, n, Os(n, [
+	if (a < 0 || js(n, r, i, a) <= _s) return Ds(e, t, n, ks(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = xs(e, t, n, r, i, a);
+	let [l, u, d] = Ss(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -3902,15 +3902,15 @@ function ks(e, t, n) {
 		]
 	};
 }
-function As(e, t, n, r) {
+function js(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function js(e, t) {
+function Ms(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Os(e, Ds(e));
-		return (n, r) => Es(n, r, e, t);
+		let t = ks(e, Os(e));
+		return (n, r) => Ds(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -3919,7 +3919,7 @@ function js(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = ws(e, o.flat(), 4), c = [];
+	let s = Ts(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -3927,12 +3927,12 @@ function js(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * _s + $(t)] ?? []) {
-			let s = o[a], c = s ? Ms(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * vs + $(t)] ?? []) {
+			let s = o[a], c = s ? Ns(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Es(t, n, e, l);
-		let [a, c] = Ns(t, n, e, r);
+		if (!r || i < -1e-9) return Ds(t, n, e, l);
+		let [a, c] = Ps(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -3944,7 +3944,7 @@ function js(e, t) {
 		};
 	};
 }
-function Ms(e, t, n, r) {
+function Ns(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -3952,7 +3952,7 @@ function Ms(e, t, n, r) {
 	}
 	return i;
 }
-function Ns(e, t, n, r) {
+function Ps(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -3970,14 +3970,14 @@ function Ns(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Ps(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Ps(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Fs(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Fs(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Ps(e) {
+function Fs(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Fs = class {
+var Is = class {
 	parser;
 	options;
 	name = fe;
@@ -3989,7 +3989,7 @@ var Fs = class {
 	async beforeRoot() {
 		if (!this.ours) return;
 		let { json: e } = this.parser;
-		Object.assign(e, await rs(e, (e, t) => this.read(e, t))), this.scene = ei(e);
+		Object.assign(e, await is(e, (e, t) => this.read(e, t))), this.scene = ei(e);
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -4010,25 +4010,25 @@ var Fs = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (!t) return;
-		let n = Is(e, this.parser), [r] = n;
+		let n = Ls(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		ss(r.geometry, t);
+		cs(r.geometry, t);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ae(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await cs(t.mesh, i);
+		}, a = t.mesh && await ls(t.mesh, i);
 		if (a) {
 			r.geometry.dispose();
 			for (let e of n) e.geometry = a;
 		}
 		t.sheets && Kr(t.sheets, r.geometry);
 		let [o, s, c, l] = await Promise.all([
-			Promise.all(ti(t).map((e) => jo(e, i))),
+			Promise.all(ti(t).map((e) => Mo(e, i))),
 			gi(t, i),
 			Ci(t, i),
 			Oi(t, i)
-		]), u = s.filter((e, n) => !t.heldOut[n]), d = new vs(Float64Array.from(u.flatMap((e) => Mi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ai(t, s, f, d.grid, this.fileBytes(), ls(r.geometry)), m = {
+		]), u = s.filter((e, n) => !t.heldOut[n]), d = new ys(Float64Array.from(u.flatMap((e) => Mi(t, e.centre))), l, t.extent[1] === 0), f = o.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), p = Ai(t, s, f, d.grid, this.fileBytes(), us(r.geometry)), m = {
 			scene: t,
 			info: p,
 			meshes: n,
@@ -4039,7 +4039,7 @@ var Fs = class {
 			weights: d,
 			bytes: i
 		};
-		e.userData.eigenfield = new Ro(m, this.options);
+		e.userData.eigenfield = new zo(m, this.options);
 	}
 	fileBytes() {
 		if (this.options.stream) return this.options.stream.total;
@@ -4047,43 +4047,43 @@ var Fs = class {
 		return e.KHR_binary_glTF?.header?.length ?? t.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Is(e, t) {
+function Ls(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Ls(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Rs(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Ls(e) {
+function Rs(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Rs(e, t = {}) {
+async function zs(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Go(), i = new AbortController(), a = () => {
+	let r = new Ko(), i = new AbortController(), a = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", a);
-	let o = Vs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
+	let o = Hs(e, r, i.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", a));
 	try {
-		let e = await Yo(r);
+		let e = await Xo(r);
 		if (!$r(e.json)) return {
-			gltf: await Bs(r, e, o),
+			gltf: await Vs(r, e, o),
 			field: null
 		};
-		let i = await zs(r, e, t);
+		let i = await Bs(r, e, t);
 		n?.throwIfAborted();
 		let a = i.userData.eigenfield;
 		return {
 			gltf: i,
-			field: a instanceof Ro ? a : null
+			field: a instanceof zo ? a : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), oe(e);
 	}
 }
-async function zs(e, t, n) {
+async function Bs(e, t, n) {
 	let r = new re(), i = t.binary();
 	i.catch(() => void 0);
 	let a = {
@@ -4093,12 +4093,12 @@ async function zs(e, t, n) {
 			return e.read(r, r + n);
 		}
 	};
-	return r.register((e) => new Fs(e, {
+	return r.register((e) => new Is(e, {
 		...n,
 		stream: a
 	})), r.parseAsync(t.text, "");
 }
-async function Bs(e, t, n) {
+async function Vs(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -4108,25 +4108,25 @@ async function Bs(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Vs(e, t, n, r) {
+async function Hs(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Hs(e) : await Us(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? Us(e) : await Ws(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Ws(t.received, e);
+			throw n.aborted ? e : Gs(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Hs(e) {
+function Us(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Us(e, t) {
+async function Ws(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -4137,7 +4137,7 @@ async function Us(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Ws(e, t) {
+function Gs(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Ro as EigenField, Fs as EigenfieldPlugin, bo as SHEETS, j as SceneError, Qi as defaultMemory, Rs as loadEigenfield, Fi as novelCamera, zi as placeCamera };
+export { zo as EigenField, Is as EigenfieldPlugin, xo as SHEETS, j as SceneError, Qi as defaultMemory, zs as loadEigenfield, Fi as novelCamera, zi as placeCamera };
