@@ -53,11 +53,12 @@ def blend_texels(typing_context, texture, rows, columns, down, across):
             return total
 
         def texel(row, column):
-            pointer = builder.gep(data, [builder.zext(builder.add(row, column), whole)])
+            pointer = builder.gep(row, [builder.zext(column, whole)])
             return builder.load(builder.bitcast(pointer, vector.as_pointer()), align=4)
 
         horizontal, vertical = ([splat(builder, weight, vector) for weight in of] for of in (across, down))
-        lines = [weighted_sum([texel(row, column) for column in columns], horizontal) for row in rows]
+        starts = [builder.gep(data, [builder.zext(row, whole)]) for row in rows]  # so that no texel's address is summed
+        lines = [weighted_sum([texel(row, column) for column in columns], horizontal) for row in starts]
         total = weighted_sum(lines, vertical)
         lanes = [builder.extract_element(total, ir.Constant(ir.IntType(32), i)) for i in range(TEXEL_LANES)]
         return context.make_tuple(builder, signature.return_type, lanes)
