@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 import eigenfield as ef
 import measure
 from eigenfield import LightField
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding import EncodeOptions, plan
 from eigenfield.encoding import options as encode_options
@@ -203,7 +204,7 @@ class Fit:
         size = ready.atlas[1], ready.atlas[0]
         cameras, reference = views.rig.encoded_cameras, views.rig.encoded_reference
         return self._opened.enter_context(
-            open_fit_data(cameras, views.observations, ready.mesh, size, self.work, reference=reference)
+            open_fit_data(cameras, views.observations, Proxy(ready.mesh), size, self.work, reference=reference)
         )
 
     @cached_property

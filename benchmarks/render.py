@@ -29,7 +29,7 @@ from eigenfield.core.rig import Rig
 from eigenfield.core.scene import Scene
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.rendering import Renderer, delaunay_triangles, novel_camera, view_weights
-from eigenfield.rendering.software.kernels import TILE_TEXELS
+from eigenfield.rendering.software.kernels import TILE_AREA, TILE_TEXELS
 from eigenfield.rendering.software.tiles import compose, empty_layers, tile
 from eigenfield.runtime.jit import kernel
 from eigenfield.runtime.parallel import parallel_map, pieces, threads
@@ -144,7 +144,8 @@ def composition(scene: Scene) -> dict[str, Any]:
     omega = view_weights(scene, (0.31, -0.17)).blend(basis.weights)
     tiled = tile(plane.mean, plane.bases, np.ones((SIDE // TILE_TEXELS, SIDE // TILE_TEXELS), bool), 3)
     layers, tiles = empty_layers(SIDE, SIDE, 3), np.arange(len(tiled.places))
-    ours = best(lambda: compose(tiled, omega, tiles, layers))
+    opacity = np.zeros((1, TILE_AREA), np.float32)
+    ours = best(lambda: compose(tiled, omega, tiles, opacity, layers))
     values = basis.values().reshape(basis.count, -1)
     row = omega.astype(np.float32)
     numpy = best(lambda: plane.mean.reshape(-1) + row @ values)

@@ -12,12 +12,14 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import save
 from support.coded_scenes import coded_scene
 from support.scenes import bumpy_square, tiny_scene
+from support.soft_scenes import coded_soft_scene, soft_scene
 
 SHAPES = [(3, 3), (1, 2), (6, 2), (3, 0)]  # channels, eigen textures
 
 
 def main(folder: Path) -> None:
-    """Write every combination, one mesh that needs long indices, and a scene of which everything is coded."""
+    """Write every combination, one mesh that needs long indices, and scenes of which everything is coded or that have
+    sheets."""
     folder.mkdir(parents=True, exist_ok=True)
     for codec in ("png", "webp", "avif"):
         for channels, textures in SHAPES:
@@ -27,6 +29,8 @@ def main(folder: Path) -> None:
     save(large, folder / "large.glb", codec="png", overwrite=True)
     save(tiny_scene(cameras=2), folder / "line.glb", overwrite=True)
     save(coded_scene(), folder / "coded.glb", overwrite=True)
+    save(soft_scene(), folder / "sheets.glb", overwrite=True)
+    save(coded_soft_scene(), folder / "coded-sheets.glb", overwrite=True)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from eigenfield.coding.mesh import corner_kernels as mesh_corner_kernels
 from eigenfield.coding.mesh import face_kernels as mesh_kernels
 from eigenfield.coding.mesh import value_kernels as mesh_value_kernels
-from eigenfield.coding.mesh.coder import HEADER, decode_mesh, encode_mesh
+from eigenfield.coding.mesh.coder import HEADER, decode_mesh, encode_mesh, whole_faces
 from eigenfield.core.errors import FormatError
 from eigenfield.core.lattice import camera_lattice, world_lattice
 from eigenfield.core.mesh import Mesh
@@ -107,6 +107,61 @@ def test_vertices_without_a_face_and_faces_without_area_are_left_out():
     mesh = Mesh(vertices, faces, vertices[:, :2] / 8)
     back = decode_mesh(encode_mesh(mesh, world_lattice([0, 0, 0], 0.1))[0])
     assert len(back.faces) == 1 and len(back.vertices) == 3
+
+
+def parts_of(mesh, counts):
+    """Each sheet as a mesh of its own."""
+    return [replace(mesh, faces=faces) for faces in np.split(mesh.faces, np.cumsum(counts)[:-1])]
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.lists(st.tuples(st.integers(0, 2**31), st.integers(3, 30), st.integers(1, 40)), min_size=1, max_size=5),
+       st.booleans())  # fmt: skip
+def test_sheets_come_back_in_their_order_each_with_its_faces(soups, flat):
+    """Their vertices are at few points, so that most places of one sheet are at those of another."""
+    mesh, counts = coded_meshes.joined([coded_meshes.soup(*soup)[0] for soup in soups])
+    lattice = world_lattice([0, 0, 0], 1.0)
+    if flat:
+        mesh, lattice = (
+            replace(mesh, vertices=mesh.vertices + np.float32(5)),
+            camera_lattice(coded_meshes.CAMERA, 2.0, 0.002),
+        )
+    data, expected = encode_mesh(mesh, lattice, sheets=counts)
+    back = decode_mesh(data)
+    assert same(back, expected)
+    whole = whole_faces(mesh, lattice)
+    left = [int(part.sum()) for part in np.split(whole, np.cumsum(counts)[:-1])]
+    assert sum(left) == len(back.faces)
+    for before, after in zip(parts_of(mesh, counts), parts_of(back, left), strict=True):
+        assert np.array_equal(coded_meshes.corner_set(before, lattice, 12), coded_meshes.corner_set(after, lattice, 12))
+    owner = np.full(len(back.vertices), -1)
+    for sheet, after in enumerate(parts_of(back, left)):
+        assert np.isin(owner[after.faces], [-1, sheet]).all()
+        owner[after.faces] = sheet
+
+
+def test_a_sheet_on_another_costs_no_depth_of_either():
+    """At the same points of the lattice they are places of their own: neither moves."""
+    mesh, lattice = coded_meshes.relief(20, 24)
+    twice, counts = coded_meshes.joined([mesh, mesh])
+    data, back = encode_mesh(twice, lattice, sheets=counts)
+    alone = encode_mesh(mesh, lattice)[1]
+    for part in parts_of(back, counts):
+        assert np.array_equal(coded_meshes.face_set(part, lattice), coded_meshes.face_set(alone, lattice))
+    assert len(back.vertices) == 2 * len(alone.vertices) and len(data) > HEADER.size
+
+
+def test_one_sheet_has_the_bytes_of_a_mesh():
+    for mesh, lattice in (coded_meshes.relief(charts=3), coded_meshes.ball(), coded_meshes.soup()):
+        assert encode_mesh(mesh, lattice, sheets=(len(mesh.faces),))[0] == encode_mesh(mesh, lattice)[0]
+
+
+def test_sheets_that_do_not_divide_the_mesh_are_refused():
+    mesh, lattice = coded_meshes.ball()
+    with pytest.raises(ValueError, match="divide"):
+        encode_mesh(mesh, lattice, sheets=(len(mesh.faces) - 1,))
+    with pytest.raises(ValueError, match="share a vertex"):
+        encode_mesh(mesh, lattice, sheets=(100, len(mesh.faces) - 100))
 
 
 def test_the_same_mesh_gives_the_same_bytes():

@@ -17,7 +17,15 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import Target
 from eigenfield.encoding.fitted.colour import LUMA, split_matrix, to_rgb
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
-from eigenfield.encoding.fitted.kernels import add_laplacian, adjoint, forward, robust_weights, squares_of, target
+from eigenfield.encoding.fitted.kernels import (
+    SHARE_ONE,
+    add_laplacian,
+    adjoint,
+    forward,
+    robust_weights,
+    squares_of,
+    target,
+)
 from eigenfield.encoding.fitted.model import Block, PlaneModel, make_composer
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
 from eigenfield.encoding.fitted.passes import psnr_of, render_and_backproject
@@ -54,7 +62,7 @@ def whole(drawn):
 
 def middles(data, index):
     """(h, w, 2) of a footprint: of each pixel's points the middle, -1 where there is none."""
-    counts, points = data.footprint(index)
+    counts, points, _ = data.footprint(index)
     pixels = np.repeat(np.arange(counts.size), counts.reshape(-1))
     sums = np.stack([np.bincount(pixels, points[:, k], counts.size) for k in range(2)], axis=1)
     found = np.where(counts.reshape(-1, 1) > 0, sums / np.maximum(counts.reshape(-1, 1), 1), -1)
@@ -79,7 +87,7 @@ def world():
             camera, ViewWeights()
         )
         pictures.append(to_codes(whole(drawn)).astype(np.float32) / 255)
-    with open_fit_data(CAMERAS, InMemory(pictures), mesh, (SIDE, SIDE)) as data:
+    with open_fit_data(CAMERAS, InMemory(pictures), Proxy(mesh), (SIDE, SIDE)) as data:
         yield data, composer, model
 
 
@@ -96,7 +104,7 @@ def test_subsampled_pixels_are_some_of_all(world):
     with open_subsampled(data, 2) as some:
         assert len(some) == len(data)
         for index in range(len(data)):
-            (counts, points), (fewer, left) = data.footprint(index), some.footprint(index)
+            (counts, points, _), (fewer, left, _) = data.footprint(index), some.footprint(index)
             assert counts.sum() == len(points) and fewer.sum() == len(left)
             rows, columns = slice(7 * index // 2 % 2, None, 2), slice(index % 2, None, 2)
             codes = [one.observations.codes_of(index) for one in (some, data)]
@@ -109,29 +117,34 @@ def test_subsampled_pixels_are_some_of_all(world):
 
 
 @settings(max_examples=30, deadline=None)
-@given(st.integers(2, 40), st.integers(2, 40), st.integers(1, 3), st.integers(0, 2**31))
-def test_drawing_and_its_transpose(height, width, channels, seed):
+@given(st.integers(2, 40), st.integers(2, 40), st.integers(1, 3), st.booleans(), st.integers(0, 2**31))
+def test_drawing_and_its_transpose(height, width, channels, opaque, seed):
     random = np.random.default_rng(seed)
     size = (int(random.integers(2, 60)), int(random.integers(2, 60)))
     counts = random.choice(np.array([0, 1, 1, 2, 3, 4], np.uint8), (7, 9))
     points = random.uniform(0, 1, (int(counts.sum()), 2)).astype(np.float32) * np.float32([size[1] - 1, size[0] - 1])
+    shares = random.integers(0, SHARE_ONE // 4, 0 if opaque else len(points)).astype(np.uint16)
+    owners = np.repeat(np.arange(counts.size), counts.reshape(-1))
+    parts = np.where(counts == 1, 4, counts) / 4
+    if not opaque:
+        parts = np.bincount(owners, shares / SHARE_ONE, counts.size).reshape(counts.shape)
     covered = counts > 0
     texture = random.normal(size=(channels, height, width)).astype(np.float32)
     image = random.normal(size=(channels, 7, 9)).astype(np.float32) * covered
     codes = random.integers(0, 256, (7, 9)).astype(np.uint8)
     weight = codes / np.float32(255)
     drawn, back = np.zeros_like(image), np.zeros_like(texture)
-    forward(counts, points, size, texture, np.float32(1), drawn)
-    adjoint(counts, points, size, image, codes, back)
+    forward(counts, points, shares, size, texture, np.float32(1), drawn)
+    adjoint(counts, points, shares, size, image, codes, back)
     assert float((drawn * weight * image).sum()) == pytest.approx(float((texture * back).sum()), rel=1e-3, abs=1e-3)
     squares, total = squares_of(counts, drawn, codes)
     assert squares == pytest.approx(float((weight * drawn * drawn).sum()), rel=1e-4)
     assert total == pytest.approx(weight[covered].sum(), rel=1e-5)
     ones = np.zeros_like(drawn)
-    forward(counts, points, size, np.ones_like(texture), np.float32(1), ones)
-    np.testing.assert_allclose(ones, np.broadcast_to(np.where(counts == 1, 4, counts) / 4, ones.shape), atol=1e-5)
+    forward(counts, points, shares, size, np.ones_like(texture), np.float32(1), ones)
+    np.testing.assert_allclose(ones, np.broadcast_to(parts, ones.shape), atol=1e-5)
     aimed = np.zeros((3, 7, 9), np.float32)
-    target(counts, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
+    target(counts, points, shares, np.full((7, 9, 3), 200, np.uint8), RGB, aimed)
     np.testing.assert_allclose(aimed, 200 * ones[:1].repeat(3, axis=0), rtol=1e-4)
 
 
@@ -218,12 +231,12 @@ def test_a_place_that_looks_different_from_everywhere_gets_textures_of_its_own(w
     data, _, _ = world
     pictures = [data.observations.codes_of(i).astype(np.float32) / 255 for i in range(len(data))]
     lit = np.random.default_rng(4).uniform(0, 1, (len(data), 2, 2, 3)).astype(np.float32)
-    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as plain:
+    with open_fit_data(CAMERAS, InMemory(pictures), Proxy(bumpy_square(12)), (SIDE, SIDE)) as plain:
         for index, picture in enumerate(pictures):
             rows, columns = np.clip((middles(plain, index) // 8).astype(int) - 3, -1, 2).transpose(2, 0, 1)
             inside = (rows >= 0) & (rows < 2) & (columns >= 0) & (columns < 2)
             picture[inside] = lit[index][rows[inside], columns[inside]]
-    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glitter:
+    with open_fit_data(CAMERAS, InMemory(pictures), Proxy(bumpy_square(12)), (SIDE, SIDE)) as glitter:
         pixels = Pixels(glitter, glitter, glitter)
         alone = fit_plane(pixels, settings_of(), "test", 1)
         fit = fit_plane(pixels, replace(settings_of(), local=5), "test", 1)
@@ -248,7 +261,7 @@ def test_pixels_far_off_count_for_less(world):
         found = residual(data, model)
         return psnr_of(found.squares, found.pixels, 3)
 
-    with open_fit_data(CAMERAS, InMemory(pictures), bumpy_square(12), (SIDE, SIDE)) as glinting:
+    with open_fit_data(CAMERAS, InMemory(pictures), Proxy(bumpy_square(12)), (SIDE, SIDE)) as glinting:
         with with_robust_weights(glinting) as robust:
             found = reached(robust)
             weights = np.stack([robust.observations.weights(i) for i in range(9)])
@@ -306,7 +319,7 @@ def test_what_a_mask_hides_does_not_count(world):
     }  # fmt: skip
     for hidden, good in ((None, False), (mask, True)):
         masked = InMemory(pictures, [hidden if index == 4 else None for index in range(9)])
-        with open_fit_data(CAMERAS, masked, bumpy_square(12), (SIDE, SIDE)) as others:
+        with open_fit_data(CAMERAS, masked, Proxy(bumpy_square(12)), (SIDE, SIDE)) as others:
             found = render_and_backproject(others, model, composer=composer, **options)
             assert (psnr_of(found.squares[4:5], found.pixels[4:5], 3) > 45) == good
 

@@ -256,7 +256,7 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
         slim = simplify_proxy_rd(
             relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4, greys(photographs), lambda_, 1.0
         )
-        found = slim.value
+        found = slim.value.mesh
         sizes.append(slim.payloads.bytes)
         holes.append(hole_error(mesh, found, cameras, greys(photographs))[0])
         for camera in cameras if lambda_ < 1e-6 else ():
@@ -267,7 +267,7 @@ def test_a_relief_takes_fewer_bytes_the_dearer_they_are(virtual):
             assert np.median(np.abs(off)) < 0.01
     assert sizes[1] < 0.6 * sizes[0]
     # more bytes than without any choice only for what they close
-    closed = holes[0] < hole_error(mesh, plain.value, cameras, greys(photographs))[0]
+    closed = holes[0] < hole_error(mesh, plain.value.mesh, cameras, greys(photographs))[0]
     assert closed or sizes[0] <= 1.05 * plain.payloads.bytes
 
 
@@ -279,7 +279,7 @@ def test_other_meshes_keep_their_triangles():
     found = simplify_proxy_rd(
         relief_proxy(bent, cameras, DEPTH_ERROR_PX), cameras, 4, greys([np.zeros((48, 64))] * 9), 1.0, 1.0
     )
-    assert len(found.value.faces) == len(bent.faces) and found.payloads.bytes > 0
+    assert len(found.value.mesh.faces) == len(bent.faces) and found.payloads.bytes > 0
 
 
 def test_what_a_camera_sees_through_is_found():

@@ -7,6 +7,7 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import FormatError, OptionError
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.fit import Pixels, PlaneSettings, fit_plane
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data, open_subsampled, with_robust_weights
@@ -63,7 +64,7 @@ def test_mean_and_eigen_textures_of_the_same_photographs_twice_are_those_of_one_
 
 
 def opened(observations):
-    return open_fit_data(CAMERAS, observations, MESH, (SIDE, SIDE))
+    return open_fit_data(CAMERAS, observations, Proxy(MESH), (SIDE, SIDE))
 
 
 def test_observations_of_a_camera_share_its_footprint():
@@ -81,7 +82,7 @@ def test_observations_of_a_camera_share_its_footprint():
         with open_subsampled(data, 2) as some:
             assert len(some.footprints) == 3 and len(some) == 6
             for index in range(6):
-                counts, _ = some.footprint(index)
+                counts, _, _ = some.footprint(index)
                 assert counts.shape == some.observations.codes_of(index).shape[:2]
                 assert some.observations.mask(index).shape == counts.shape
 

@@ -10,7 +10,8 @@ import pytest
 from eigenfield.gltf import load, parts, save, validate
 from eigenfield.gltf.container import parse_glb
 
-CODED = Path(__file__).parents[1] / "data" / "coded-1.7.glb"
+DATA = Path(__file__).parents[1] / "data"
+CODED, SHEETS = DATA / "coded-1.7.glb", DATA / "coded-1.9.glb"
 EXPECTED = {  # counts, and of the rest the mean of the numbers and of their magnitudes
     "counts": (1600, 3042, 8),
     "vertices": [-4.98264947e-05, 0.353933736],
@@ -20,6 +21,7 @@ EXPECTED = {  # counts, and of the rest the mean of the numbers and of their mag
     "textures": [-0.00157594386, 0.0373939852],
     "weights": [1.78503493e-09, 0.822981111],
 }
+SHEETS_OPACITY = 0.631875951
 
 
 def test_a_coded_file_of_1_7_holds_what_it_held():
@@ -37,6 +39,22 @@ def test_a_coded_file_of_1_7_holds_what_it_held():
     for name, numbers in found.items():
         moments = [numbers.mean(dtype=np.float64), np.abs(numbers).mean(dtype=np.float64)]
         assert moments == pytest.approx(EXPECTED[name], rel=1e-6, abs=1e-9), name
+
+
+def test_sheets_of_1_9_are_what_they_were():
+    """Counts, order of the faces and the opacity, in a packed file."""
+    assert validate(SHEETS) == []
+    proxy = load(SHEETS).proxy
+    mesh, sheets = proxy.mesh, proxy.sheets
+    assert mesh.uv is not None and sheets is not None and sheets.faces == (242, 128, 98)
+    assert (mesh.vertices.shape, sheets.opacity.shape) == ((289, 3), (96, 128))
+    first = np.cumsum([0, *sheets.faces[:-1]])
+    centres = mesh.uv[mesh.faces].mean(axis=1, dtype=np.float64)
+    assert np.add.reduceat(centres, first) / np.array(sheets.faces)[:, None] == pytest.approx(
+        np.array([[1 / 6, 0.5], [0.5, 0.5], [5 / 6, 0.5]]), abs=1e-3
+    )
+    assert sheets.opacity.mean(dtype=np.float64) == pytest.approx(SHEETS_OPACITY, rel=1e-6)
+    assert sheets.opacity[:, :40].min() > 0.99 and sheets.opacity[48, 64] > 0.99 and sheets.opacity[2, 64] < 0.01
 
 
 def test_its_parts_keep_their_bytes_when_it_is_written_again(tmp_path):

@@ -33,6 +33,7 @@ from support.coded_scenes import coded
 from support.composed import encoded
 from support.scenes import bumpy_square, row_grid, tiny_scene
 from support.schema import extension_of
+from support.soft_scenes import soft_scene
 from support.surfaces import ball, relief
 
 
@@ -44,7 +45,7 @@ def coded_scene() -> EncodedScene:
 def test_rounding_moves_the_mesh_by_what_is_stated():
     mesh, cameras = bumpy_square(40), row_grid(9)
     made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
-    found = made.value
+    found = made.value.mesh
     assert len(found.faces) == len(mesh.faces) and made.payloads.bytes < mesh.vertices.nbytes / 4
     most = MESH_STEP_PX / 2 * np.sqrt(2) + DEPTH_ERROR_PX * 1.5
     for camera in cameras:
@@ -60,7 +61,7 @@ def test_a_relief_is_coded_on_the_pixels_it_was_made_on(virtual):
     mesh = relief(made_in, 0.5, virtual)
     assert relief_lattice(mesh, cameras, DEPTH_ERROR_PX) is not None
     made = coded_mesh(relief_proxy(mesh, cameras, DEPTH_ERROR_PX), cameras, 4)
-    found = made.value
+    found = made.value.mesh
     assert made.payloads.bytes < 1.6 * len(mesh.vertices)  # of 20 bytes a vertex and 12 a face
     for camera in cameras:
         before, after = camera.project(mesh.vertices)[0], camera.project(found.vertices)[0]
@@ -122,9 +123,23 @@ def test_a_mesh_around_the_camera_goes_onto_a_grid_in_the_world():
     mesh = bumpy_square(20)
     K = np.array([[50.0, 0, 24], [0, 50.0, 20], [0, 0, 1]])
     inside = (Camera(K, np.eye(3), np.zeros(3), 48, 40), Camera(K, np.eye(3), np.array([0.1, 0, 0.0]), 48, 40))
-    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value
+    found = coded_mesh(relief_proxy(mesh, inside, DEPTH_ERROR_PX), inside, 0).value.mesh
     apart = np.linalg.norm(mesh.vertices[:, None] - found.vertices[None], axis=2).min(axis=1)
     assert apart.max() < 0.01
+
+
+def test_sheets_keep_their_faces_and_one_of_no_size_is_left_out():
+    scene = soft_scene()
+    mesh, sheets, cameras = scene.proxy.mesh, scene.proxy.sheets, scene.rig.cameras
+    assert sheets is not None
+    made = coded_mesh(scene.proxy, cameras, 4).value
+    assert made.sheets is not None and made.sheets.faces == sheets.faces and made.sheets.opacity is sheets.opacity
+    vertices = mesh.vertices.copy()
+    middle = np.unique(mesh.faces[242:370])
+    vertices[middle] = vertices[middle[0]]
+    made = coded_mesh(Proxy(replace(mesh, vertices=vertices), None, sheets), cameras, 4).value
+    assert made.sheets is not None and made.sheets.faces == (242, 98) and len(made.mesh.faces) == 340
+    assert made.mesh.uv is not None and made.mesh.uv[made.mesh.faces[242:], 0].min() > 2 / 3
 
 
 def test_cameras_are_near_what_they_were():
@@ -185,9 +200,9 @@ def test_the_mesh_for_other_viewers_is_coarse_and_textured():
 
 def test_small_files_have_a_smaller_mesh_for_other_viewers():
     mesh = bumpy_square(40)
-    faces = [len(shown_mesh(mesh, coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
+    faces = [len(shown_mesh(Proxy(mesh), coded).faces) for coded in (100, 8_000, 16_000, 10**6)]
     assert faces == sorted(faces) and faces[0] <= 16 < faces[1] <= 32 < faces[2] <= 64 < faces[3] <= 128
-    assert len(shown_mesh(bumpy_square(2), 10).faces) == 2
+    assert len(shown_mesh(Proxy(bumpy_square(2)), 10).faces) == 2
 
 
 def test_small_files_have_a_smaller_picture_for_other_viewers(tmp_path):
@@ -308,3 +323,9 @@ def test_what_pictures_of_several_textures_share_is_said_once(tmp_path):
     assert len(basis["textures"]) > 1 and all("mimeType" not in entry for entry in basis["textures"])
     back = ef.load(path).appearance.planes[0].bases[0]
     np.testing.assert_array_equal(back.values(), scene.appearance.planes[0].bases[0].values())
+
+
+def test_sheets_have_more_triangles_for_other_viewers_where_they_can():
+    proxy = soft_scene().proxy
+    faces = [len(shown_mesh(proxy, coded).faces) for coded in (100, 10**6)]
+    assert faces[0] <= 24 and 128 < faces[1] <= 256

@@ -22,6 +22,7 @@ from support.coded_scenes import coded_scene, precise_scene
 from support.glb_surgery import DOCUMENT, changed, ours, outcome
 from support.scenes import tiny_scene
 from support.schema import SCHEMA, extension_of, violation
+from support.soft_scenes import soft_scene
 
 DEFINITIONS = SCHEMA["$defs"]
 BASIS = ("planes", 0, "bases", 0)
@@ -38,6 +39,7 @@ def files(good):
         b"video", (240, 320), np.arange(25)[::-1].copy(), (0.01, 0.02), full_chroma=True, smooth_edges=True
     )
     made["coded"] = encode_scene(coded)
+    made["sheets"] = encode_scene(soft_scene(), codec="webp")
     made |= {name: encode_scene(coded_scene(name)) for name, codec in CODECS.items() if codec.kind == "weights"}
     made["precise"] = encode_scene(precise_scene())
     still = tiny_scene(3, 2, cameras=3)
@@ -122,6 +124,16 @@ WRONG = [
     ("precise", ("toRGB", 0), 1e4),
     ("precise", ("planes", 0, "bases", 0, "corner"), [-1, 0]),
     ("precise", ("planes", 0, "bases", 0, "grid"), [0, 128]),
+    ("sheets", ("sheets",), []),
+    ("sheets", ("sheets", "faces"), MISSING),
+    ("sheets", ("sheets", "faces"), []),
+    ("sheets", ("sheets", "faces"), [1] * 33),
+    ("sheets", ("sheets", "faces", 1), 0),
+    ("sheets", ("sheets", "opacity"), MISSING),
+    ("sheets", ("sheets", "opacity", "bufferView"), MISSING),
+    ("sheets", ("sheets", "opacity", "size"), MISSING),
+    ("sheets", ("sheets", "opacity", "mimeType"), MISSING),
+    ("sheets", ("sheets", "opacity", "bits"), 10),
     ("png", ("planes", 0, "bases"), MISSING),
     ("png", (*BASIS, "size"), [0, 32]),
     ("png", (*BASIS, "size"), [32, 32, 3]),
@@ -232,6 +244,8 @@ def test_limits_are_those_of_the_code():
     channels = limits.MAX_PLANES * limits.MAX_CHANNELS
     found = {
         "MAX_VIEWS": properties["needs"]["maxItems"],
+        "MAX_SHEETS": DEFINITIONS["sheets"]["properties"]["faces"]["maxItems"],
+        "MAX_TRIANGLES": DEFINITIONS["sheets"]["properties"]["faces"]["items"]["maximum"],
         "MAX_PLANES": properties["planes"]["maxItems"],
         "MAX_CHANNELS": plane["channels"]["maximum"],
         "MAX_BASES": plane["bases"]["maxItems"],
@@ -283,6 +297,7 @@ def test_the_document_names_the_same_keys():
         "The root extension": set(SCHEMA["properties"]),
         "packed": {"packed"},
         "stream": keys_of("codedMesh"),
+        "sheets": keys_of("sheets"),
         "plane": keys_of("plane"),
         "basis": keys_of("basis"),
         "picture": (keys_of("mean") | keys_of("texture")) - stream,
@@ -292,7 +307,7 @@ def test_the_document_names_the_same_keys():
         "residual": keys_of("residual") - stream,
     }
     text = DOCUMENT.read_text(encoding="utf-8")
-    inner = [keys_of(name) for name in ("precision", "patternPart", "codedNames")]
+    inner = [keys_of(name) for name in ("precision", "opacity", "patternPart", "codedNames")]
     assert {key for keys in inner for key in keys if f"`{key}`" not in text and f'"{key}"' not in text} == set()
 
 

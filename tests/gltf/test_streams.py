@@ -11,20 +11,19 @@ from jsonschema import Draft202012Validator
 from eigenfield.coding.codecs import CODECS, Codec
 from eigenfield.core.errors import FormatError
 from eigenfield.core.payloads import Payload, weights_key
-from eigenfield.core.proxy import Proxy
 from eigenfield.gltf import encode_scene, parts, read_scene, streams, validate
 from eigenfield.gltf.streams import PLACES
 from eigenfield.gltf.strict_json import Value
 from support import glb_surgery, schema
 from support.coded_scenes import coded, precise_scene
 from support.glb_surgery import EXTENSION
-from support.scenes import bumpy_square, tiny_scene
+from support.soft_scenes import soft_scene
 
 
 @pytest.fixture(scope="module")
 def data():
     """A file with a stream at every place but the residual's, names with measured positions among them."""
-    plain = replace(tiny_scene(3, 4, 9, 64), proxy=Proxy(bumpy_square(40)))
+    plain = soft_scene()
     places = np.random.default_rng(4).normal(size=(9, 2, 24)).round(6)
     names = tuple("_".join(f"{x:.6f}" for x in place.ravel()) for place in places)
     return encode_scene(coded(replace(plain, rig=replace(plain.rig, names=names)), np.arange(9).reshape(3, 3)))
@@ -109,14 +108,14 @@ def test_a_new_codec_is_an_entry_in_the_table(data, tmp_path, monkeypatch):
     stream = weights.shape[1].to_bytes(4, "little") + weights.astype("<f4").tobytes()
     changed = replace(scene, payloads=scene.payloads | {weights_key(weights): [Payload("weights-raw", stream)]})
     with monkeypatch.context() as patch:
-        raw = Codec("weights", None, raw_weights, "weights-raw", "1.8", ("MAX_WEIGHTS",))
+        raw = Codec("weights", None, raw_weights, "weights-raw", "1.9", ("MAX_WEIGHTS",))
         patch.setitem(CODECS, "weights-raw", raw)
-        patch.setitem(streams.FEATURES, "weights-raw", "1.8")
+        patch.setitem(streams.FEATURES, "weights-raw", "1.9")
         patch.setattr(schema, "VALIDATOR", Draft202012Validator({}))  # which does not know it
         path.write_bytes(encode_scene(changed))
         extension = glb_surgery.split(path.read_bytes())[0]["extensions"][EXTENSION]
         assert extension["planes"][0]["bases"][0]["codedWeights"]["codec"] == "weights-raw"
-        assert extension["version"] == "1.8" and "codedWeights" not in extension["needs"]
+        assert extension["version"] == "1.9" and "codedWeights" not in extension["needs"]
         assert "weights-raw" in extension["needs"]
         assert validate(path) == [] and parts(path)["weights"] == len(stream)
         back = read_scene(path.read_bytes())

@@ -73,7 +73,7 @@ def test_parts_sum_to_the_file(tmp_path, codec):
     parts = scene_format.parts(path)
     assert parts["total"] == path.stat().st_size
     assert parts["total"] == sum(parts[name] for name in ("mean", "textures", "weights", "mesh", "other"))
-    assert parts.pop("residual") == 0
+    assert parts.pop("residual") == parts.pop("opacity") == 0
     assert parts["weights"] == 4 * 5 * 3
     assert parts["mesh"] == 36 * 20 + 50 * 3 * 2
     assert min(parts.values()) > 0

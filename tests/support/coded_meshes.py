@@ -70,6 +70,17 @@ def soup(seed=0, vertices=40, faces=90):
     return mesh, world_lattice([0, 0, 0], 1.0)
 
 
+def joined(meshes):
+    """One mesh of several, which share no vertex; and the number of faces of each."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    faces = [mesh.faces + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
+    whole = Mesh(
+        np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces).astype(np.int32),
+        np.concatenate([mesh.uv for mesh in meshes]),
+    )  # fmt: skip
+    return whole, tuple(len(mesh.faces) for mesh in meshes)
+
+
 def face_set(mesh, lattice):
     """(m, 9) whole numbers: the lattice points of every face's corners, the least first, in order; without faces that
     have two corners at one point."""

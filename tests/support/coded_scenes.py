@@ -15,9 +15,8 @@ from eigenfield.coding.codecs import encoder
 from eigenfield.coding.pictures.pictures_10bit import svt_coder
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.payloads import Affine, Payload, Payloads, PicturePayload, mean_key
-from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene, Scene
-from eigenfield.encoding.fitted.code_planes import code_basis, coded_plane, with_weights
+from eigenfield.encoding.fitted.code_planes import code_basis, code_opacity, coded_plane, with_weights
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.gltf import save
 from eigenfield.proxy.relief.find_lattice import relief_proxy
@@ -42,15 +41,21 @@ def coded(plain: Scene, grid: np.ndarray, weights_codec: str = "weights-1") -> E
     (basis,) = plane.bases
     stream, weights = encoder(weights_codec)(basis.weights, 0.01, grid)
     textures = with_weights(code_basis(basis, STEP, svt_coder(8)), weights, Payload(weights_codec, stream))
-    mesh = coded_mesh(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR_PX), views.value, plain.rig.reference)
+    proxy = replace(relief_proxy(plain.proxy.mesh, views.value, DEPTH_ERROR_PX), sheets=plain.proxy.sheets)
+    surface = coded_mesh(proxy, views.value, plain.rig.reference)
     made = coded_plane(plane.mean, (textures,), STEP, svt_coder(8))
+    proxy, payloads = surface.value, surface.payloads | views.payloads | made.payloads
+    if proxy.sheets is not None:
+        opacity = code_opacity(proxy.sheets.opacity, STEP, svt_coder(8))
+        proxy = replace(proxy, sheets=replace(proxy.sheets, opacity=opacity.value))
+        payloads |= opacity.payloads
     scene = replace(
         plain,
-        proxy=Proxy(mesh.value),
+        proxy=proxy,
         rig=replace(plain.rig, cameras=views.value),
         appearance=replace(plain.appearance, planes=(made.value,)),
     )
-    return encoded(scene, mesh.payloads | views.payloads | made.payloads)
+    return encoded(scene, payloads)
 
 
 def fitted_scene() -> EncodedScene:

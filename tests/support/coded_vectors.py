@@ -35,6 +35,9 @@ def streams():
     yield "mesh-fine", encode_mesh(*coded_meshes.relief(step=0.25, charts=2, astray=0.2), fine=2)[0]
     yield "mesh-ball", encode_mesh(*coded_meshes.ball())[0]
     yield "mesh-soup", encode_mesh(*coded_meshes.soup(7, 60, 150))[0]
+    relief, lattice = coded_meshes.relief()
+    twice, counts = coded_meshes.joined([relief, relief])
+    yield "mesh-sheets", encode_mesh(twice, lattice, sheets=counts)[0]
     before = read_scene(BEFORE.read_bytes())
     yield "mesh-before", before.payloads[mesh_key(before.proxy.mesh)][0].data
     yield "weights-line", code_weights(smooth_weights(4, noise=0.3), 0.05)[0]

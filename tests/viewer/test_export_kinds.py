@@ -6,6 +6,7 @@ import base64
 import json
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pycolmap
 import pytest
@@ -25,6 +26,7 @@ from eigenfield.viewer.exports.maps import camera_maps, mean_map
 from eigenfield.viewer.exports.quilt import quilt_views
 from support.composed import layered_scene
 from support.scenes import tiny_scene
+from support.soft_scenes import soft_scene
 
 
 def pixels(path):
@@ -163,6 +165,38 @@ def test_maps_are_equation_8_over_the_whole_atlas(scene, tmp_path):
         for row, file in enumerate(listing.values()):
             expected = scene.appearance.planes[0].mean + np.tensordot(basis.weights[row], basis.values(), 1)
             np.testing.assert_allclose(pixels(folder / file), expected.clip(0, 1), atol=0.51 / 255)
+
+
+def test_sheets_have_their_opacity_as_alpha(tmp_path):
+    scene = soft_scene()
+    exports.write_obj(scene, tmp_path / "a.obj")
+    exports.write_obj_folder(scene, tmp_path / "obj")
+    exports.write_maps(scene, tmp_path / "maps")
+    listing = json.loads((tmp_path / "maps" / "eigenfield.json").read_text(encoding="utf-8"))
+    maps = [pixels(tmp_path / "maps" / file) for file in listing["maps"].values()]
+    means = [pixels(tmp_path / "a.png"), pixels(tmp_path / "obj" / "mean.png")]
+    assert np.array_equal(*means) and {one.shape for one in (*maps, *means)} == {(96, 96, 4)}
+    for one in (*maps, *means):
+        np.testing.assert_array_equal(one[..., 3], means[0][..., 3])
+    np.testing.assert_allclose(means[0][..., :3], mean_map(scene).clip(0, 1), atol=0.51 / 255)
+    opacity = cv2.resize(scene.proxy.sheets.opacity, (96, 96))  # of 128 columns
+    np.testing.assert_allclose(means[0][..., 3], opacity, atol=0.15)
+    assert np.abs(means[0][..., 3] - opacity).mean() < 0.01
+    assert "map_d a.png" in (tmp_path / "a.mtl").read_text() and "map_d" in (tmp_path / "obj" / "mesh.mtl").read_text()
+    assert trimesh.load(tmp_path / "a.obj", process=False).faces.shape == (468, 3)
+    grey = soft_scene(1)
+    exports.write_obj(grey, tmp_path / "grey.obj")
+    np.testing.assert_array_equal(pixels(tmp_path / "grey.png")[..., 0], pixels(tmp_path / "grey.png")[..., 2])
+
+
+def test_what_sheets_hardly_show_has_no_points(tmp_path):
+    scene = soft_scene()
+    exports.write_colmap(RenderJob(scene), tmp_path / "all")
+    points = np.array(
+        [point.xyz for point in pycolmap.Reconstruction(tmp_path / "all" / "sparse" / "0").points3D.values()]
+    )
+    disc = points[np.abs(points[:, 2] - 0.1) < 0.15]
+    assert len(points) > 1000 and len(disc) > 100 and (np.hypot(*disc[:, :2].T) < 0.9).all()
 
 
 def test_a_quilt_begins_at_the_bottom_left_with_the_leftmost_view(scene, tmp_path):

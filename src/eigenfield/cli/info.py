@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from eigenfield.gltf.layout import FileLayout
     from eigenfield.gltf.layout_planes import PlaneLayout
+    from eigenfield.gltf.layout_sheets import SheetsLayout
 
 AXES_TEXT = (
     "cameras are world-to-camera with x right, y down, z forward; lengths are in the capture's own unit; "
@@ -57,7 +58,11 @@ def _facts(layout: FileLayout, parts: dict[str, int]) -> dict[str, Any]:
         "generator": layout.generator,
         "bytes": parts,
         "planes": [_plane_facts(entry) for entry in layout.planes or ()],
-        "proxy": {"vertices": len(mesh.vertices), "triangles": len(mesh.faces)},
+        "proxy": {
+            "vertices": len(mesh.vertices),
+            "triangles": len(mesh.faces),
+            "sheets": None if layout.sheets is None else _sheet_facts(layout.sheets),
+        },
         "cameras": {
             "count": len(cameras.names),
             "encoded": cameras.encoded,
@@ -90,6 +95,14 @@ def _colour_facts(colours: NDArray[np.float32] | None) -> dict[str, Any] | None:
     }
 
 
+def _sheet_facts(sheets: SheetsLayout) -> dict[str, Any]:
+    opacity = sheets.opacity
+    return {
+        "triangles": list(sheets.faces),
+        "opacity": {"size": [opacity.width, opacity.height], "type": opacity.mime},
+    }
+
+
 def _plane_facts(plane: PlaneLayout) -> dict[str, Any]:
     mean = plane.mean
     return {
@@ -118,7 +131,13 @@ def _text_lines(facts: dict[str, Any]) -> list[str]:
         for basis in plane["bases"]:
             types = f", {', '.join(basis['types'])}" if basis["types"] else ""
             lines.append(f"textures      {basis['textures']} of {_size(basis['size'])}, {channels}{types}")
-    lines.append(f"proxy         {facts['proxy']['vertices']:,} vertices, {facts['proxy']['triangles']:,} triangles")
+    proxy = facts["proxy"]
+    lines.append(f"proxy         {proxy['vertices']:,} vertices, {proxy['triangles']:,} triangles")
+    if proxy["sheets"] is not None:
+        triangles, opacity = proxy["sheets"]["triangles"], proxy["sheets"]["opacity"]
+        counts = ", ".join(f"{count:,}" for count in triangles)
+        lines.append(f"sheets        {len(triangles)}, back to front of {counts} triangles; "
+                     f"opacity {_size(opacity['size'])}, {opacity['type']}")  # fmt: skip
     cameras = facts["cameras"]
     sizes = ", ".join(f"{entry['count']} of {_size(entry['size'])}" for entry in cameras["sizes"])
     lines.append(f"cameras       {sizes}; {cameras['encoded']} encoded, {len(cameras['held_out'])} held out")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 EXTENSION = "EIGENFIELD_eigen_textures"
-VERSION = "1.8"  # of the format without its codecs; a reader takes any 1.x
+VERSION = "1.9"  # of the format without its codecs; a reader takes any 1.x
 
 MAX_FILE = 2**32 - 1  # bytes: glTF's length is a uint32
 MAX_JSON = 64 * 2**20  # bytes of the JSON chunk
@@ -29,6 +29,7 @@ MAX_NAME = 1_024  # characters of a camera's name
 MAX_NAMES = 2**25  # bytes of coded names, inflated
 MAX_VERTICES = 2**26
 MAX_TRIANGLES = 2**27
+MAX_SHEETS = 32
 MAX_WEIGHTS = 2**28
 
 MAX_GAIN = 1_000  # of a camera's colours, and at least its reciprocal

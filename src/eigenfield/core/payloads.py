@@ -51,11 +51,11 @@ class Payload:
 
 @dataclass(frozen=True, eq=False)
 class PicturePayload(Payload):
-    """A coded picture, of a mean or of eigen textures.
+    """A coded picture, of a mean, of eigen textures or of an opacity.
 
     Attributes:
         count: Eigen textures in it, one below the other.
-        affine: From codes to numbers, for each channel of each texture; None: code / 255.
+        affine: From codes to numbers, for each channel of each texture; None: the largest code is 1.
         precision: Of a mean, a picture of the precision with which each place is coded; None: uniform.
     """
 
@@ -130,6 +130,11 @@ def mean_key(mean: NDArray[np.float32]) -> Key:
     return _key("mean", mean)
 
 
+def opacity_key(opacity: NDArray[np.float32]) -> Key:
+    """The key of the opacity (H, W) of sheets."""
+    return _key("opacity", opacity)
+
+
 def textures_key(basis: Basis) -> Key:
     """The key of a basis's eigen textures, and of scale and zero of their codes."""
     return _key("textures", basis.textures, basis.scale, basis.zero)
@@ -140,15 +145,15 @@ def weights_key(weights: NDArray[np.float32]) -> Key:
     return _key("weights", weights)
 
 
-def preview_key(means: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmonised: bool) -> Key:
-    """The key of the picture for other viewers, which is made of the means.
+def preview_key(sources: Sequence[Key], to_rgb: NDArray[np.float32] | None, harmonised: bool) -> Key:
+    """The key of the picture for other viewers, which is made of the means and the opacity of sheets.
 
     Args:
-        means: Their keys.
+        sources: Their keys.
         to_rgb: The scene's.
         harmonised: Whether the scene has `colours`.
     """
-    digests = np.frombuffer(b"".join(digest for _, digest in means), np.uint8)
+    digests = np.frombuffer(b"".join(digest for _, digest in sources), np.uint8)
     return _key("preview", digests, np.array([harmonised]), *(() if to_rgb is None else (to_rgb,)))
 
 

@@ -128,8 +128,8 @@ class EncodedScene(Scene):
     unchanged, and encodes parts that were edited.
 
     Attributes:
-        payloads: Of mesh, cameras, means, eigen textures, weights and the picture for other viewers, each under the key
-            of its content. Parts that are not coded, or that a file holds as plain numbers, have none.
+        payloads: Of mesh, opacity, cameras, means, eigen textures, weights and the picture for other viewers, each
+            under the key of its content. Parts that are not coded, or that a file holds as plain numbers, have none.
     """
 
     payloads: Payloads = field(default_factory=Payloads)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from eigenfield.core.mesh import Mesh
     from eigenfield.core.observations import CalibratedObservations
     from eigenfield.core.progress import Progress
+    from eigenfield.core.proxy import Proxy
     from eigenfield.core.scene import EncodedScene
 
 __all__ = ["EncodeOptions", "Target", "encode"]
@@ -24,7 +25,7 @@ log = logging.getLogger("eigenfield.encode")
 
 def encode(
     capture: CalibratedObservations,
-    proxy: str | os.PathLike[str] | Mesh,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
     options: EncodeOptions | None = None,
     *,
     work: str | os.PathLike[str] | None = None,
@@ -37,7 +38,7 @@ def encode(
 
     Args:
         capture: Photographs with their cameras.
-        proxy: A triangle mesh in the cameras' world, or its file.
+        proxy: A triangle mesh in the cameras' world, its file, or a proxy with sheets.
         options: What is asked for; None for the defaults.
         work: Folder for scratch files, up to 17 bytes a pixel or 4 bytes x channels x cameras x texels.
         progress: Reports each stage.

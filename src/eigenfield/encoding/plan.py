@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Appearance, Plane
 from eigenfield.core.camera import Camera
+from eigenfield.core.errors import OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations, cameras_of
 from eigenfield.core.payloads import Coded, Payloads, mesh_key, size_of
@@ -23,7 +24,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene
 from eigenfield.core.version import __version__
-from eigenfield.encoding.fitted.planes import byte_lambda
+from eigenfield.encoding.fitted.planes import byte_lambda, coded_opacity
 from eigenfield.encoding.fitted.surface import fit_surface
 from eigenfield.encoding.geometry.coded import DEPTH_ERROR_PX, coded_cameras, coded_mesh
 from eigenfield.encoding.geometry.simplify_relief import simplify_proxy_rd
@@ -45,13 +46,13 @@ class PreparedProxy:
     """A proxy with an atlas, before it is made ready for a quality.
 
     Attributes:
-        given: The file or the mesh as it came.
+        given: The file, the mesh or the proxy as it came.
         proxy: With UVs and, if it is a relief, its lattice; for a fit its vertices are where the photographs agree.
         views: The cameras that it was prepared for.
         by_quality: Whether another quality needs it prepared anew, with other triangles and charts.
     """
 
-    given: str | os.PathLike[str] | Mesh
+    given: str | os.PathLike[str] | Mesh | Proxy
     proxy: Proxy
     views: CaptureViews
     by_quality: bool
@@ -66,8 +67,8 @@ class EncodePlan:
         options: The resolved options for one quality, without a target.
         prepared: The proxy that the same plan at another quality starts from.
         views: The cameras as the file keeps them, and which of them are encoded.
-        mesh: The proxy as the file keeps it.
-        payloads: The coded mesh and cameras; empty without a fit.
+        proxy: The proxy as the file keeps it.
+        payloads: The coded mesh, opacity and cameras; empty without a fit.
         atlas: Width and height of its atlas.
     """
 
@@ -75,9 +76,14 @@ class EncodePlan:
     options: EncodeOptions
     prepared: PreparedProxy
     views: CaptureViews
-    mesh: Mesh
+    proxy: Proxy
     payloads: Payloads
     atlas: tuple[int, int]
+
+    @property
+    def mesh(self) -> Mesh:
+        """The proxy's mesh."""
+        return self.proxy.mesh
 
     @property
     def mesh_bytes(self) -> int:
@@ -133,7 +139,7 @@ class EncodePlan:
             },
         }
         return EncodedScene(
-            proxy=Proxy(self.mesh),
+            proxy=replace(self.proxy, lattice=None),
             rig=rig,
             appearance=Appearance(planes=planes, colours=colours, to_rgb=to_rgb),
             settings=settings,
@@ -145,16 +151,18 @@ class EncodePlan:
 
 def plan_encoding(
     capture: CalibratedObservations,
-    proxy: str | os.PathLike[str] | Mesh,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
     asked: EncodeOptions,
     work: Path | None = None,
     progress: Progress | None = None,
 ) -> EncodePlan:
     """Cameras and proxy as a file keeps them: for a fit, the surface fitted to the photographs, and both as coded.
 
+    Sheets are taken as they are: their surfaces were fitted to the photographs together with their opacity.
+
     Args:
         capture: Photographs and cameras.
-        proxy: A mesh, or its file.
+        proxy: A mesh, its file, or a proxy with sheets.
         asked: The options; a target is planned for at its preset's quality.
         work: Folder for scratch files.
         progress: Reports each stage.
@@ -177,25 +185,38 @@ def _simplifies(options: EncodeOptions) -> bool:
 
 
 def _prepare(
-    proxy: str | os.PathLike[str] | Mesh,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
     views: CaptureViews,
     options: EncodeOptions,
     work: Path | None,
     progress: Progress | None,
 ) -> PreparedProxy:
     """The proxy with an atlas and as many triangles as asked for; for a fit, moved to where the photographs agree."""
-    cameras = views.rig.cameras
+    cameras, given = views.rig.cameras, proxy
+    if isinstance(proxy, Proxy):
+        if proxy.sheets is not None:
+            return _prepare_sheets(proxy, views, options)
+        proxy = proxy.mesh
     triangles = _triangles_by_pictures(views, options) if _simplifies(options) else options.triangles
     mesh = prepare_proxy(proxy, cameras, triangles=triangles, progress=progress)
     _warn_of_rounding(views.capture.cameras, cameras, mesh)
     if options.fit == "none":
-        return PreparedProxy(proxy, Proxy(mesh), views, by_quality=False)
+        return PreparedProxy(given, Proxy(mesh), views, by_quality=False)
     lattice, side = relief_lattice(mesh, cameras, DEPTH_ERROR_PX), atlas_side(mesh, cameras[views.rig.reference], 1.0)
     mesh = fit_surface(mesh, lattice, views.rig.encoded_cameras, views.observations, side, work, progress)
     measured = views.rig.encoded_cameras if _simplifies(options) else cameras
     fitted = relief_proxy(mesh, measured, DEPTH_ERROR_PX)
     by_quality = _simplifies(options) and lattice is None  # a relief keeps its atlas
-    return PreparedProxy(proxy, fitted, views, by_quality)
+    return PreparedProxy(given, fitted, views, by_quality)
+
+
+def _prepare_sheets(proxy: Proxy, views: CaptureViews, options: EncodeOptions) -> PreparedProxy:
+    """Sheets as they came. OptionError `sheets`: texture maps were asked for, which know one surface."""
+    if options.fit == "none":
+        message = "texture maps of several sheets, which only a fit can make"
+        raise OptionError("sheets", message, remedy="leave out --fit none, or use another --surface")
+    _warn_of_rounding(views.capture.cameras, views.rig.cameras, proxy.mesh)
+    return PreparedProxy(proxy, proxy, views, by_quality=False)
 
 
 def _triangles_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], int | None]:
@@ -218,11 +239,11 @@ def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan
     options, views, proxy = _for_one_quality(asked), prepared.views, prepared.proxy
     atlas = _atlas_size(options, proxy.mesh, views.rig)
     if options.fit == "none":
-        return EncodePlan(asked, options, prepared, views, proxy.mesh, Payloads(), atlas)
-    mesh = _coded_mesh(proxy, views, options, atlas)
-    cameras = coded_cameras(views.rig.cameras, mesh.value, grid_of(views.coordinates))
+        return EncodePlan(asked, options, prepared, views, Proxy(proxy.mesh), Payloads(), atlas)
+    made = _coded_proxy(proxy, views, options, atlas)
+    cameras = coded_cameras(views.rig.cameras, made.value.mesh, grid_of(views.coordinates))
     views = views.with_cameras(cameras.value)
-    return EncodePlan(asked, options, prepared, views, mesh.value, mesh.payloads | cameras.payloads, atlas)
+    return EncodePlan(asked, options, prepared, views, made.value, made.payloads | cameras.payloads, atlas)
 
 
 def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]:
@@ -237,17 +258,29 @@ def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]
     return side, side
 
 
-def _coded_mesh(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Mesh]:
-    """The mesh as a fitted file keeps it.
+def _coded_proxy(proxy: Proxy, views: CaptureViews, options: EncodeOptions, atlas: tuple[int, int]) -> Coded[Proxy]:
+    """The proxy as a fitted file keeps it.
 
     A relief is simplified by rate and distortion, unless a number of triangles was asked for.
     """
+    if proxy.sheets is not None:
+        return _coded_sheets(proxy, views, resolved_value(options.quality))
     if not _simplifies(options):
         return coded_mesh(proxy, views.rig.cameras, views.rig.reference)
     rig = views.rig
     texels = float(np.prod(atlas)) * texels_per_pixel(proxy.mesh, rig.cameras[rig.reference]) ** 2
     lambda_ = byte_lambda(resolved_value(options.quality))
     return simplify_proxy_rd(proxy, rig.encoded_cameras, rig.encoded_reference, views.observations, lambda_, texels)
+
+
+def _coded_sheets(proxy: Proxy, views: CaptureViews, quality: int) -> Coded[Proxy]:
+    """A proxy with sheets as a fitted file keeps it: the mesh as it came, and their opacity."""
+    made = coded_mesh(proxy, views.rig.cameras, views.rig.reference)
+    sheets = made.value.sheets
+    assert sheets is not None
+    opacity = coded_opacity(sheets.opacity, quality)
+    coded = replace(made.value, sheets=replace(sheets, opacity=opacity.value))
+    return Coded(coded, made.payloads | opacity.payloads)
 
 
 def _scale(capture: CalibratedObservations, asked: float | None) -> dict[str, float]:

@@ -14,6 +14,7 @@ from eigenfield.core.payloads import (
     cameras_key,
     mean_key,
     mesh_key,
+    opacity_key,
     preview_key,
     size_of,
     textures_key,
@@ -25,8 +26,8 @@ from eigenfield.runtime.parallel import parallel_map
 
 @dataclass(frozen=True, eq=False)
 class CachedPayloads:
-    """Payloads by part, named by its place in a scene: `mesh`, `cameras`, `planes[0].mean`,
-    `planes[0].bases[1].weights`. One more is `preview`, the picture for other viewers, which is made of the means.
+    """Payloads by part, named by its place in a scene: `mesh`, `cameras`, `opacity`,
+    `planes[0].mean`, `planes[0].bases[1].weights`. One more is `preview`, the picture for other viewers.
 
     Attributes:
         payloads: Of each part that has not changed.
@@ -63,8 +64,10 @@ def cached_payloads(scene: Scene) -> CachedPayloads:
             found[part] = scene.payloads[key]
         elif left[key[0]]:
             lost[part] = size_of(scene.payloads[left[key[0]].popleft()])
-    means = [keys[f"planes[{p}].mean"] for p in range(len(scene.appearance.planes))]
-    preview = scene.payloads.get(preview_key(means, scene.appearance.to_rgb, scene.appearance.colours is not None))
+    made_of = [f"planes[{p}].mean" for p in range(len(scene.appearance.planes))]
+    made_of += ["opacity"] if "opacity" in keys else []
+    sources = [keys[part] for part in made_of]
+    preview = scene.payloads.get(preview_key(sources, scene.appearance.to_rgb, scene.appearance.colours is not None))
     return CachedPayloads(found if preview is None else {**found, "preview": preview}, lost)
 
 
@@ -73,6 +76,8 @@ def _parts(scene: Scene) -> dict[str, Callable[[], Key]]:
     found: dict[str, Callable[[], Key]] = {
         "mesh": partial(mesh_key, scene.proxy.mesh), "cameras": partial(cameras_key, scene.rig.cameras)
     }  # fmt: skip
+    if scene.proxy.sheets is not None:
+        found["opacity"] = partial(opacity_key, scene.proxy.sheets.opacity)
     for p, plane in enumerate(scene.appearance.planes):
         found[f"planes[{p}].mean"] = partial(mean_key, plane.mean)
         for b, basis in enumerate(plane.bases):

@@ -8,10 +8,12 @@ from typing import TypeVar
 import numpy as np
 
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.proxy import Proxy
 
 T = TypeVar("T")
 
 COARSE_TRIANGLES = (128, 64, 32, 16)  # with fewer than the first the rim of Tarot's ball comes apart
+SHEETS_COARSE_TRIANGLES = (256, *COARSE_TRIANGLES)  # with 128 the floor of Fern, of eight sheets, is not there
 PREVIEW_MAX_BYTES_RATIO = 0.1  # of the mesh to what is coded, and of the picture
 COARSE_MAX_EXCESS_RATIO = 1.5  # of the triangles of a simplified mesh to those asked for; beyond, it is clustered
 
@@ -31,9 +33,10 @@ def first_affordable(ways: Iterable[T], size: Callable[[T], int], coded: int) ->
     return found
 
 
-def shown_mesh(mesh: Mesh, coded: int) -> Mesh:
+def shown_mesh(proxy: Proxy, coded: int) -> Mesh:
     """The mesh in as many triangles as `coded`, the bytes of the coded parts, allow."""
-    return first_affordable((coarse_mesh(mesh, triangles) for triangles in COARSE_TRIANGLES), _plain_bytes, coded)
+    counts = COARSE_TRIANGLES if proxy.sheets is None else SHEETS_COARSE_TRIANGLES
+    return first_affordable((coarse_mesh(proxy.mesh, triangles) for triangles in counts), _plain_bytes, coded)
 
 
 def _plain_bytes(mesh: Mesh) -> int:

@@ -11,7 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures import quantise
-from eigenfield.coding.pictures.pictures_8bit import encode_preview, encode_small_preview
+from eigenfield.coding.pictures.pictures_8bit import (
+    PREVIEW_MAX_SIDE_TEXELS,
+    encode_masked_preview,
+    encode_preview,
+    encode_small_preview,
+)
 from eigenfield.coding.pictures.stacking import DEFAULT_CODEC, encode, stacked_picture
 from eigenfield.core.appearance import Basis, Plane
 from eigenfield.core.payloads import Affine, Payload, PicturePayload, size_of
@@ -21,6 +26,7 @@ from eigenfield.gltf.cached import CachedPayloads
 from eigenfield.gltf.coarse import first_affordable
 from eigenfield.runtime.parallel import tracked_map
 
+MASKED_PREVIEWS = (128, 64), (96, 32), (64, 32), (48, 16)  # texels a side and colours, of sheets
 SMALL_PREVIEWS = (128, 50), (96, 40), (64, 30), (48, 30)  # texels a side and quality, beside a fit's pictures
 MEAN_QUALITY_RATIO = 0.3  # of the mean's distance to quality 100 to the textures': there a byte gains as much (Tarot)
 
@@ -45,25 +51,32 @@ class ScenePictures:
     Attributes:
         preview: For `images[0]`; None where the first plane's mean itself is shown.
         planes: Those of each plane.
+        opacity: Of sheets.
     """
 
     preview: Payload | None
     planes: list[PlanePictures]
+    opacity: PicturePayload | None
 
     @property
     def bytes(self) -> int:
-        """Of all planes."""
+        """Of all planes, and of the opacity."""
         return sum(self.sizes.values())
 
     @property
     def sizes(self) -> dict[str, int]:
         """Bytes by part, named as in `CachedPayloads`."""
         means = {f"planes[{p}].mean": len(plane.mean.data) for p, plane in enumerate(self.planes)}
-        return means | {
-            f"planes[{p}].bases[{b}].textures": size_of(pictures)
-            for p, plane in enumerate(self.planes)
-            for b, pictures in enumerate(plane.bases)
-        }
+        opacity = {} if self.opacity is None else {"opacity": len(self.opacity.data)}
+        return (
+            opacity
+            | means
+            | {
+                f"planes[{p}].bases[{b}].textures": size_of(pictures)
+                for p, plane in enumerate(self.planes)
+                for b, pictures in enumerate(plane.bases)
+            }
+        )
 
 
 def code_pictures(
@@ -79,7 +92,7 @@ def code_pictures(
         progress: Reports each picture.
     """
     fine, to_rgb = round(100 - MEAN_QUALITY_RATIO * (100 - quality)), scene.appearance.to_rgb
-    planned = []
+    planned, sheets = [], scene.proxy.sheets
     for p, plane in enumerate(scene.appearance.planes):
         one_unit = to_rgb is not None or _is_harmonised(scene, plane) or quantise.is_photographic(plane.mean)
         parts = [f"planes[{p}].mean", *(f"planes[{p}].bases[{b}].textures" for b in range(len(plane.bases)))]
@@ -89,23 +102,31 @@ def code_pictures(
         planned.append(
             [[partial(_same_picture, one) for one in some] or way() for some, way in zip(there, ways, strict=True)]
         )
+    if sheets is not None:
+        kept = cached.pictures("opacity") if codec is None else ()
+        way = partial(_opacity, sheets.opacity, codec or DEFAULT_CODEC, fine)
+        planned.append([[partial(_same_picture, one) for one in kept] or [way]])
     jobs = [job for plan in planned for some in plan for job in some]
     done = iter(tracked_map(lambda job: job(), jobs, "code textures", progress))
     planes = []
-    for plan in planned:
+    for plan in planned[: len(scene.appearance.planes)]:
         files = [[next(done) for _ in some] for some in plan]
         planes.append(PlanePictures(files[0][0], files[1:]))
-    first, made = planes[0].mean, ScenePictures(None, planes)
-    plain = to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
+    first, made = planes[0].mean, ScenePictures(None, planes, next(done, None))
+    plain = sheets is None and to_rgb is None and scene.appearance.planes[0].mean.shape[2] in (1, 3)
     if plain and first.codec == "png" and first.affine is None:
         return made  # the mean itself serves
     preview = cached.one("preview") if codec is None else None
-    return replace(made, preview=preview or Payload("jpeg", _preview(scene, made.bytes)))
+    return replace(made, preview=preview or _preview(scene, made.bytes))
 
 
 def _mean(scene: Scene, plane: Plane, codec: str, quality: int) -> list[Callable[[], PicturePayload]]:
     codes, affine = quantise.mean_codes(plane.mean, _is_harmonised(scene, plane))
     return [partial(_code, codes, codec, quality, affine)]
+
+
+def _opacity(opacity: NDArray[np.float32], codec: str, quality: int) -> PicturePayload:
+    return _code(quantise.opacity_codes(opacity), codec, quality, None)
 
 
 def _textures(basis: Basis, codec: str, quality: int, one_unit: bool) -> list[Callable[[], PicturePayload]]:
@@ -133,10 +154,11 @@ def _code_texture(
     return _code(quantise.texture_codes(basis, index, scale, zero), codec, quality, affine)
 
 
-def _preview(scene: Scene, coded: int) -> bytes:
-    """A picture for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched.
+def _preview(scene: Scene, coded: int) -> Payload:
+    """A picture for every glTF viewer: R, G, B as they are; else the first one or three channels, stretched. Of sheets
+    it is a PNG with holes where they are less than half opaque.
 
-    coded: bytes of the planes.
+    coded: bytes of all other pictures.
     """
     to_rgb = scene.appearance.to_rgb
     mean = scene.appearance.planes[0].mean if to_rgb is None else _rgb_mean(scene, to_rgb)
@@ -147,11 +169,16 @@ def _preview(scene: Scene, coded: int) -> bytes:
         low, high = shown.min(axis=(0, 1)), shown.max(axis=(0, 1))
         shown = (shown - low) / np.where(high > low, high - low, 1)
     codes = np.rint(shown * 255).clip(0, 255).astype(np.uint8)
+    picture, sheets = stacked_picture(codes), scene.proxy.sheets
+    if sheets is not None:
+        opacity = quantise.opacity_codes(sheets.opacity)[..., 0]
+        sizes = ((PREVIEW_MAX_SIDE_TEXELS, 256),) if to_rgb is None else MASKED_PREVIEWS
+        masked = (encode_masked_preview(picture, opacity, *size) for size in sizes)
+        return Payload("png", first_affordable(masked, len, coded))
     if to_rgb is None:
-        return encode_preview(stacked_picture(codes))
-    return first_affordable(
-        (encode_small_preview(stacked_picture(codes), *small) for small in SMALL_PREVIEWS), len, coded
-    )
+        return Payload("jpeg", encode_preview(picture))
+    small = (encode_small_preview(picture, *size) for size in SMALL_PREVIEWS)
+    return Payload("jpeg", first_affordable(small, len, coded))
 
 
 def _rgb_mean(scene: Scene, to_rgb: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -20,7 +20,7 @@ from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
 from eigenfield.runtime.files import atomic_writer
 
-PARTS = ("mean", "textures", "weights", "mesh", "residual")  # that `parts` lists, beside `total` and `other`
+PARTS = ("mean", "textures", "weights", "mesh", "opacity", "residual")  # that `parts` lists, beside `total` and `other`
 
 
 def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
@@ -35,10 +35,11 @@ def describe(path: str | os.PathLike[str]) -> tuple[FileLayout, dict[str, int]]:
 
 
 def parts(path: str | os.PathLike[str]) -> dict[str, int]:
-    """Bytes by part: total, mean, textures, weights, mesh, residual, other; the last six sum to the first.
+    """Bytes by part: total, mean, textures, weights, mesh, opacity, residual, other; the last seven sum to the first.
 
     mean: the means, and the picture for other viewers (`images[0]`).
     mesh: positions, texture coordinates, indices; a coded one, and the coarse one for other viewers.
+    opacity: of sheets; 0 where there is none.
     residual: of captured views; 0 where there is none.
     other: JSON, calibration, triangles, headers and padding.
 

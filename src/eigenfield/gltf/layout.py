@@ -28,12 +28,13 @@ from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Findings
 from eigenfield.gltf.layout_planes import PlaneLayout, check_colours, read_matrix, read_planes
 from eigenfield.gltf.layout_residual import read_residual
+from eigenfield.gltf.layout_sheets import SheetsLayout, check_sheets, read_sheets
 from eigenfield.gltf.streams import FEATURES, LATEST, minor
 from eigenfield.gltf.strict_json import Value, quote
 
 _KEYS = {
-    "version", "needs", "mesh", "planes", "toRGB", "cameras", "viewPlane", "times", "reference", "residual",
-    "settings", "scores", "generator",
+    "version", "needs", "mesh", "sheets", "planes", "toRGB", "cameras", "viewPlane", "times", "reference",
+    "residual", "settings", "scores", "generator",
 }  # fmt: skip
 
 
@@ -45,6 +46,7 @@ class FileLayout:
         version: Of the format.
         mesh: The proxy.
         mesh_payload: Its stream; None where it is plain.
+        sheets: Of the proxy; None: it is one opaque surface.
         planes: Means and bases.
         cameras: All of them.
         view_plane: Through the cameras.
@@ -61,6 +63,7 @@ class FileLayout:
     version: str
     mesh: Mesh | None
     mesh_payload: Payload | None
+    sheets: SheetsLayout | None
     planes: tuple[PlaneLayout, ...] | None
     cameras: geometry.CameraList | None
     view_plane: ViewPlane | None
@@ -119,11 +122,13 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
         note("warning", "extension-required", "/extensionsRequired", "keeps other viewers from showing the mean")
     attempt(document.check_buffer)
     attempt(document.check_overlap)
+    sheets = attempt(lambda: read_sheets(document, extension["sheets"]) if extension.has("sheets") else None)
     mesh = mesh_payload = None
     with findings.part():
         mesh = geometry.read_mesh(document)  # of a coded one the coarse one, which is checked too
         if extension.has("mesh"):
             mesh, mesh_payload = geometry.read_coded_mesh(document, extension["mesh"])
+    attempt(lambda: check_sheets(extension["sheets"], sheets, mesh) if extension.has("sheets") else None)
     cameras = attempt(lambda: geometry.read_cameras(document, extension["cameras"]))
     times = attempt(lambda: read_times(extension)) or (0.0,)
     planes = attempt(lambda: read_planes(document, extension["planes"], cameras, len(times), findings))
@@ -141,8 +146,8 @@ def read_layout(document: Document, findings: Findings) -> FileLayout | None:
     scores = attempt(lambda: extension["scores"].mapping() if extension.has("scores") else {}) or {}
     generator = attempt(lambda: extension["generator"].text() if extension.has("generator") else "") or ""
     return FileLayout(
-        version, mesh, mesh_payload, planes, cameras, view_plane, triangles, reference, to_rgb, residual, settings,
-        scores, generator, times,
+        version, mesh, mesh_payload, sheets, planes, cameras, view_plane, triangles, reference, to_rgb, residual,
+        settings, scores, generator, times,
     )  # fmt: skip
 
 

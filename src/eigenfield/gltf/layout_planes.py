@@ -33,7 +33,7 @@ class PictureLayout:
         width: Of the array that it decodes to.
         height: Likewise.
         channels: Likewise.
-        affine: From codes to numbers, per channel (of every texture in it); None: code / 255.
+        affine: From codes to numbers, per channel (of every texture in it); None: the largest code is 1.
         where: Its place in the JSON.
         count: Textures in it, one below the other.
         precision: Of a mean, the picture of its precision place by place; None: all alike.
@@ -152,8 +152,8 @@ def read_planes(
 def _read_plane(document: Document, entry: Value, index: int, rows: int, findings: Findings) -> PlaneLayout:
     channels = entry["channels"].integer(1, limits.MAX_CHANNELS)
     if entry.has("mean"):
-        size = _size(entry["mean"]["size"], channels)
-        mean = _picture(document, entry["mean"], "mean", size, channels, 1)
+        size = read_size(entry["mean"]["size"], channels)
+        mean = read_picture(document, entry["mean"], "mean", size, channels, 1)
         if entry["mean"].has("precision"):
             mean = replace(mean, precision=_precision(document, entry["mean"]["precision"], mean))
     elif index == 0 and channels in (1, 3):
@@ -176,7 +176,7 @@ def read_image(document: Document, channels: int) -> PictureLayout:
 
 
 def _read_basis(document: Document, entry: Value, channels: int, rows: int, findings: Findings) -> BasisLayout:
-    size = _size(entry["size"], channels)
+    size = read_size(entry["size"], channels)
     textures: list[PictureLayout] = []
     total, lost = 0, 0
     common = entry["picture"].mapping() if entry.has("picture") else {}
@@ -188,7 +188,7 @@ def _read_basis(document: Document, entry: Value, channels: int, rows: int, find
             if lost or document.cut_off(texture["bufferView"]):
                 lost += count
                 continue
-            textures.append(_picture(document, texture, "textures", size, channels, count))
+            textures.append(read_picture(document, texture, "textures", size, channels, count))
     weights = np.zeros((rows, 0), np.float32)
     stream: Payload | None = None
     if total:
@@ -237,7 +237,8 @@ def _read_weights(document: Document, reference: Value, rows: int, count: int) -
     return flat.reshape(rows, count)
 
 
-def _size(entry: Value, channels: int) -> tuple[int, int]:
+def read_size(entry: Value, channels: int) -> tuple[int, int]:
+    """Width and height of a picture of so many channels. FormatError: `picture-limit`, `json-*`."""
     width, height = (item.integer(1, limits.MAX_SIDE) for item in entry.items(2, 2))
     w, h = stacking.picture_size(width, height, channels)
     if h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
@@ -245,9 +246,22 @@ def _size(entry: Value, channels: int) -> tuple[int, int]:
     return width, height
 
 
-def _picture(
+def read_picture(
     document: Document, entry: Value, place: str, size: tuple[int, int], channels: int, count: int
 ) -> PictureLayout:
+    """A picture that stands at a place of `streams.PLACES`.
+
+    Args:
+        document: The file.
+        entry: Its JSON.
+        place: Of an opacity there is no `scale` and `zero`.
+        size: Width and height as announced.
+        channels: Likewise.
+        count: Of textures in it.
+
+    Raises:
+        FormatError: `picture-*`, `codec-unknown`, `view-*`, `json-*`.
+    """
     data = document.data(entry["bufferView"])
     bits = entry["bits"].integer(8, PICTURE_MAX_BITS) if entry.has("bits") else 8
     usual = _codec_of(entry, bits)
@@ -256,7 +270,8 @@ def _picture(
         mime = entry["mimeType"].value
         entry["codec"].fail("picture-type", f"{codec} is no codec of {bits} bits in a picture of type {mime}")
     affine = None
-    if place != "mean" or PICTURES[codec].bits != 8 or entry.has("scale") or entry.has("zero"):
+    plain = place == "mean" and PICTURES[codec].bits == 8 and not (entry.has("scale") or entry.has("zero"))
+    if not plain and place != "opacity":
         affine = Affine(*(_affine(entry[key], channels, count) for key in ("scale", "zero")))
     stacking.check_picture(data, codec, *size, channels, entry.where, count)
     return PictureLayout(data, codec, *size, channels, affine, entry.where, count)

@@ -6,17 +6,27 @@ import contextlib
 import logging
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from eigenfield.coding import limits
+from eigenfield.coding.pictures.pictures_8bit import check_preview
 from eigenfield.coding.pictures.quantise import mean_values, spread_precision
 from eigenfield.core.appearance import Appearance, Basis, Plane
 from eigenfield.core.errors import FormatError
-from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mean_key, mesh_key, payloads_of, preview_key
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.payloads import (
+    Coded,
+    Payload,
+    Payloads,
+    cameras_key,
+    mean_key,
+    mesh_key,
+    opacity_key,
+    payloads_of,
+    preview_key,
+)
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.core.rig import Rig
 from eigenfield.core.scene import EncodedScene, Scene
 from eigenfield.gltf.container import read_file
@@ -24,7 +34,7 @@ from eigenfield.gltf.document import Document
 from eigenfield.gltf.findings import Finding, Findings
 from eigenfield.gltf.layout import FileLayout, open_document, read_layout
 from eigenfield.gltf.layout_geometry import read_mesh
-from eigenfield.gltf.layout_planes import BasisLayout, PictureLayout, PlaneLayout, read_image
+from eigenfield.gltf.layout_planes import BasisLayout, PlaneLayout, read_image
 from eigenfield.gltf.layout_residual import residual_frames
 from eigenfield.gltf.streams import streams
 from eigenfield.runtime.parallel import parallel_map
@@ -80,7 +90,8 @@ def read_scene(data: bytes) -> EncodedScene:
 
 
 def outline(path: str | os.PathLike[str]) -> tuple[Scene, bytes]:
-    """A scene without its planes, and the bytes of its file: checked as `load` does, but no picture is decoded.
+    """A scene without its planes and sheets, and the bytes of its file: checked as `load` does, but no picture is
+    decoded.
 
     Raises:
         FormatError: As `load`.
@@ -100,7 +111,8 @@ def _scene_of(data: bytes, pictures: bool) -> EncodedScene:
     elif document.glb.missing:
         log.warning("the file ends within its residual: captured views go without (copy or download it again)")
     planes = [_decode_plane(plane) for plane in layout.planes or ()] if pictures else []
-    return _scene(layout, planes, _preview(document, layout))
+    sheets = _decode_sheets(layout) if pictures else None
+    return _scene(layout, planes, sheets, _preview(document, layout))
 
 
 def _preview(document: Document, layout: FileLayout) -> Payload | None:
@@ -112,20 +124,25 @@ def _preview(document: Document, layout: FileLayout) -> Payload | None:
     return None
 
 
-def _scene(layout: FileLayout, planes: Sequence[Coded[Plane]], preview: Payload | None) -> EncodedScene:
+def _scene(
+    layout: FileLayout, planes: Sequence[Coded[Plane]], sheets: Coded[Sheets] | None, preview: Payload | None
+) -> EncodedScene:
     mesh, given, view_plane = layout.mesh, layout.cameras, layout.view_plane
     assert mesh is not None and given is not None and view_plane is not None
     assert layout.triangles is not None and layout.reference is not None
     payloads = Payloads.merge(plane.payloads for plane in planes)
     if layout.mesh_payload is not None:
         payloads |= {mesh_key(mesh): [layout.mesh_payload]}
+    if sheets is not None:
+        payloads |= sheets.payloads
     if given.payload is not None:
         payloads |= {cameras_key(given.cameras): [given.payload]}
     if planes and preview is not None:
-        means = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
-        payloads |= {preview_key(means, layout.to_rgb, given.colours is not None): [preview]}
+        sources = [next(key for key in plane.payloads if key[0] == "mean") for plane in planes]
+        sources += [] if sheets is None else [*sheets.payloads]
+        payloads |= {preview_key(sources, layout.to_rgb, given.colours is not None): [preview]}
     return EncodedScene(
-        proxy=Proxy(mesh),
+        proxy=Proxy(mesh, sheets=None if sheets is None else sheets.value),
         rig=Rig(given.names, given.cameras, given.held_out, layout.reference, view_plane, layout.triangles),
         appearance=Appearance(tuple(plane.value for plane in planes), layout.to_rgb, given.colours),
         settings=layout.settings,
@@ -134,6 +151,15 @@ def _scene(layout: FileLayout, planes: Sequence[Coded[Plane]], preview: Payload 
         residual=layout.residual,
         times=layout.times,
         payloads=payloads,
+    )
+
+
+def _decode_sheets(layout: FileLayout) -> Coded[Sheets] | None:
+    if layout.sheets is None:
+        return None
+    opacity = layout.sheets.decode()
+    return Coded(
+        Sheets(layout.sheets.faces, opacity), Payloads({opacity_key(opacity): [layout.sheets.opacity.payload]})
     )
 
 
@@ -192,6 +218,9 @@ def _check_pictures(layout: FileLayout, findings: Findings) -> None:
                 picture.decode()
                 if picture.precision is not None:
                     picture.precision.decode()
+    with findings.part():
+        if layout.sheets is not None:
+            layout.sheets.decode()
 
 
 def _check_residual(layout: FileLayout, findings: Findings) -> None:
@@ -208,7 +237,7 @@ def _check_preview(document: Document, findings: Findings) -> None:
         if image.mime not in ("image/png", "image/jpeg"):
             findings.note("warning", "preview-type", image.where, f"{image.mime} is not glTF's PNG or JPEG")
         elif image.width * image.height * 3 <= limits.MAX_DECODED:
-            _decode_any(image)
+            check_preview(image.data, image.mime, image.where)
     with findings.part():
         primitive = document.root["meshes"].at(0)["primitives"].at(0)
         material = document.root["materials"].at(primitive["material"].integer(0, 2**31))
@@ -216,15 +245,6 @@ def _check_preview(document: Document, findings: Findings) -> None:
         source = document.root["textures"].at(texture)["source"]
         if source.integer(0, 2**31) != 0:
             findings.note("warning", "preview-material", source.where, "the proxy's material does not show images[0]")
-
-
-def _decode_any(image: PictureLayout) -> None:
-    try:
-        image.decode()
-    except FormatError as error:
-        if error.code != "picture-channels":
-            raise
-        replace(image, channels=1).decode()  # grey is as good for a preview
 
 
 def _check_bounds(document: Document, layout: FileLayout, findings: Findings) -> None:

@@ -40,6 +40,7 @@ PLACES = {
     "names": Place("cameras/codedNames", "names", "names-1", "other"),
     "triangles": Place("viewPlane/codedTriangles", "triangles", "triangles-1", "other", bare=True),
     "mean": Place("planes/*/mean", "picture", None, "mean"),
+    "opacity": Place("sheets/opacity", "picture", None, "opacity"),
     "precision": Place("planes/*/mean/precision", "picture", "png", "mean"),
     "textures": Place("planes/*/bases/*/textures/*", "picture", None, "textures"),
     "weights": Place("planes/*/bases/*/codedWeights", "weights", "weights-1", "weights", bare=True),
@@ -47,7 +48,7 @@ PLACES = {
 }
 OTHER_FEATURES = {  # what `needs` may name beside the needs of codecs, and the version that brought it
     "namePattern": "1.2", "packed": "1.8", "precision": "1.4", "regions": "1.2", "sharedPicture": "1.2",
-    "stacks": "1.2", "times": "1.7", "toRGB": "1.2",
+    "sheets": "1.9", "stacks": "1.2", "times": "1.7", "toRGB": "1.2",
 }  # fmt: skip
 FEATURES = OTHER_FEATURES | {codec.needs: codec.since for codec in CODECS.values() if codec.needs is not None}
 

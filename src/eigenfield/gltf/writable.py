@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eigenfield.coding import limits
 from eigenfield.coding.pictures.stacking import picture_size
-from eigenfield.core.errors import OutputError
+from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.core.scene import Scene
 from eigenfield.gltf.strict_json import is_printable
 
@@ -18,19 +18,30 @@ def check_writable(scene: Scene, path: Path | None) -> None:
 
     Raises:
         OutputError: `scene-limit`, `camera-name`.
+        FormatError: `sheets-opacity`.
     """
 
     def refuse(what: str) -> None:
         raise OutputError("scene-limit", f"a file cannot hold {what}", path=path, remedy="make the scene smaller")
 
+    def check_size(shape: tuple[int, ...], channels: int) -> None:
+        height, width = shape
+        w, h = picture_size(width, height, channels)
+        if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
+            refuse(f"a picture of {w}x{h}")
+
     for plane in scene.appearance.planes:
         channels = plane.mean.shape[2]
         if channels > limits.MAX_CHANNELS:
             refuse(f"{channels} channels")
-        for height, width in [plane.mean.shape[:2], *(basis.textures.shape[1:3] for basis in plane.bases)]:
-            w, h = picture_size(width, height, channels)
-            if max(width, height) > limits.MAX_SIDE or h > limits.MAX_STACKED or w * h > limits.MAX_TEXELS:
-                refuse(f"a picture of {w}x{h}")
+        for shape in [plane.mean.shape[:2], *(basis.textures.shape[1:3] for basis in plane.bases)]:
+            check_size(shape, channels)
+    sheets = scene.proxy.sheets
+    if sheets is not None:
+        if sheets.opacity.ndim != 2 or not ((sheets.opacity >= 0) & (sheets.opacity <= 1)).all():
+            message = "an opacity is a picture of one number in 0 to 1 for each texel"
+            raise FormatError("sheets-opacity", message, where="/sheets/opacity", path=path)
+        check_size(sheets.opacity.shape, 1)
     bases = [basis for plane in scene.appearance.planes for basis in plane.bases]
     means = 4 * sum(plane.mean.size for plane in scene.appearance.planes)
     decoded = means + sum(math.prod(basis.textures.shape) for basis in bases)
@@ -42,6 +53,7 @@ def check_writable(scene: Scene, path: Path | None) -> None:
         (decoded, limits.MAX_DECODED, "decoded bytes"),
         (len(scene.proxy.mesh.vertices), limits.MAX_VERTICES, "vertices"),
         (len(scene.proxy.mesh.faces), limits.MAX_TRIANGLES, "triangles"),
+        (0 if sheets is None else len(sheets.faces), limits.MAX_SHEETS, "sheets"),
         (max((basis.weights.size for basis in bases), default=0), limits.MAX_WEIGHTS, "weights"),
     ]
     for count, most, name in counts:

@@ -20,6 +20,7 @@ from eigenfield.core.errors import OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Payload, PicturePayload
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Residual, Scene
 from eigenfield.core.version import __version__
 from eigenfield.gltf import packed, strict_json
@@ -152,9 +153,10 @@ def _plain_sizes(scene: Scene) -> dict[str, int]:
 
 
 def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayloads) -> dict[str, Any]:
-    """The JSON, while `buffer` fills: mesh, mean, weights, calibration, textures; if packed, all accessors first."""
+    """The JSON, while `buffer` fills: mesh, opacity, mean, weights, calibration, textures; if packed, all accessors
+    first."""
     mesh, poses = cached.one("mesh"), cached.one("cameras")
-    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy.mesh, coded.bytes + len(mesh.data))
+    shown = scene.proxy.mesh if mesh is None else shown_mesh(scene.proxy, coded.bytes + len(mesh.data))
     primitive = _primitive(shown, buffer, mesh is not None)
     preview = coded.preview or coded.planes[0].mean
     image = {"bufferView": buffer.view(preview.data), "mimeType": PICTURES[preview.codec].mime}
@@ -162,6 +164,8 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
     order = {} if plain or scene.residual is None else _frame_order(scene.residual, buffer)
     cameras = {} if plain else _cameras(scene, buffer, poses)
     proxy = {} if mesh is None else {"mesh": _stream(mesh, "mesh", buffer)}
+    if scene.proxy.sheets is not None and coded.opacity is not None:
+        proxy["sheets"] = _sheets(scene.proxy.sheets, coded.opacity, buffer)
     planes = []
     for index, (plane, made) in enumerate(zip(scene.appearance.planes, coded.planes, strict=True)):
         weights = [cached.one(f"planes[{index}].bases[{b}].weights") for b in range(len(plane.bases))]
@@ -211,6 +215,7 @@ def _gltf(scene: Scene, buffer: Buffer, coded: ScenePictures, cached: CachedPayl
                 {
                     "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}, "metallicFactor": 0.0},
                     "extensions": {"KHR_materials_unlit": {}},
+                    **({} if scene.proxy.sheets is None else {"alphaMode": "MASK"}),  # below glTF's default of 0.5
                     "doubleSided": True,
                 },
             )
@@ -288,6 +293,12 @@ def _stream(payload: Payload, place: str, buffer: Buffer) -> Any:
     """The entry of a stream: its buffer view, and its codec unless it is the default."""
     index, named = buffer.stream(payload, place), codec_entry(payload.codec, place)
     return index if PLACES[place].bare and not named else {"bufferView": index, **named}
+
+
+def _sheets(sheets: Sheets, opacity: PicturePayload, buffer: Buffer) -> dict[str, Any]:
+    height, width = sheets.opacity.shape
+    picture = {"bufferView": buffer.stream(opacity, "opacity"), "size": [width, height], **_picture(opacity, "opacity")}
+    return {"faces": list(map(int, sheets.faces)), "opacity": picture}
 
 
 def _plane(
@@ -381,6 +392,7 @@ def _needs(
         "precision": any(plane.mean.precision is not None for plane in coded.planes),
         "regions": any(basis.grid is not None for plane in scene.appearance.planes for basis in plane.bases),
         "sharedPicture": any("picture" in basis for plane in planes for basis in plane["bases"]),
+        "sheets": scene.proxy.sheets is not None,
         "stacks": any(picture.count != 1 for picture in pictures),
         "times": len(scene.times) != 1,
         "toRGB": scene.appearance.to_rgb is not None,

@@ -271,6 +271,7 @@ def set_up_bands(
     pixels: NDArray[np.float64],
     bounds: NDArray[np.int32],
     slack: float = 0.0,
+    band: int = RASTER_BAND_ROWS,
 ) -> list[Band]:
     """Compute the edge functions and bounds of triangles, and sort them into bands of rows.
 
@@ -283,6 +284,7 @@ def set_up_bands(
         pixels: (n, 2) of `project_corners`, written.
         bounds: (m, 4) of `bound_faces`, written.
         slack: Pixels by which bounds are widened, for samples beside the middles of pixels.
+        band: Rows of a band.
 
     Returns:
         For each band its triangles in rising order.
@@ -294,10 +296,10 @@ def set_up_bands(
         bound_faces(corners, pixels, faces, edges, width, height, RASTER_BOUND_SLACK_PIXELS + slack, *part, bounds)
 
     parallel_map(set_up, pieces(len(faces), RASTER_SET_UP_TRIANGLES))
-    bands = pieces(height, RASTER_BAND_ROWS)
+    bands = pieces(height, band)
     starts = np.empty(len(bands) + 1, np.int64)
-    listing = sort_into_bands(bounds, RASTER_BAND_ROWS, starts)
-    return [(rows, listing[starts[band] : starts[band + 1]]) for band, rows in enumerate(bands)]
+    listing = sort_into_bands(bounds, band, starts)
+    return [(rows, listing[starts[i] : starts[i + 1]]) for i, rows in enumerate(bands)]
 
 
 def rasterise_view(mesh: Mesh, camera: Camera) -> Raster:

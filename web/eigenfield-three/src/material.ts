@@ -54,7 +54,7 @@ vec3 errorColour(vec3 drawn) {
 
 void main() {
   vec3 colour;
-  if (shown == 2) colour = clamp(0.5 + shownGain * surfaceValue(surfaceUv), 0.0, 1.0);
+  if (shown == 2) colour = clamp(0.5 + shownGain * surfaceValue(surfaceUv).rgb, 0.0, 1.0);
   else colour = surfaceColour(surfaceUv);
   if (shown == 3) colour = errorColour(colour);
   fragment = vec4(colour, 1.0);

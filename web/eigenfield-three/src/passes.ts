@@ -74,7 +74,7 @@ export function makeQuad(
   const material = new RawShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: QUAD,
-    fragmentShader: `${HEAD}in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(${value}(own), 1.0); }\n`,
+    fragmentShader: `${HEAD}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${value}(own); }\n`,
     uniforms: { rectangle: { value: new Vector4(...rectangle) }, ...uniforms },
     side: DoubleSide,
     blending: CustomBlending,

@@ -1,6 +1,7 @@
 """A triangle mesh with texture coordinates in few bytes.
 
-Positions are rounded to a lattice; vertices at one lattice point are one *place*. Then come, one after the other:
+Positions are rounded to a lattice; vertices of one sheet at one lattice point are one *place*. Then come, one after
+the other:
 
 1. the faces between places, each over an edge of those before (`mesh_kernels`), and with every new place its x, y and,
    where the lattice is not flat, z;
@@ -14,6 +15,7 @@ docs/coding.md describes the bytes.
 from __future__ import annotations
 
 import struct
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,6 +51,7 @@ class _Welded:
         places: (n, 3) int64.
         place: (v,) of each vertex.
         faces: (m, 3) of vertices, no two corners at one place.
+        sheet: (m,) of each face.
         label: See `_chart_kinds`.
         kinds: See `_chart_kinds`.
         maps: See `_chart_kinds`.
@@ -58,14 +61,20 @@ class _Welded:
     places: NDArray[np.int64]
     place: NDArray[np.int32]
     faces: NDArray[np.int32]
+    sheet: NDArray[np.int64]
     label: NDArray[np.int32]
     kinds: NDArray[np.int8]
     maps: NDArray[np.int64]
     codes: NDArray[np.int64]
 
 
-def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 0) -> tuple[bytes, Mesh]:
+def encode_mesh(
+    mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 0, sheets: Sequence[int] = ()
+) -> tuple[bytes, Mesh]:
     """The bytes, and the mesh that they decode to: the same faces, each with its sense, in another order.
+
+    The faces of a sheet stay together, and sheets in their order: those of the first come first. How many of each are
+    left, `whole_faces` says.
 
     Positions are rounded to the lattice. Texture coordinates are off by at most half of 2^-uv_bits where they are
     coded; in charts that are an affine map of lattice x and y to within that, they are that map of the rounded x and
@@ -79,16 +88,20 @@ def encode_mesh(mesh: Mesh, lattice: Lattice, *, uv_bits: int = 12, fine: int = 
         fine: On a flat lattice, the number of the last binary digits of x and y that are 0 at most vertices, 0 to 8.
             Where vertices inside a relief are at pixels and those of its contours between them, a step of 2^-fine
             pixels costs the latter alone.
+        sheets: Number of faces of each sheet, in the mesh's order; sheets share no vertex. Empty: one.
 
     Raises:
         ValueError: The mesh has no texture coordinates, reaches 2^20 steps from the lattice's origin or behind its
-            camera; or `uv_bits` or `fine` is out of range.
+            camera; or `uv_bits` or `fine` is out of range; or the sheets do not divide the mesh.
     """
     if mesh.uv is None or not 1 <= uv_bits <= MESH_MAX_UV_DIGITS:
         raise ValueError("a mesh needs texture coordinates, of 1 to 18 binary digits")
     if not 0 <= fine <= (MESH_MAX_FINE_DIGITS if lattice.flat else 0):
         raise ValueError("0 to 8 fine digits, and only on a flat lattice")
-    welded = _weld_mesh(mesh, lattice, uv_bits)
+    counts = sheets or (len(mesh.faces),)
+    if sum(counts) != len(mesh.faces):
+        raise ValueError("sheets that do not divide the mesh")
+    welded = _weld_mesh(mesh, lattice, uv_bits, np.repeat(np.arange(len(counts)), counts))
     n, m, v = len(welded.places), len(welded.faces), len(welded.place)
     found: list[Mesh] = []
 
@@ -159,8 +172,18 @@ def decode_mesh(data: bytes, where: str = "mesh", version: int = VERSION) -> Mes
     return mesh
 
 
-def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
-    """The mesh on the lattice, without vertices that no face has."""
+def whole_faces(mesh: Mesh, lattice: Lattice) -> NDArray[np.bool_]:
+    """(m,) whether the corners of a face are at three points of the lattice: `encode_mesh` leaves out the others."""
+    return _whole_faces(np.rint(lattice.coordinates(mesh.vertices)), mesh.faces)
+
+
+def _whole_faces(steps: NDArray[np.float64], faces: NDArray[np.int32]) -> NDArray[np.bool_]:
+    corner = steps[faces]
+    return np.asarray((corner != np.roll(corner, 1, axis=1)).any(axis=2).all(axis=1))
+
+
+def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int, sheet: NDArray[np.int64]) -> _Welded:
+    """The mesh on the lattice, without vertices that no face has; sheet: (m,) of each face."""
     assert mesh.uv is not None
     exact = lattice.coordinates(mesh.vertices)
     steps = np.rint(exact)
@@ -174,17 +197,19 @@ def _weld_mesh(mesh: Mesh, lattice: Lattice, uv_bits: int) -> _Welded:
     codes = np.where((kinds[label] == MAPPED)[:, None], 0, np.rint(uv * scale)).astype(np.int64)
     alike = np.concatenate([steps.astype(np.int64), codes, label[:, None]], axis=1)
     _, first, same = np.unique(alike, axis=0, return_index=True, return_inverse=True)
-    faces = first[same.reshape(-1)][mesh.faces]
-    _, place = np.unique(steps[first], axis=0, return_inverse=True)
-    at = np.zeros(len(steps), np.int64)
-    at[first] = place.reshape(-1)
-    corner = at[faces]
-    faces = faces[(corner != np.roll(corner, 1, axis=1)).all(axis=1)]
+    whole = _whole_faces(steps, mesh.faces)
+    faces, sheet = first[same.reshape(-1)][mesh.faces[whole]], sheet[whole]
     used, faces = np.unique(faces, return_inverse=True)
-    places, place = np.unique(steps[used].astype(np.int64).reshape(-1, 3), axis=0, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    own = np.zeros((len(used), 1), np.int64)
+    own[faces, 0] = sheet[:, None]
+    if (own[faces, 0] != sheet[:, None]).any():
+        raise ValueError("sheets that share a vertex")
+    points = np.concatenate([steps[used].astype(np.int64).reshape(-1, 3), own], axis=1)
+    points, place = np.unique(points, axis=0, return_inverse=True)
     return _Welded(
-        places, place.reshape(-1).astype(np.int32), faces.reshape(-1, 3).astype(np.int32), label[used], kinds, maps,
-        codes[used],
+        np.ascontiguousarray(points[:, :3]), place.reshape(-1).astype(np.int32), faces.astype(np.int32), sheet,
+        label[used], kinds, maps, codes[used],
     )  # fmt: skip
 
 
@@ -194,7 +219,7 @@ def _source(welded: _Welded) -> Source:
     f = faces.astype(np.int64)
     edges = (f * n + np.roll(f, -1, axis=1)).reshape(-1)
     order = np.argsort(edges, kind="stable")
-    seeds = np.argsort(welded.places[f, 0].sum(axis=1), kind="stable").astype(np.int32)
+    seeds = np.lexsort([welded.places[f, 0].sum(axis=1), welded.sheet]).astype(np.int32)
     blank = np.full(n, -1, np.int32)
     return Source(
         welded.places, faces, seeds, edges[order], (order // 3).astype(np.int32), np.zeros(m, np.bool_), blank,

@@ -72,21 +72,43 @@ def encode_avif(picture: Codes, quality: int) -> bytes:
 
 def encode_preview(picture: Codes) -> bytes:
     """(H, W) or (H, W, 3) codes as a JPEG of at most PREVIEW_MAX_SIDE_TEXELS on the longer side."""
-    return _image_bytes(_shrunk(picture, PREVIEW_MAX_SIDE_TEXELS), "JPEG", quality=PREVIEW_QUALITY, optimize=True)
+    image = _shrunk(Image.fromarray(picture), PREVIEW_MAX_SIDE_TEXELS)
+    return _image_bytes(image, "JPEG", quality=PREVIEW_QUALITY, optimize=True)
 
 
 def encode_small_preview(picture: Codes, side: int, quality: int) -> bytes:
     """As `encode_preview`, of at most `side` texels, with one table for luma and chroma and no JFIF header: both take
     87 bytes."""
-    image = _shrunk(picture, side)
+    image = _shrunk(Image.fromarray(picture), side)
     sample = JpegImagePlugin.JpegImageFile(io.BytesIO(_image_bytes(Image.new("L", (8, 8)), "JPEG", quality=quality)))
     data = _image_bytes(image, "JPEG", qtables=[sample.quantization[0]], optimize=True)
     return data[:2] + data[2 + JFIF_BYTES :]
 
 
-def _shrunk(picture: Codes, side: int) -> Image.Image:
+def encode_masked_preview(picture: Codes, opacity: Codes, side: int, colours: int) -> bytes:
+    """A PNG of at most `side` texels on the longer side: fully transparent where less than half opaque, else opaque.
+
+    Args:
+        picture: (H, W) or (H, W, 3) codes.
+        opacity: (h, w) codes.
+        side: In texels.
+        colours: In its palette, that of transparent texels among them.
+    """
+    alpha = Image.fromarray(opacity).resize(picture.shape[1::-1], Image.Resampling.BILINEAR)
+    image = Image.fromarray(picture).convert("RGBA")
+    image.putalpha(alpha)
+    pixels = np.asarray(_shrunk(image, side))
+    opaque = pixels[..., 3] >= 128
+    middle = pixels[opaque, :3].mean(axis=0) if opaque.any() else np.zeros(3)
+    filled = np.where(opaque[..., None], pixels[..., :3], np.rint(middle).astype(np.uint8))
+    reduced = Image.fromarray(filled).quantize(colours - 1, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    made = Image.fromarray(np.where(opaque, np.asarray(reduced) + 1, 0).astype(np.uint8), "P")
+    made.putpalette([*map(int, np.rint(middle)), *(reduced.getpalette() or [])[: 3 * (colours - 1)]])
+    return _image_bytes(made, "PNG", transparency=0, optimize=True)
+
+
+def _shrunk(image: Image.Image, side: int) -> Image.Image:
     """At most `side` texels on the longer side."""
-    image = Image.fromarray(picture)
     scale = min(1.0, side / max(image.size))
     size = (max(1, round(image.width * scale)), max(1, round(image.height * scale)))
     if size != image.size:
@@ -123,6 +145,19 @@ def decode_picture(data: memoryview, colour: bool, where: str, *, mime: str) -> 
     with decoder_errors("picture", where):
         pixels = np.asarray(image)
     return pixels if colour or pixels.ndim == 2 else pixels[..., 0]
+
+
+def check_preview(data: memoryview, mime: str, where: str) -> None:
+    """Decode a picture for other viewers, which may be grey and have a palette and alpha.
+
+    Raises:
+        FormatError: As `decode_picture`.
+    """
+    image = _open(data, mime, where)
+    if image.mode not in ("L", "LA", "P", "RGB", "RGBA"):
+        raise FormatError("picture-channels", f"a picture of mode {image.mode}, RGB expected", where=where)
+    with decoder_errors("picture", where):
+        image.load()
 
 
 def _open(data: memoryview, mime: str, where: str) -> ImageFile.ImageFile:

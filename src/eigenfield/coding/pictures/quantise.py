@@ -70,6 +70,16 @@ def mean_values(codes: NDArray[np.uint8], affine: Affine | None) -> NDArray[np.f
     return ((codes - affine.zero) * affine.scale).astype(np.float32)
 
 
+def opacity_codes(opacity: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """(H, W) opacity in 0..1 as codes of 8 bits (H, W, 1)."""
+    return np.rint(opacity * np.float32(255)).astype(np.uint8)[..., None]
+
+
+def opacity_values(codes: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.float32]:
+    """Codes of an opacity, of 8 or (uint16) 10 bits, as float32 numbers in 0..1."""
+    return codes.astype(np.float32) / np.float32(255 if codes.dtype == np.uint8 else 1023)
+
+
 def basis_scale(basis: Basis, one_unit: bool) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """(N, C) scale and zero for the codes of a basis; those it has if its textures are codes already.
 

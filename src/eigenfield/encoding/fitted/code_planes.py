@@ -16,10 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import MAX_CODE, Coder, crf_of, decode_10bit
-from eigenfield.coding.pictures.quantise import precision_codes, spread_precision
+from eigenfield.coding.pictures.quantise import opacity_values, precision_codes, spread_precision
 from eigenfield.coding.pictures.stacking import encode
 from eigenfield.core.appearance import Basis, Plane
-from eigenfield.core.payloads import Affine, Coded, Payload, Payloads, PicturePayload, mean_key, payloads_of
+from eigenfield.core.payloads import (
+    Affine,
+    Coded,
+    Payload,
+    Payloads,
+    PicturePayload,
+    mean_key,
+    opacity_key,
+    payloads_of,
+)
 from eigenfield.runtime.parallel import parallel_map
 
 CODE_MIN_UNIT = 1e-4  # what a code stands for, in the photographs' range
@@ -87,6 +96,19 @@ def code_mean(
     stored = _split_channels(decode_10bit(data, False, "mean"), codes[None].shape)[0]
     values = ((stored - affine.zero) * affine.scale).astype(np.float32) / share
     return values, PicturePayload(PICTURES_CODEC, data, 1, affine, picture)
+
+
+def code_opacity(opacity: NDArray[np.float32], step: float, coder: Coder) -> Coded[NDArray[np.float32]]:
+    """The opacity of sheets, (H, W) in 0..1, as its file gives it back.
+
+    Args:
+        opacity: Sides even, and at least 64.
+        step: Of the quantiser, in units of opacity.
+        coder: Of the picture.
+    """
+    data = coder(np.rint(opacity * np.float32(MAX_CODE)).astype(np.uint16), crf_of(step * MAX_CODE))
+    values = opacity_values(decode_10bit(data, False, "opacity"))
+    return Coded(values, Payloads({opacity_key(values): [PicturePayload(PICTURES_CODEC, data)]}))
 
 
 def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:

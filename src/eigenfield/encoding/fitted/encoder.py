@@ -12,6 +12,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
 from eigenfield.core.payloads import Payloads
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import EncodedScene
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.fitted.observations import FitData, open_fit_data
@@ -79,7 +80,7 @@ def open_encoder(
     textures, preset = component_count(asked, len(observations)), PRESETS[resolved_value(options.preset)]
     size = plan.atlas[1], plan.atlas[0]
     with (
-        open_fit_data(cameras, observations, plan.mesh, size, work, progress, views.rig.encoded_reference) as data,
+        open_fit_data(cameras, observations, plan.proxy, size, work, progress, views.rig.encoded_reference) as data,
         open_fits(data, plan.density, textures, preset, work, progress) as fits,
     ):
         if warn:
@@ -92,7 +93,7 @@ def open_encoder(
 @contextlib.contextmanager
 def open_fitted(
     capture: CalibratedObservations,
-    proxy: str | os.PathLike[str] | Mesh,
+    proxy: str | os.PathLike[str] | Mesh | Proxy,
     options: EncodeOptions,
     work: str | os.PathLike[str] | None = None,
     progress: Progress | None = None,

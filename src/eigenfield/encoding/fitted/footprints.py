@@ -6,19 +6,30 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import accumulate, pairwise
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts
-from eigenfield.rendering.software.drawing import Framebuffer, Surface, rasterise_surface, smooth_edges
+from eigenfield.core.proxy import Sheets
+from eigenfield.encoding.fitted.kernels import footprint_coordinates, footprint_counts, sheet_points
+from eigenfield.rendering.software.drawing import (
+    CENTRE_OFFSETS_PX,
+    Framebuffer,
+    Sampling,
+    Surface,
+    rasterise_surface,
+    smooth_edges,
+)
 from eigenfield.runtime.files import scratch_array
 from eigenfield.runtime.parallel import parallel_map
 
-Footprint = tuple[NDArray[np.uint8], NDArray[np.float32]]
+Footprint = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.uint16]]
+ONE_SAMPLE = Sampling(1, CENTRE_OFFSETS_PX, 0)  # of each sheet a pixel
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,10 +38,11 @@ class Footprints:
 
     Attributes:
         shapes: (h, w) of each camera's picture.
-        counts: flat uint8, of how many points of the atlas each pixel is the mean, 0 to 4, camera by camera.
+        counts: flat uint8, of how many points of the atlas each pixel is the weighted sum, camera by camera.
         pixel_offsets: (Nc + 1,) where the counts of each camera begin.
         texel_coordinates: (n, 2) float32, columns and rows of these points, pixel by pixel, camera by camera.
-        offsets: (Nc + 1,) where the coordinates of each camera begin.
+        shares: (n,) uint16 the weights of these points, see `kernels`; (0,) on an opaque surface.
+        offsets: (Nc + 1,) where the points of each camera begin.
         surface: the mesh under the finest atlas.
         detail: texels for one pixel of the reference camera.
     """
@@ -39,6 +51,7 @@ class Footprints:
     counts: NDArray[np.uint8]
     pixel_offsets: NDArray[np.int64]
     texel_coordinates: NDArray[np.float32]
+    shares: NDArray[np.uint16]
     offsets: NDArray[np.int64]
     surface: Surface
     detail: float
@@ -47,53 +60,100 @@ class Footprints:
         return len(self.shapes)
 
     def of(self, camera: int) -> Footprint:
-        """(h, w) counts and (n, 2) texel coordinates of a camera."""
+        """(h, w) counts, (n, 2) texel coordinates and (n,) or (0,) shares of a camera."""
         counts = self.counts[self.pixel_offsets[camera] : self.pixel_offsets[camera + 1]]
-        coordinates = self.texel_coordinates[self.offsets[camera] : self.offsets[camera + 1]]
-        return np.asarray(counts).reshape(self.shapes[camera]), np.asarray(coordinates)
+        points = slice(self.offsets[camera], self.offsets[camera + 1])
+        coordinates, shares = self.texel_coordinates[points], self.shares[points]
+        return np.asarray(counts).reshape(self.shapes[camera]), np.asarray(coordinates), np.asarray(shares)
 
 
 @contextlib.contextmanager
 def open_footprints(
-    surface: Surface, cameras: Sequence[Camera], detail: float, work: Path | None = None
+    surface: Surface, cameras: Sequence[Camera], detail: float, sheets: Sheets | None = None, work: Path | None = None
 ) -> Iterator[Footprints]:
-    """Rasterise a mesh in cameras, with smooth edges, as the renderer draws cameras as near as the reference; in those
-    of half its size and less it takes more samples. The scratch files have 9 bytes a pixel and some more at edges.
+    """Rasterise a mesh in cameras, as the renderer draws cameras as near as the reference; in those of half its size
+    and less it takes more samples. An opaque surface has smooth edges, and each sheet one sample a pixel. The scratch
+    files have 9 bytes a pixel and some more at edges, and 10 for each sheet that a pixel shows.
 
-    Each camera is rasterised twice, which costs less than room for four points of every pixel would.
+    Each camera is rasterised twice, which costs less than room for the most points that a pixel may have.
 
     Args:
         surface: the mesh under the finest atlas.
         cameras: whose footprints are wanted.
         detail: texels for one pixel of the reference camera.
+        sheets: of the mesh; None: it is opaque.
         work: folder for the scratch files.
     """
     shapes = tuple((camera.height, camera.width) for camera in cameras)
     pixels = offsets_of([h * w for h, w in shapes])
+    add = partial(_add_opaque, surface, detail) if sheets is None else partial(_add_sheets, surface, sheets)
 
-    def covered(camera: int) -> tuple[Framebuffer, NDArray[np.uint8]]:
-        sampling = smooth_edges(detail)
-        frame = Framebuffer(surface, *shapes[camera], sampling)
-        rasterise_surface(surface, cameras[camera], sampling, frame)
-        return frame, counts[pixels[camera] : pixels[camera + 1]].reshape(shapes[camera])
+    def part_of(camera: int) -> NDArray[np.uint8]:
+        return np.asarray(counts[pixels[camera] : pixels[camera + 1]]).reshape(shapes[camera])
 
     def count(camera: int) -> int:
-        frame, part = covered(camera)
-        return int(footprint_counts(frame.inverse_depth, frame.spans, frame.multisampled, frame.subsamples, part))
+        add(cameras[camera], part_of(camera), None)
+        return int(part_of(camera).sum(dtype=np.int64))
 
     def put(camera: int) -> None:
-        frame, part = covered(camera)
-        into = coordinates[offsets[camera] : offsets[camera + 1]]
-        footprint_coordinates(
-            frame.inverse_depth, frame.column_of, frame.row_of, frame.spans, frame.multisampled, frame.subsamples,
-            *surface.size, part, into,
-        )  # fmt: skip
+        points = slice(offsets[camera], offsets[camera + 1])
+        add(cameras[camera], part_of(camera), (coordinates[points], shares[points]))
 
     with scratch_array((int(pixels[-1]),), np.uint8, work) as counts:
         offsets = offsets_of(parallel_map(count, range(len(cameras))))
-        with scratch_array((int(offsets[-1]), 2), np.float32, work) as coordinates:
+        with _open_points(int(offsets[-1]), sheets is not None, work) as (coordinates, shares):
             parallel_map(put, range(len(cameras)))
-            yield Footprints(shapes, counts, pixels, coordinates, offsets, surface, detail)
+            yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, surface, detail)
+
+
+_Points = tuple[NDArray[np.float32], NDArray[np.uint16]]
+
+
+@contextlib.contextmanager
+def _open_points(count: int, shared: bool, work: Path | None) -> Iterator[_Points]:
+    """(count, 2) coordinates and (count,) shares, or (0,), in scratch files."""
+    with (
+        scratch_array((count, 2), np.float32, work) as coordinates,
+        scratch_array((count if shared else 0,), np.uint16, work) as shares,
+    ):
+        yield coordinates, shares
+
+
+def _add_opaque(
+    surface: Surface, detail: float, camera: Camera, counts: NDArray[np.uint8], into: _Points | None
+) -> None:
+    """Count the points of a camera's pixels, or put the points that were counted."""
+    sampling = smooth_edges(detail)
+    frame = Framebuffer(surface, camera.height, camera.width, sampling)
+    rasterise_surface(surface, camera, sampling, frame)
+    edges = frame.spans, frame.multisampled, frame.subsamples
+    if into is None:
+        footprint_counts(frame.inverse_depth, *edges, counts)
+    else:
+        places = frame.inverse_depth, frame.column_of, frame.row_of
+        footprint_coordinates(*places, *edges, *surface.size, counts, into[0])
+
+
+def _add_sheets(
+    surface: Surface, sheets: Sheets, camera: Camera, counts: NDArray[np.uint8], into: _Points | None
+) -> None:
+    """As `_add_opaque`, of sheets."""
+    rest, starts = np.ones(counts.shape, np.float32), np.zeros((0, 0), np.int64)
+    coordinates, shares = (np.zeros((0, 2), np.float32), np.zeros(0, np.uint16)) if into is None else into
+    if into is not None:
+        starts = (np.cumsum(counts, dtype=np.int64) - counts.reshape(-1)).reshape(counts.shape)
+    counts[:] = 0
+    for faces in reversed(list(pairwise(accumulate(sheets.faces, initial=0)))):
+        sheet = _part_of(surface, slice(*faces))
+        frame = Framebuffer(sheet, camera.height, camera.width, ONE_SAMPLE)
+        rasterise_surface(sheet, camera, ONE_SAMPLE, frame)
+        places = frame.inverse_depth, frame.column_of, frame.row_of
+        sheet_points(*places, sheets.opacity, surface.size, rest, counts, starts, coordinates, shares)
+
+
+def _part_of(surface: Surface, faces: slice) -> Surface:
+    """Some faces of a surface."""
+    return replace(surface, faces=surface.faces[faces], reach=surface.reach[faces], rims=surface.rims[faces])
 
 
 @contextlib.contextmanager
@@ -104,16 +164,19 @@ def subsampled_footprints(footprints: Footprints, step: int, work: Path | None =
     pixels, offsets = offsets_of([few.size for few in fewer]), offsets_of([int(few.sum()) for few in fewer])
     with (
         scratch_array((int(pixels[-1]),), np.uint8, work) as counts,
-        scratch_array((int(offsets[-1]), 2), np.float32, work) as coordinates,
+        _open_points(int(offsets[-1]), len(footprints.shares) > 0, work) as (coordinates, shares),
     ):
         for camera in cameras:
             counts[pixels[camera] : pixels[camera + 1]] = fewer[camera].reshape(-1)
-            every, points = footprints.of(camera)
+            every, points, weights = footprints.of(camera)
             taken = np.zeros(every.shape, np.bool_)
             taken[sample_corner(camera, step)] = True
-            coordinates[offsets[camera] : offsets[camera + 1]] = points[np.repeat(taken.reshape(-1), every.reshape(-1))]
+            kept, into = np.repeat(taken.reshape(-1), every.reshape(-1)), slice(offsets[camera], offsets[camera + 1])
+            coordinates[into] = points[kept]
+            if len(shares):
+                shares[into] = weights[kept]
         shapes = tuple(few.shape for few in fewer)
-        yield Footprints(shapes, counts, pixels, coordinates, offsets, footprints.surface, footprints.detail)
+        yield Footprints(shapes, counts, pixels, coordinates, shares, offsets, footprints.surface, footprints.detail)
 
 
 def sample_corner(camera: int, step: int) -> tuple[slice, slice]:

@@ -13,9 +13,13 @@ from eigenfield.runtime.jit import kernel
 
 EDGE_ON_MAX_RATIO = 1e-6  # of the tangents' product: at most so much is seen edge-on, without a derivative
 
-# The footprint of a camera: `counts` (h, w) uint8 is of how many points of the atlas each pixel is the mean, 0 to 4;
-# `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel. A single point is all that its
-# pixel shows, each of several is a quarter of it.
+# The footprint of a camera: `counts` (h, w) uint8 says of how many points of the atlas each pixel is the weighted sum;
+# `coordinates` (n, 2) float32 are their columns and rows in the atlas, pixel by pixel. On sheets with an opacity,
+# `shares` (n,) uint16 are the weights in units of 1 / SHARE_ONE, and the points of a pixel come front to back. On an
+# opaque surface there are none: a single point is all that its pixel shows, each of up to four is a quarter of it.
+SHARE_ONE = 1 << 14
+SHEET_MIN_SHARE = np.float32(1 / 1024)  # of a pixel, of a point that counts
+SHEET_MIN_REST = np.float32(1 / 512)  # of a pixel, that what is behind is seen through
 
 
 @kernel()
@@ -68,18 +72,24 @@ def footprint_coordinates(near, column_of, row_of, spans, multisampled, samples,
 
 
 @kernel(inline=True)
-def share_of(count):
-    """What each point of a pixel that has `count` is of it."""
+def share_of(count, shares, at):
+    """What a point of a pixel that has `count` is of it."""
+    if shares.shape[0] > 0:
+        return np.float32(shares[at]) * np.float32(1 / SHARE_ONE)
     return np.float32(1) if count == 1 else np.float32(0.25)
 
 
 @kernel()
-def target(counts, codes, matrix, image):
+def target(counts, coordinates, shares, codes, matrix, image):
     """image (C, h, w) = matrix (C, 3) times the codes (h, w, 3) uint8, and times the part of a pixel that shows the
     surface: what `forward` is to draw."""
+    at = 0
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
-            part = np.float32(counts[row, pixel]) * share_of(counts[row, pixel])
+            part = np.float32(0)
+            for _ in range(counts[row, pixel]):
+                part += share_of(counts[row, pixel], shares, at)
+                at += 1
             for k in range(image.shape[0]):
                 value = np.float32(0)
                 if part > 0:
@@ -117,6 +127,53 @@ def bicubic_taps(point, across, down, width, height):
     return left, top, filter_weights(4, x - np.float32(left)), filter_weights(4, y - np.float32(top))
 
 
+@kernel()
+def sheet_points(near, column_of, row_of, opacity, size, rest, counts, starts, coordinates, shares):
+    """Add a sheet behind those that were added before: what each pixel shows of it.
+
+    Args:
+        near: (h, at least w) inverse depth in the sheet, 0 where a pixel does not show it.
+        column_of, row_of: (h, at least w) texel coordinates over depth.
+        opacity: (rows, columns) float32, read by Catmull-Rom and clipped to 0..1.
+        size: (H, W) of the finest atlas.
+        rest: (h, w) float32, the part of a pixel that shows what lies behind; changed.
+        counts: (h, w) uint8 points of a pixel so far; changed.
+        starts: (h, w) int64, where a pixel's points begin; empty to count alone.
+        coordinates: (n, 2) written.
+        shares: (n,) written.
+    """
+    height, width = opacity.shape
+    right, bottom = np.float32(size[1] - 1), np.float32(size[0] - 1)
+    down, across = np.float32(height / size[0]), np.float32(width / size[1])
+    put, point = starts.shape[0] > 0, np.empty(2, np.float32)
+    for row in range(counts.shape[0]):
+        for pixel in range(counts.shape[1]):
+            behind, inverse = rest[row, pixel], near[row, pixel]
+            if behind <= 0 or inverse <= 0:
+                continue
+            point[0] = min(max(column_of[row, pixel] / inverse, np.float32(0)), right)
+            point[1] = min(max(row_of[row, pixel] / inverse, np.float32(0)), bottom)
+            left, top, a, d = bicubic_taps(point, across, down, width, height)
+            value = np.float32(0)
+            for v in range(4):
+                line = np.float32(0)
+                y = min(max(top + v - 1, 0), height - 1)
+                for u in range(4):
+                    line += a[u] * opacity[y, min(max(left + u - 1, 0), width - 1)]
+                value += d[v] * line
+            share = behind * min(max(value, np.float32(0)), np.float32(1))
+            if share < SHEET_MIN_SHARE:
+                continue
+            if behind - share < SHEET_MIN_REST:
+                share = behind
+            rest[row, pixel] = behind - share
+            if put:
+                at = starts[row, pixel] + counts[row, pixel]
+                coordinates[at, 0], coordinates[at, 1] = point[0], point[1]
+                shares[at] = np.uint16(share * np.float32(SHARE_ONE) + np.float32(0.5))
+            counts[row, pixel] += 1
+
+
 @kernel(inline=True)
 def tap_index(left, top, u, v, width, height):
     """Where tap (u, v) of a point lies in its texture, those beyond the border on it."""
@@ -124,12 +181,13 @@ def tap_index(left, top, u, v, width, height):
 
 
 @kernel()
-def forward(counts, coordinates, size, texture, sign, image):
+def forward(counts, coordinates, shares, size, texture, sign, image):
     """image += sign G texture: the texture drawn by Catmull-Rom.
 
     Args:
         counts: (h, w) uint8, see above.
         coordinates: (n, 2) float32, in an atlas of `size`.
+        shares: (n,) or (0,) uint16.
         size: (H, W), which need not be the texture's.
         texture: (C, rows, columns).
         sign: 1 or -1.
@@ -143,8 +201,9 @@ def forward(counts, coordinates, size, texture, sign, image):
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
             count = counts[row, pixel]
-            into, part = row * wide + pixel, sign * share_of(count)
+            into = row * wide + pixel
             for _ in range(count):
+                part = sign * share_of(count, shares, at)
                 left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:
@@ -166,12 +225,13 @@ def part_of(weight, row, pixel):
 
 
 @kernel()
-def adjoint(counts, coordinates, size, image, weight, out):
+def adjoint(counts, coordinates, shares, size, image, weight, out):
     """The transpose of `forward`: out += G^T w image.
 
     Args:
         counts: As `forward`.
         coordinates: As `forward`.
+        shares: As `forward`.
         size: As `forward`.
         image: (C, h, w).
         weight: w, see `part_of`.
@@ -185,11 +245,12 @@ def adjoint(counts, coordinates, size, image, weight, out):
     for row in range(counts.shape[0]):
         for pixel in range(counts.shape[1]):
             count = counts[row, pixel]
-            source, w = row * wide + pixel, part_of(weight, row, pixel) * share_of(count)
-            if w <= 0:
+            source, whole = row * wide + pixel, part_of(weight, row, pixel)
+            if whole <= 0:
                 at += count
                 continue
             for _ in range(count):
+                w = whole * share_of(count, shares, at)
                 left, top, a, d = bicubic_taps(coordinates[at], across, down, width, height)
                 at += 1
                 if 1 <= left < width - 2 and 1 <= top < height - 2:

@@ -15,6 +15,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations, cameras_of
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.footprints import (
     Footprint,
     Footprints,
@@ -93,7 +94,7 @@ class FitData:
         return self.footprints.surface.size
 
     def footprint(self, index: int) -> Footprint:
-        """(h, w) counts and (n, 2) texel coordinates of the camera of an observation."""
+        """(h, w) counts, (n, 2) texel coordinates and (n,) or (0,) shares of the camera of an observation."""
         return self.footprints.of(self.observations.camera_of(index))
 
     def blank(self, index: int, channels: int) -> NDArray[np.float32]:
@@ -105,7 +106,7 @@ class FitData:
 def open_fit_data(
     cameras: Sequence[Camera],
     observations: Observations,
-    mesh: Mesh,
+    proxy: Proxy,
     atlas: tuple[int, int],
     work: Path | None = None,
     progress: Progress | None = None,
@@ -117,7 +118,7 @@ def open_fit_data(
     Args:
         cameras: Of the observations, which are as large as their cameras' pictures.
         observations: R, G, B.
-        mesh: The mesh at all their times.
+        proxy: The surface at all their times.
         atlas: (rows, columns) of the finest texture.
         work: Folder for the scratch files.
         progress: Reports the photographs that are decoded.
@@ -128,9 +129,9 @@ def open_fit_data(
         OutputError: `disk-full`.
     """
     with _open_observations(cameras, observations, work, progress) as decoded:
-        surface = make_surface(mesh, *atlas)
+        surface = make_surface(proxy.mesh, *atlas)
         detail = median_footprint(surface, cameras[reference])
-        with open_footprints(surface, cameras, detail, work) as footprints:
+        with open_footprints(surface, cameras, detail, proxy.sheets, work) as footprints:
             yield FitData(decoded, footprints)
 
 
@@ -168,7 +169,7 @@ def open_on_mesh(data: FitData, cameras: Sequence[Camera], mesh: Mesh, work: Pat
         work: Folder for scratch files.
     """
     surface = make_surface(mesh, *data.size)
-    with open_footprints(surface, cameras, data.footprints.detail, work) as footprints:
+    with open_footprints(surface, cameras, data.footprints.detail, work=work) as footprints:
         yield replace(data, footprints=footprints)
 
 

@@ -110,7 +110,7 @@ def render_and_backproject(
                 footprint, weight = data.footprint(index), observations.weights(index)
                 image = data.blank(index, model.channels)
                 if photographs:
-                    target(footprint[0], observations.codes_of(index), matrix, image)
+                    target(*footprint, observations.codes_of(index), matrix, image)
                 if composer is not None and fine_mean is not None:
                     texture = fine_mean
                     if sums is not None:

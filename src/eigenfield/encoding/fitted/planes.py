@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -16,6 +17,7 @@ from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS, SVT_CODER
 from eigenfield.core.appearance import Plane
 from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
+from eigenfield.encoding.fitted.code_planes import code_opacity
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.coverage import mean_precision
 from eigenfield.encoding.fitted.fit import OpenFit, Pixels, PlaneSettings, code_plane, coded_psnr, fit_plane
@@ -87,6 +89,7 @@ PLANE_PRESETS = (
     PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0),
     PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2),
 )
+OPACITY_STEP = 1.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
 HALF_GREY_LEVEL = 0.002  # in the photographs' range
 TEXTURES_PER_OBSERVATION = 1 / 2
 TEXTURES_MIN_COUNT, TEXTURES_MAX_COUNT = 20, 96
@@ -193,6 +196,18 @@ def step_of(quality: int) -> float:
 def byte_lambda(quality: int) -> float:
     """Lagrange multiplier at a quality: squared error of luma for a byte, for each pixel that sees a texel."""
     return lambda_of_step(PLANE_PRESETS[0].mean_step * step_of(quality))
+
+
+def coded_opacity(opacity: NDArray[np.float32], quality: int) -> Coded[NDArray[np.float32]]:
+    """The opacity of sheets as a file of a quality has it, with the even sides that the encoder takes.
+
+    Args:
+        opacity: (H, W) in 0..1, about a texel for a photograph's pixel.
+        quality: 0 to 100.
+    """
+    rows, columns = (max(MIN_SIDE_TEXELS, side + side % 2) for side in opacity.shape)
+    even = opacity if opacity.shape == (rows, columns) else cv2.resize(opacity, (columns, rows))
+    return code_opacity(even, OPACITY_STEP * step_of(quality), SVT_CODER)
 
 
 def plane_size(size: tuple[int, int], share: float) -> tuple[int, int]:

@@ -93,7 +93,7 @@ def _residual_image(data: FitData, model: PlaneModel, index: int) -> NDArray[np.
     """(C, h, w): what is left of a photograph."""
     footprint, image = data.footprint(index), data.blank(index, model.channels)
     matrix = (model.matrix / np.float32(255)).astype(np.float32)
-    target(footprint[0], data.observations.codes_of(index), matrix, image)
+    target(*footprint, data.observations.codes_of(index), matrix, image)
     forward(*footprint, data.size, model.mean, MINUS, image)
     if any(block.count for block in model.blocks):
         forward(*footprint, data.size, model.sums(slice(index, index + 1))[0], MINUS, image)

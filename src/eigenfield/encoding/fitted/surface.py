@@ -34,6 +34,7 @@ from eigenfield.core.lattice import Lattice
 from eigenfield.core.mesh import Mesh, vertex_normals
 from eigenfield.core.observations import Observations, cameras_of, select_cameras
 from eigenfield.core.progress import Progress
+from eigenfield.core.proxy import Proxy
 from eigenfield.encoding.fitted.colour import split_matrix
 from eigenfield.encoding.fitted.fit import fit_mean
 from eigenfield.encoding.fitted.kernels import adjoint, forward, gather_steps, target
@@ -150,7 +151,7 @@ def fit_surface(
     step = 2 if len(some) >= SURFACE_TUNING.subsample_observations or pixels > SURFACE_TUNING.subsample_pixels else 1
     movable = _movable_mesh(mesh, lattice, used, shape)
     best, reached, off = mesh, -np.inf, np.zeros(len(movable.lines))
-    with open_fit_data(used, some, mesh, shape, work) as every:
+    with open_fit_data(used, some, Proxy(mesh), shape, work) as every:
         for number in range(SURFACE_TUNING.rounds + 1):
             if progress is not None:
                 progress("fit surface", number, SURFACE_TUNING.rounds + 1)
@@ -240,7 +241,7 @@ def _step_equations(
 
     def backproject(index: int) -> tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]:
         footprint, weight, image = data.footprint(index), observations.weights(index), data.blank(index, 1)
-        target(footprint[0], observations.codes_of(index), matrix, image)
+        target(*footprint, observations.codes_of(index), matrix, image)
         forward(*footprint, data.size, model.mean, MINUS, image)
         asked, seen, errors = (np.zeros_like(model.mean) for _ in range(3))
         adjoint(*footprint, data.size, image, weight, asked)

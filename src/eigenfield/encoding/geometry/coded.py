@@ -12,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.codecs import encoder
+from eigenfield.coding.mesh.coder import whole_faces
 from eigenfield.core.camera import Camera
-from eigenfield.core.lattice import camera_lattice, world_lattice
+from eigenfield.core.lattice import Lattice, camera_lattice, world_lattice
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.payloads import Coded, Payload, Payloads, cameras_key, mesh_key
-from eigenfield.core.proxy import Proxy
+from eigenfield.core.proxy import Proxy, Sheets
 from eigenfield.gltf.layout_geometry import cameras_of
 
 MESH_STEP_PX = 0.25  # in the reference camera, of meshes that are no relief
@@ -28,31 +29,21 @@ MESH_CODEC = "mesh-2"
 CAMERAS_CODEC = "cameras-2"
 
 
-def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Mesh]:
-    """The mesh as a file will have it, rounded to a lattice.
+def coded_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> Coded[Proxy]:
+    """The proxy with its mesh as a file will have it, rounded to a lattice.
 
     The lattice is pixels and inverse depth of the camera that a relief was made in, else of the reference camera where
-    all of the mesh lies before it, else a grid in the world.
+    all of the mesh lies before it, else a grid in the world. Sheets of which rounding leaves no face are left out.
 
     Args:
-        proxy: The mesh, with its lattice if it is a relief.
+        proxy: With its lattice if it is a relief. The opacity of its sheets stays as it is, and is not coded.
         cameras: All cameras of the file.
         reference: Index of the reference camera.
     """
-    return mesh_of_stream(*_code_mesh(proxy, cameras, reference))
-
-
-def mesh_of_stream(stream: bytes, mesh: Mesh) -> Coded[Mesh]:
-    """The mesh that a stream of MESH_CODEC decodes to, with it."""
-    return Coded(mesh, Payloads({mesh_key(mesh): [Payload(MESH_CODEC, stream)]}))
-
-
-def _code_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> tuple[bytes, Mesh]:
-    encode = encoder(MESH_CODEC)
     mesh, lattice = proxy.mesh, proxy.lattice
     if lattice is not None:
         with contextlib.suppress(ValueError):  # too far off the picture for the lattice
-            return encode(mesh, lattice, uv_bits=UV_BITS, fine=lattice.fine)
+            return _code(proxy, lattice)
     camera = cameras[reference]
     depth = camera.project(mesh.vertices)[1]
     if (depth > 0).all():
@@ -60,11 +51,26 @@ def _code_mesh(proxy: Proxy, cameras: Sequence[Camera], reference: int) -> tuple
         inverse = 2 * DEPTH_ERROR_PX / max(float(np.linalg.norm(shifts, axis=1).max()), 1e-9)
         inverse = max(inverse, float(1 / depth.min() / 2**19))
         with contextlib.suppress(ValueError):  # as above
-            return encode(mesh, camera_lattice(camera.matrix, MESH_STEP_PX, inverse), uv_bits=UV_BITS)
+            return _code(proxy, camera_lattice(camera.matrix, MESH_STEP_PX, inverse))
     low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
     near = float(np.median(depth[depth > 0])) if (depth > 0).any() else float(np.linalg.norm(high - low))
     step = max(WORLD_STEP_PX * near / float(camera.K[0, 0]), float((high - low).max()) / 2**19)
-    return encode(mesh, world_lattice(low, step), uv_bits=UV_BITS)
+    return _code(proxy, world_lattice(low, step))
+
+
+def _code(proxy: Proxy, lattice: Lattice) -> Coded[Proxy]:
+    sheets = proxy.sheets
+    faces = () if sheets is None else sheets.faces
+    stream, mesh = encoder(MESH_CODEC)(proxy.mesh, lattice, uv_bits=UV_BITS, fine=lattice.fine, sheets=faces)
+    if sheets is not None:
+        left = np.add.reduceat(whole_faces(proxy.mesh, lattice), np.cumsum((0, *faces[:-1])), dtype=np.int64)
+        sheets = Sheets(tuple(left[left > 0].tolist()), sheets.opacity)
+    return proxy_of_stream(stream, mesh, sheets)
+
+
+def proxy_of_stream(stream: bytes, mesh: Mesh, sheets: Sheets | None = None) -> Coded[Proxy]:
+    """The proxy whose mesh a stream of MESH_CODEC decodes to, with it."""
+    return Coded(Proxy(mesh, sheets=sheets), Payloads({mesh_key(mesh): [Payload(MESH_CODEC, stream)]}))
 
 
 def coded_cameras(cameras: Sequence[Camera], mesh: Mesh, grid: NDArray[np.int64] | None) -> Coded[tuple[Camera, ...]]:

@@ -27,7 +27,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import Observations
 from eigenfield.core.payloads import Coded
 from eigenfield.core.proxy import Proxy
-from eigenfield.encoding.geometry.coded import MESH_CODEC, UV_BITS, coded_mesh, mesh_of_stream
+from eigenfield.encoding.geometry.coded import MESH_CODEC, UV_BITS, coded_mesh, proxy_of_stream
 from eigenfield.encoding.geometry.collapse_kernels import FIXED, collapse, collapse_state, collapsed_faces
 from eigenfield.encoding.geometry.distortion import DistortionMap, depth_distortion, hole_error, texel_weights
 from eigenfield.encoding.geometry.raster_kernels import draw_owners, mesh_cost
@@ -64,8 +64,9 @@ class CodedRelief:
 
 def simplify_proxy_rd(
     proxy: Proxy, cameras: Sequence[Camera], reference: int, observations: Observations, lambda_: float, texels: float
-) -> Coded[Mesh]:
-    """The mesh as a file keeps it: a relief simplified by rate and distortion, other meshes with all their triangles.
+) -> Coded[Proxy]:
+    """The proxy as a file keeps it: a relief simplified by rate and distortion, other meshes and sheets with all their
+    triangles.
 
     Args:
         proxy: With its lattice, if it is a relief.
@@ -75,10 +76,10 @@ def simplify_proxy_rd(
         lambda_: Rate-distortion weight: squared error for one byte, for each pixel that a texel is seen in.
         texels: Of the atlas, for one pixel of the reference camera.
     """
-    if proxy.lattice is not None:
+    if proxy.lattice is not None and proxy.sheets is None:
         with contextlib.suppress(ValueError):  # too far off the picture for the lattice
             made = simplify_relief_rd(proxy.mesh, proxy.lattice, cameras, observations, lambda_, texels)
-            return mesh_of_stream(made.stream, made.mesh)
+            return proxy_of_stream(made.stream, made.mesh)
     return coded_mesh(proxy, cameras, reference)
 
 

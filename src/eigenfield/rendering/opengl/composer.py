@@ -42,8 +42,9 @@ void main() {
 }
 """
 PLACE_GLSL = "in vec3 point;\nout vec4 place;\nvoid main() { place = placeOf(point); }\n"
-SUM_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(sumTextures(own), 1.0); }\n"
-FINER_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = vec4(finerValue(own), 1.0); }\n"
+SUM_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = sumTextures(own); }\n"
+FINER_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = finerValue(own); }\n"
+OPACITY_GLSL = "in vec2 own;\nout vec4 colour;\nvoid main() { colour = finerOpacity(own); }\n"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +91,8 @@ class Composer:
     """Composes a texture for one viewpoint after the other, in the context and thread that it was made in.
 
     Attributes:
-        texture: R, G, B of half-floats of the scene's whole atlas, with mip maps; row 0 is v = 0.
+        texture: R, G, B and the opacity of sheets as half-floats, of the scene's whole atlas, with mip maps; row 0 is
+            v = 0.
     """
 
     def __init__(self, context: Any, scene: Scene, mode: str) -> None:
@@ -110,14 +112,18 @@ class Composer:
         self._composed: Any = None
         self._maps: Any = None
         self._colours = _colours_of(scene)
-        self._sum, self._finer = (self._program(QUAD_GLSL, body) for body in (SUM_GLSL, FINER_GLSL))
+        bodies = SUM_GLSL, FINER_GLSL, OPACITY_GLSL
+        self._sum, self._finer, self._cover = (self._program(QUAD_GLSL, body) for body in bodies)
         corners = self.keep(context.buffer(np.array([[0, 0], [1, 0], [0, 1], [1, 1]], np.float32).tobytes()))
         set_uniforms(self._sum, stored=np.int32(0), places=np.int32(1), weightMaps=np.int32(2))
-        set_uniforms(self._finer, coarse=np.int32(0), rectangle=WHOLE_RECTANGLE)
+        for program in (self._finer, self._cover):
+            set_uniforms(program, coarse=np.int32(0), rectangle=WHOLE_RECTANGLE)
         self._quads = {
             program: self.keep(context.vertex_array(program, [(corners, "2f", "corner")]))
-            for program in (self._sum, self._finer)
+            for program in (self._sum, self._finer, self._cover)
         }
+        sheets = scene.proxy.sheets
+        self._opacity = None if sheets is None else self._one_channel(sheets.opacity)
         self._whole, self._coarser = self._make_grids()
         self.texture = self._whole.target
 
@@ -163,6 +169,9 @@ class Composer:
         for grid in self._coarser:
             grid.target.use(0)
             self._quads[self._finer].render(self._context.TRIANGLE_STRIP)
+        if self._opacity is not None:
+            self._opacity.use(0)
+            self._quads[self._cover].render(self._context.TRIANGLE_STRIP)
         self.texture.build_mipmaps()
         self._composed = wanted
 
@@ -224,6 +233,11 @@ class Composer:
             target.build_mipmaps()
             target.filter = (self._context.LINEAR_MIPMAP_LINEAR, self._context.LINEAR)  # anisotropy: Mesa's blurs
         return _Grid(target, self.keep(self._context.framebuffer([target])))
+
+    def _one_channel(self, picture: NDArray[np.float32]) -> Any:
+        height, width = picture.shape
+        data = np.ascontiguousarray(picture, np.float32)
+        return _without_filter(self.keep(self._context.texture((width, height), 1, data, dtype="f4", alignment=1)))
 
     def _mean(self, plane: Plane, colours: NDArray[np.float64]) -> _Part:
         height, width, channels = plane.mean.shape

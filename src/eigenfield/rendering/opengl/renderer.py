@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.errors import OptionError
+from eigenfield.core.proxy import Sheets
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.checks import TEXTURE_FILTERS, check_filter, check_textures
 from eigenfield.rendering.opengl.composer import GLSL_HEAD, Composer, set_uniforms, shader
@@ -31,12 +32,14 @@ void main() {
 }
 """
 SURFACE_FRAGMENT_GLSL = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = vec4(surfaceColour(uv), 1.0); }\n"
+SHEET_FRAGMENT_GLSL = "in vec2 uv;\nout vec4 colour;\nvoid main() { colour = sheetColour(uv); }\n"
 
 
 class OpenGLRenderer:
     """Draws a scene with OpenGL; used from the thread that made it, and closed (it is a context manager).
 
-    Each viewpoint's texture is composed and then drawn (decision 15).
+    Each viewpoint's texture is composed and then drawn (decision 15). Sheets are drawn back to front. Of each the depth
+    is drawn first: what it shows is what is nearest, blended once over the sheets behind.
 
     Attributes:
         context: The moderngl context; None: the renderer is closed.
@@ -57,7 +60,7 @@ class OpenGLRenderer:
             scene: The scene.
             filter: `bilinear` or `bicubic` (Catmull-Rom).
             weights: Mode of the weights that texels look up, one of `WEIGHT_MODES`.
-            multisample: Samples of an edge pixel; 0: edges are not smoothed.
+            multisample: Samples of an edge pixel; 0: edges are not smoothed. Those of sheets never are.
             context: A moderngl context to draw in. Default: a new one.
 
         Raises:
@@ -70,6 +73,7 @@ class OpenGLRenderer:
         self._scene = scene
         self._composer: Composer | None = None
         self._multisample = multisample
+        self._dtype = "f1" if scene.proxy.sheets is None else "f2"  # 8 bits are too few to blend sheets in
         self._owned = context is None
         self._kept: tuple[tuple[int, int], Any, Any] | None = None
         self.context: Any = make_context() if context is None else context
@@ -126,8 +130,9 @@ class OpenGLRenderer:
             OptionError: `textures`, `background`.
         """
         frame = self.paint(camera, weights, textures=textures, colour=colour)  # R, G and B are times coverage
-        codes = np.frombuffer(frame.read(components=4), np.uint8).reshape(camera.height, camera.width, 4)[::-1]
-        data = codes.astype(np.float32) / np.float32(255)
+        kept, full = (np.uint8, 255) if self._dtype == "f1" else (np.float16, 1)
+        values = np.frombuffer(frame.read(components=4, dtype=self._dtype), kept)
+        data = values.reshape(camera.height, camera.width, 4)[::-1].astype(np.float32) / np.float32(full)
         image, coverage = data[..., :3], np.ascontiguousarray(data[..., 3])
         image = image + (1 - coverage)[..., None] * background_of(background, 3)
         return Picture(np.ascontiguousarray(image), coverage)
@@ -142,7 +147,7 @@ class OpenGLRenderer:
     ) -> Any:
         """Draw R, G, B times coverage, and coverage, into a framebuffer, bottom row first.
 
-        It stays on the GPU until the next call overwrites it.
+        It stays on the GPU until the next call overwrites it. It has 8 bits, or halves if there are sheets.
 
         Args:
             camera: As of `draw`.
@@ -162,20 +167,38 @@ class OpenGLRenderer:
         clip = _clip_matrix(camera, self._middle, self._radius)
         set_uniforms(self._program, toClip=clip.T, exposureScale=1 / gain, exposureBias=-offset / gain)
         drawn.use()
-        self.context.enable_only(self.context.DEPTH_TEST)
         drawn.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         self._composer.texture.use(0)
-        self._array.render()
+        if self._scene.proxy.sheets is None:
+            self.context.enable_only(self.context.DEPTH_TEST)
+            self._array.render()
+        else:
+            self._draw_sheets(drawn, self._scene.proxy.sheets)
         if resolved is not drawn:
             self.context.copy_framebuffer(resolved, drawn)
         return resolved
+
+    def _draw_sheets(self, drawn: Any, sheets: Sheets) -> None:
+        context, first = self.context, 0
+        context.enable_only(context.DEPTH_TEST | context.BLEND)
+        context.blend_func = context.ONE, context.ONE_MINUS_SRC_ALPHA
+        for faces in sheets.faces:
+            for shown, nearest in ((False, "<"), (True, "<=")):
+                drawn.color_mask, context.depth_func = (shown,) * 4, nearest
+                drawn.use()  # the mask takes effect
+                if not shown:
+                    drawn.clear(depth=1.0)
+                self._array.render(vertices=3 * faces, first=3 * first)
+            first += faces
+        context.depth_func = "<"
 
     def _set_up(self, filter: str, weights: str) -> None:
         context, scene, mesh = self.context, self._scene, self._scene.proxy.mesh
         self._composer = Composer(context, scene, weights)
         keep = self._composer.keep
         head = f"{GLSL_HEAD}#define BICUBIC {TEXTURE_FILTERS.index(filter)}\n"
-        source = head + shader("cubic") + shader("surface") + SURFACE_FRAGMENT_GLSL
+        main = SURFACE_FRAGMENT_GLSL if scene.proxy.sheets is None else SHEET_FRAGMENT_GLSL
+        source = head + shader("cubic") + shader("surface") + main
         self._program = keep(context.program(vertex_shader=SURFACE_VERTEX_GLSL, fragment_shader=source))
         # about the middle of the mesh: float32 keeps few digits where the world's origin is far away
         low, high = mesh.vertices.min(axis=0).astype(np.float64), mesh.vertices.max(axis=0).astype(np.float64)
@@ -194,9 +217,9 @@ class OpenGLRenderer:
         if self._kept is None or self._kept[0] != (width, height):
             self._release_frames()
             context, size = self.context, (width, height)
-            resolved = context.framebuffer([context.renderbuffer(size, 4)], context.depth_renderbuffer(size))
-            drawn = resolved
-            if self._multisample:
+            values = context.renderbuffer(size, 4, dtype=self._dtype)
+            drawn = resolved = context.framebuffer([values], context.depth_renderbuffer(size))
+            if self._multisample and self._dtype == "f1":
                 samples = min(self._multisample, context.max_samples)
                 depth = context.depth_renderbuffer(size, samples=samples)
                 drawn = context.framebuffer([context.renderbuffer(size, 4, samples=samples)], depth)

@@ -2,11 +2,13 @@
 // which surface.glsl then draws (decision 15).
 //
 // This body is compiled as GLSL 3.30 by eigenfield/rendering/opengl/composer.py and as GLSL ES 3.00 by the web viewer. Whoever
-// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of three passes. All
-// draw into textures whose row 0 is v = 0, and the second and third add to what is there:
+// includes it writes the #version line, the precisions, cubic.glsl before it, and a main for each of four passes. All
+// draw into textures whose row 0 is v = 0. All but the first add R, G, B and opacity to what is there, which is cleared
+// to zeros before:
 //   placeOf       once, the mesh laid out by its texture coordinates: where each texel lies
 //   sumTextures   for each mean and basis, a rectangle of a grid: its textures, weighted, as R, G, B
 //   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there
+//   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets
 // Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a
 // mean. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.
 
@@ -29,7 +31,7 @@ uniform int firstGroup;
 uniform sampler2D places;      // of each texel that is drawn, as `placeOf` makes them; w is 0 where there is no surface
 uniform vec3 eye;              // X, Y and height above the view plane
 
-uniform sampler2D coarse;      // a grid's sum
+uniform sampler2D coarse;      // a grid's sum; or the opacity, in the first channel, at a density of its own
 
 // A point of the surface, given as X, Y and height above the view plane, as it is seen from the plane: X, Y and 1 over
 // the height. Halves keep that well enough for points near and far.
@@ -47,7 +49,7 @@ vec2 viewCoordinates(vec4 place) {
 }
 
 // The sum of a mean's or a basis's textures at `own` texture coordinates of theirs, as R, G, B.
-vec3 sumTextures(vec2 own) {
+vec4 sumTextures(vec2 own) {
   vec2 nodes = vec2(textureSize(weightMaps, 0).xy);
   vec2 view = rayWeights ? viewCoordinates(texelFetch(places, ivec2(gl_FragCoord.xy), 0)) : vec2(0.0);
   vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;
@@ -62,8 +64,11 @@ vec3 sumTextures(vec2 own) {
       entry++;
     }
   }
-  return sum;
+  return vec4(sum, 0.0);
 }
 
 // The value of the grid `coarse` at texture coordinates of the atlas.
-vec3 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }
+vec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }
+
+// The opacity in `coarse` at texture coordinates of the atlas.
+vec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }

@@ -6,17 +6,17 @@ vec4 catmullRom(float f) {
 
 // A texture's finest level at `texel`, whole at texel centres, taps clamped to the border. Sixteen texels are read one
 // by one: nine bilinear reads between them take longer where no hardware filters, and hardware keeps 8 bits of a weight.
-vec3 readCubic(sampler2D source, vec2 texel) {
+vec4 readCubic(sampler2D source, vec2 texel) {
   ivec2 last = textureSize(source, 0) - 1;
   ivec2 base = ivec2(floor(texel));
   vec2 f = texel - vec2(base);
   vec4 across = catmullRom(f.x), down = catmullRom(f.y);
-  vec3 sum = vec3(0.0);
+  vec4 sum = vec4(0.0);
   for (int row = 0; row < 4; row++) {
-    vec3 line = vec3(0.0);
+    vec4 line = vec4(0.0);
     for (int column = 0; column < 4; column++) {
       ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);
-      line += across[column] * texelFetch(source, at, 0).rgb;
+      line += across[column] * texelFetch(source, at, 0);
     }
     sum += down[row] * line;
   }

@@ -11,9 +11,9 @@ uniform float finest;       // texels a pixel up to which the finest level is re
 uniform vec3 exposureScale; // picture = RGB * exposureScale + exposureBias: 1 / gain and -offset / gain of a captured
 uniform vec3 exposureBias;  // camera of a harmonised scene, else 1 and 0
 
-// R, G, B at texture coordinates; nothing is cut off.
-vec3 surfaceValue(vec2 uv) {
-  vec3 plain = texture(composed, uv, -log2(finest)).rgb;
+// R, G, B and opacity at texture coordinates; nothing is cut off.
+vec4 surfaceValue(vec2 uv) {
+  vec4 plain = texture(composed, uv, -log2(finest));
 #if BICUBIC == 1
   vec2 size = vec2(textureSize(composed, 0));
   vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;
@@ -23,7 +23,16 @@ vec3 surfaceValue(vec2 uv) {
   return plain;
 }
 
-// What the surface shows at texture coordinates.
-vec3 surfaceColour(vec2 uv) {
-  return clamp(surfaceValue(uv) * exposureScale + exposureBias, 0.0, 1.0);
+// What is seen of a value of the surface.
+vec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }
+
+// What an opaque surface shows at texture coordinates.
+vec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }
+
+// What a sheet adds to the sheets behind it at texture coordinates: R, G, B times its opacity, and its opacity. It is
+// blended with the factors ONE and ONE_MINUS_SRC_ALPHA. Colours are not cut off: those of all sheets together count.
+vec4 sheetColour(vec2 uv) {
+  vec4 value = surfaceValue(uv);
+  float opacity = clamp(value.a, 0.0, 1.0);
+  return vec4(seenColour(value) * opacity, opacity);
 }

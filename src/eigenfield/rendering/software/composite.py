@@ -17,14 +17,14 @@ from numpy.typing import NDArray
 from eigenfield.core.appearance import Basis
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.software.kernels import TILE_AREA
-from eigenfield.rendering.software.resample import Taps, make_taps, tiles_read
-from eigenfield.rendering.software.resample_kernels import add_tiles, clear_outside, enlarge_tiles, join_tiles
+from eigenfield.rendering.software.resample import TileUpsampler, make_tile_upsampler, tiles_read, tiles_reading
+from eigenfield.rendering.software.resample_kernels import add_tiles, enlarge_tiles, join_tiles
 from eigenfield.rendering.software.tiles import (
     TILES_PER_TASK,
     Tiled,
     compose,
-    empty_layers,
-    fill_layers,
+    compose_without_mean,
+    make_image,
     tile,
     tile_shape,
 )
@@ -42,8 +42,9 @@ class Part:
         tiled: The textures.
         weights: (No, n) float64 for each basis.
         number: (tile rows, tile columns) each tile's index in `tiled`; -1: the tile is left out.
-        taps: Filters along rows and columns that make it as fine as the atlas; None where it is.
-        rectangle: [top, bottom) x [left, right) outside of which it is zero; None: it is whole.
+        upsampler: Makes it as fine as the atlas; None where it is.
+        rectangle: [top, bottom) x [left, right) outside of which it is zero.
+        reached: (tiles of the atlas,) bool, those where it is not zero.
     """
 
     channels: slice
@@ -51,8 +52,9 @@ class Part:
     tiled: Tiled
     weights: tuple[NDArray[np.float64], ...]
     number: NDArray[np.int64]
-    taps: tuple[Taps, Taps] | None
-    rectangle: tuple[int, int, int, int] | None
+    upsampler: TileUpsampler | None
+    rectangle: tuple[int, int, int, int]
+    reached: NDArray[np.bool_]
 
     def omega(self, view: ViewWeights, count: int | None) -> NDArray[np.float64]:
         """(N,) weights of the components.
@@ -75,6 +77,7 @@ class Composite:
         base: (tiles, D, TILE_AREA) float32, what is drawn without eigen textures.
         matrix: (D, K) float32 from the planes' channels to the texture's.
         parts: What is summed.
+        opacity: As of `compose_tiles`.
         plain: Whether the scene is one plane of one size: its part holds the mean, and nothing is joined.
     """
 
@@ -83,16 +86,19 @@ class Composite:
     base: NDArray[np.float32]
     matrix: NDArray[np.float32]
     parts: tuple[Part, ...]
+    opacity: NDArray[np.float32]
     plain: bool
 
 
-def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
+def make_composite(scene: Scene, used: NDArray[np.bool_], opacity: NDArray[np.float32] | None = None) -> Composite:
     """Lay out a scene's textures.
 
     Args:
         scene: The scene.
         used: (tile rows, tile columns) the tiles of the atlas that are ever drawn.
+        opacity: (tiles, TILE_AREA) of sheets. Default: zeros.
     """
+    fourth = np.zeros((1, TILE_AREA), np.float32) if opacity is None else opacity
     planes, to_rgb, size = scene.appearance.planes, scene.appearance.to_rgb, scene.appearance.atlas
     total = sum(int(plane.mean.shape[2]) for plane in planes)
     matrix = np.eye(total, dtype=np.float32) if to_rgb is None else to_rgb.astype(np.float32)
@@ -102,13 +108,14 @@ def make_composite(scene: Scene, used: NDArray[np.bool_]) -> Composite:
         plane = planes[0]
         tiled = tile(plane.mean, plane.bases, used, total)
         weights = tuple(basis.weights.astype(np.float64) for basis in plane.bases)
-        part = Part(slice(total), size, tiled, weights, _numbers(used), None, None)
-        return Composite(size, part.number, tiled.mean, matrix, (part,), True)
+        part = Part(slice(total), size, tiled, weights, _numbers(used), None, (0, size[0], 0, size[1]), used.ravel())
+        assert tiled.mean is not None
+        return Composite(size, part.number, tiled.mean, matrix, (part,), fourth, True)
     base = np.zeros((len(places), len(matrix), TILE_AREA), np.float32)
     for plane, own in zip(planes, scene.appearance.channel_slices, strict=True):
-        _add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
+        add_mean(plane.mean, size, places, np.ascontiguousarray(matrix[:, own]), base)
     parts = tuple(_part(own, bases, size, used) for own, bases in groups)
-    return Composite(size, _numbers(used), base, matrix, parts, False)
+    return Composite(size, _numbers(used), base, matrix, parts, fourth, False)
 
 
 def compose_scene(
@@ -133,22 +140,24 @@ def compose_scene(
     if composite.plain:
         (part,) = composite.parts
         omega = part.omega(view, count) if part.weights else np.zeros(0)
-        compose(part.tiled, omega, part.number[kept], layers)
+        compose(part.tiled, omega, part.number[kept], composite.opacity, layers)
         return
-    for part, buffer in zip(composite.parts, buffers, strict=True):
-        wanted = kept if part.taps is None else tiles_read(kept, *part.taps, tile_shape(part.size))
+    for part, image in zip(composite.parts, buffers, strict=True):
+        wanted = kept
+        if part.upsampler is not None:
+            wanted = tiles_read(kept, part.upsampler.rows, part.upsampler.columns, tile_shape(part.size))
         numbers = part.number[wanted & (part.number >= 0)]
-        compose(part.tiled, part.omega(view, count), numbers, buffer)
-        if part.rectangle is not None:
-            clear_outside(part.tiled.places[numbers], tile_shape(part.size)[1], *part.rectangle, buffer)
+        compose_without_mean(part.tiled, part.omega(view, count), numbers, part.size, part.rectangle, image)
     tiles, numbers = np.flatnonzero(kept), composite.number[kept]
 
     def join(piece: tuple[int, int]) -> None:
-        some = tiles[piece[0] : piece[1]]
+        some = tiles[slice(*piece)]
         total = np.zeros((len(some), composite.matrix.shape[1], TILE_AREA), np.float32)
-        for part, buffer in zip(composite.parts, buffers, strict=True):
-            _add(part.taps, some, composite.size, part.size, buffer, total[:, part.channels])
-        join_tiles(some, total, composite.matrix, composite.base, numbers[piece[0] : piece[1]], layers)
+        for part, image in zip(composite.parts, buffers, strict=True):
+            _add(part.upsampler, some, part.reached, composite.size, image, part.channels.start, total)
+        join_tiles(
+            some, total, composite.matrix, composite.base, numbers[slice(*piece)], composite.opacity, layers
+        )  # fmt: skip
 
     parallel_map(join, pieces(len(tiles), TILES_PER_TASK))
 
@@ -161,7 +170,7 @@ def make_buffers(composite: Composite) -> list[NDArray[np.float32]]:
     """
     if composite.plain:
         return []
-    return [empty_layers(*part.size, part.channels.stop - part.channels.start) for part in composite.parts]
+    return [make_image(part.size, part.channels.stop - part.channels.start) for part in composite.parts]
 
 
 def _groups(scene: Scene) -> list[tuple[slice, list[Basis]]]:
@@ -182,20 +191,21 @@ def _whole(bases: Sequence[Basis], size: tuple[int, int]) -> bool:
 
 def _part(own: slice, bases: list[Basis], atlas: tuple[int, int], used: NDArray[np.bool_]) -> Part:
     size, (row, column) = bases[0].size, bases[0].corner
-    taps = None if size == atlas else (make_taps(atlas[0], size[0]), make_taps(atlas[1], size[1]))
-    kept = used if taps is None else tiles_read(used, *taps, tile_shape(size))
-    rectangle = None
-    if not _whole(bases, size):
-        height, width = bases[0].textures.shape[1:3]
-        rectangle = (row, row + height, column, column + width)
-        inside = np.zeros_like(kept)
-        (top, _), (left, _) = tile_shape((row + 1, 1)), tile_shape((column + 1, 1))
-        bottom, right = tile_shape((row + height, column + width))
-        inside[top - 1 : bottom, left - 1 : right] = True
-        kept = kept & inside
+    upsampler = None if size == atlas else make_tile_upsampler(atlas, size)
+    height, width = bases[0].textures.shape[1:3]
+    rectangle = (row, row + height, column, column + width)
+    inside = np.zeros(tile_shape(size), np.bool_)
+    (top, _), (left, _) = tile_shape((row + 1, 1)), tile_shape((column + 1, 1))
+    bottom, right = tile_shape((row + height, column + width))
+    inside[top - 1 : bottom, left - 1 : right] = True
+    if upsampler is None:
+        kept, reached = used & inside, inside
+    else:
+        kept = inside & tiles_read(used, upsampler.rows, upsampler.columns, tile_shape(size))
+        reached = tiles_reading(inside, upsampler.rows, upsampler.columns)
     weights = tuple(basis.weights.astype(np.float64) for basis in bases)
     tiled = tile(None, bases, kept, own.stop - own.start)
-    return Part(own, size, tiled, weights, _numbers(kept), taps, rectangle)
+    return Part(own, size, tiled, weights, _numbers(kept), upsampler, rectangle, reached.ravel())
 
 
 def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
@@ -204,42 +214,47 @@ def _numbers(kept: NDArray[np.bool_]) -> NDArray[np.int64]:
     return number
 
 
-def _add_mean(
+def add_mean(
     mean: NDArray[np.float32],
     atlas: tuple[int, int],
     places: NDArray[np.int64],
     share: NDArray[np.float32],
     base: NDArray[np.float32],
 ) -> None:
-    """base (tiles, D, TILE_AREA) += share (D, C) times the mean (h, w, C) at the atlas's size."""
-    height, width, depth = mean.shape
-    taps = None if (height, width) == atlas else (make_taps(atlas[0], height), make_taps(atlas[1], width))
-    layers = empty_layers(height, width, depth)
-    fill_layers(mean, layers)
+    """Add a mean at the atlas's size to some tiles.
+
+    Args:
+        mean: (h, w, C).
+        atlas: (H, W).
+        places: (tiles,) the tiles' numbers in the atlas.
+        share: (D, C) from its channels to those of the tiles.
+        base: (tiles, D, TILE_AREA), added to.
+    """
+    (*size, depth), every = mean.shape, np.ones(tile_shape(atlas), np.bool_).ravel()
+    upsampler = None if (size[0], size[1]) == atlas else make_tile_upsampler(atlas, (size[0], size[1]))
+    image = make_image((size[0], size[1]), depth, mean)
 
     def add(piece: tuple[int, int]) -> None:
-        some = places[piece[0] : piece[1]]
+        some = places[slice(*piece)]
         total = np.zeros((len(some), depth, TILE_AREA), np.float32)
-        _add(taps, some, atlas, (height, width), layers, total)
-        base[piece[0] : piece[1]] += np.einsum("dc,tca->tda", share, total)
+        _add(upsampler, some, every, atlas, image, 0, total)
+        base[slice(*piece)] += np.einsum("dc,tca->tda", share, total)
 
     parallel_map(add, pieces(len(places), TILES_PER_TASK))
 
 
 def _add(
-    taps: tuple[Taps, Taps] | None,
+    upsampler: TileUpsampler | None,
     tiles: NDArray[np.int64],
+    reached: NDArray[np.bool_],
     atlas: tuple[int, int],
-    size: tuple[int, int],
-    layers: NDArray[np.float32],
+    image: NDArray[np.float32],
+    channel: int,
     total: NDArray[np.float32],
 ) -> None:
-    """total (n, C, TILE_AREA) += the texture in `layers`, upsampled where it is coarser than the atlas."""
-    if taps is None:
-        add_tiles(tiles, layers, total)
+    """total (n, K, TILE_AREA) += the image, from a channel on, upsampled where it is coarser than the atlas."""
+    if upsampler is None:
+        add_tiles(tiles, tile_shape(atlas)[1], image, channel, total)
         return
-    rows, columns = taps
-    enlarge_tiles(
-        tiles, tile_shape(atlas)[1], layers, tile_shape(size)[1], rows.at, rows.weight, columns.at, columns.weight,
-        total,
-    )  # fmt: skip
+    rows, columns = upsampler.rows, (upsampler.first, upsampler.count, upsampler.matrix)
+    enlarge_tiles(tiles, reached, atlas, image, rows.base, rows.weight, *columns, channel, total)

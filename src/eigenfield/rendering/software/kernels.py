@@ -18,7 +18,7 @@ TILE_TEXELS = 16  # texels along a side of a tile
 TILE_AREA = TILE_TEXELS * TILE_TEXELS
 CODE_LANES = 16  # texels whose codes of four components lie together
 PREFETCH_SAMPLES = 32  # by which a texel is fetched before it is needed
-LAYER_CHANNELS = 3  # channels of a layer; the fourth number of a texel is padding
+LAYER_CHANNELS = 3  # channels of a layer; the fourth number of a texel is its opacity, 0 in opaque scenes
 
 
 @kernel()
@@ -104,7 +104,24 @@ def add_four(total, codes, a, b, c, d):
 
 
 @kernel(fastmath=True)
-def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, layers):
+def write_texels(values, fourth, out):
+    """Write a tile of a layer.
+
+    Args:
+        values: (LAYER_CHANNELS, TILE_AREA) float32.
+        fourth: (TILE_AREA,).
+        out: (TILE_AREA, 4), written.
+    """
+    red, green, blue = values[0], values[1], values[2]
+    for i in range(TILE_AREA):
+        out[i, 0] = red[i]
+        out[i, 1] = green[i]
+        out[i, 2] = blue[i]
+        out[i, 3] = fourth[i]
+
+
+@kernel(fastmath=True)
+def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, opacity, layers):
     """Equation 8 on some tiles: mean + offset + sum of coefficients times codes.
 
     A tile's components lie together, so that its total stays in the first cache.
@@ -117,11 +134,11 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
         groups: (g,) the groups that are summed.
         coefficients: (4 G, C) float32.
         offset: (C,) float32.
+        opacity: (tiles of the atlas, TILE_AREA) float32 fourth numbers of the texels; or (1, TILE_AREA) for all tiles.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
     channels = codes.shape[1]
     totals = np.zeros((LAYER_CHANNELS, TILE_AREA), np.float32)
-    red, green, blue = totals[0], totals[1], totals[2]
     for t in tiles:
         for first in range(0, channels, LAYER_CHANNELS):
             for k in range(first, min(first + LAYER_CHANNELS, channels)):
@@ -134,12 +151,8 @@ def compose_tiles(tiles, places, mean, codes, groups, coefficients, offset, laye
                         total, codes[t, k, g],
                         coefficients[j, k], coefficients[j + 1, k], coefficients[j + 2, k], coefficients[j + 3, k],
                     )  # fmt: skip
-            out = layers[first // LAYER_CHANNELS, places[t]]
-            for i in range(TILE_AREA):
-                out[i, 0] = red[i]
-                out[i, 1] = green[i]
-                out[i, 2] = blue[i]
-                out[i, 3] = np.float32(0)
+            fourth = opacity[places[t] % opacity.shape[0]]
+            write_texels(totals, fourth, layers[first // LAYER_CHANNELS, places[t]])
 
 
 @kernel(fastmath=True)
@@ -265,6 +278,24 @@ def store_line(line, scale, eight_bit, out):
 
 
 @kernel(fastmath=True)
+def store_layer(line, layer, scale, eight_bit, out):
+    """Write a line's channels of one layer.
+
+    Args:
+        line: (pixels * LAYER_CHANNELS,).
+        layer: Number of the layer.
+        scale, eight_bit: As of `store_line`.
+        out: (pixels, C), written.
+    """
+    first, channels = layer * LAYER_CHANNELS, out.shape[1]
+    if channels == LAYER_CHANNELS:
+        store_line(line, scale, eight_bit, out.reshape(-1))
+    else:
+        for k in range(first, min(first + LAYER_CHANNELS, channels)):
+            store_line(line[k - first :: LAYER_CHANNELS], scale, eight_bit, out[:, k])
+
+
+@kernel(fastmath=True)
 def cover_line(near, per_pixel, coverage):
     """The part of each pixel's samples that show the surface.
 
@@ -328,7 +359,7 @@ def shade_rows(
         picture: (H, W, C) uint8 or float32, written.
         coverage: (H, W), written.
     """
-    pixels, channels = picture.shape[1], picture.shape[2]
+    pixels = picture.shape[1]
     most = pixels * samples
     for row in range(first, last):
         most = max(most, 4 * (spans[row, 1] - spans[row, 0]))
@@ -358,8 +389,4 @@ def shade_rows(
                 for at in range(end - one):
                     for k in range(LAYER_CHANNELS):
                         line[multisampled[one + at] * LAYER_CHANNELS + k] = edges[at * LAYER_CHANNELS + k]
-            if channels == LAYER_CHANNELS:
-                store_line(line, scale, eight_bit, picture[row].reshape(-1))
-            else:
-                for k in range(layer * LAYER_CHANNELS, min(layer * LAYER_CHANNELS + LAYER_CHANNELS, channels)):
-                    store_line(line[k - layer * LAYER_CHANNELS :: LAYER_CHANNELS], scale, eight_bit, picture[row, :, k])
+            store_layer(line, layer, scale, eight_bit, picture[row])

@@ -20,6 +20,7 @@ from eigenfield.rendering.novel import novel_camera
 from eigenfield.rendering.picture import Picture, camera_colour, undo_colour
 from eigenfield.rendering.software import drawing
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
+from eigenfield.rendering.software.sheets import make_stack, set_up_sheets, shade_sheets
 from eigenfield.rendering.software.tiles import empty_layers, fill_layers, read_layers
 from eigenfield.rendering.weights import ViewWeights, camera_weights, view_weights
 
@@ -58,7 +59,12 @@ class Renderer:
         self.channels = scene.appearance.channels
         self._surface = drawing.make_surface(scene.proxy.mesh, *scene.appearance.atlas)
         self._detail = drawing.median_footprint(self._surface, scene.rig.cameras[scene.rig.reference])
-        self._composite = make_composite(scene, self._surface.used)
+        sheets, used = scene.proxy.sheets, self._surface.used
+        self._stack = None if sheets is None else make_stack(sheets, self._surface.size)
+        if self._stack is None:
+            self._composite = make_composite(scene, used)
+        else:
+            self._composite = make_composite(scene, used & self._stack.visible, self._stack.opacity)
         self._spare: deque[Buffers] = deque(maxlen=RENDER_SPARE_BUFFERS)
 
     def draw(
@@ -155,12 +161,20 @@ class Renderer:
         check_filter(filter)
         check_textures(textures)
         behind = background_of(background, self.channels)
+        if samples is None and self._stack is not None:
+            samples = self.grid_side(camera)  # no edge is smoothed
         sampling = drawing.choose_sampling(self._surface, camera, samples, self._detail)
         buffers = self._take(camera.height, camera.width, sampling)
-        frame = buffers.frame
-        drawing.rasterise_surface(self._surface, camera, sampling, frame)
+        frame, bands = buffers.frame, []
+        if self._stack is None:
+            drawing.rasterise_surface(self._surface, camera, sampling, frame)
+        else:
+            bands = set_up_sheets(self._surface, camera, frame)
         compose_scene(self._composite, weights, textures, frame.needed != 0, buffers.sums, buffers.layers)
-        drawn = drawing.shade(self._surface, frame, buffers.layers, filter, behind, dtype)
+        if self._stack is None:
+            drawn = drawing.shade(self._surface, frame, buffers.layers, filter, behind, dtype)
+        else:
+            drawn = shade_sheets(self._surface, self._stack, bands, frame, buffers.layers, filter, behind, dtype)
         self._spare.append(buffers)
         return drawn
 

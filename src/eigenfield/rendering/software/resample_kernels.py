@@ -1,4 +1,7 @@
-"""Kernels that upsample coarse tiles and join the channels of planes."""
+"""Kernels that upsample what is summed at a coarser density, and join the channels of planes.
+
+What is summed lies row by row, a channel after the other, as `tiles.make_image` makes it.
+"""
 
 # mypy: disable-error-code="no-untyped-def,no-untyped-call"
 
@@ -6,75 +9,105 @@ from __future__ import annotations
 
 import numpy as np
 
-from eigenfield.rendering.software.kernels import LAYER_CHANNELS, TILE_AREA, TILE_TEXELS
+from eigenfield.rendering.software.kernels import LAYER_CHANNELS, TILE_AREA, TILE_TEXELS, add_four, write_texels
+from eigenfield.rendering.software.simd import add_row_of_product
 from eigenfield.runtime.jit import kernel
+
+IMAGE_BORDER_TEXELS = 2  # that repeat an image's edge: taps need not be clamped
 
 
 @kernel(fastmath=True)
-def enlarge_tiles(tiles, tile_columns, coarse, coarse_columns, row_at, row_weight, column_at, column_weight, total):
-    """Add some tiles of an upsampled texture, filtered first along rows, then down columns.
+def compose_image(tiles, places, codes, groups, coefficients, offset, tile_columns, rectangle, image):
+    """Equation 8 without the mean on some tiles of an image.
+
+    Args:
+        tiles, places, codes, groups, coefficients, offset: As of `compose_tiles`.
+        tile_columns: Width of the image, in tiles.
+        rectangle: (4,) [top, bottom) x [left, right) outside of which the image is zero.
+        image: (C, H, W), written.
+    """
+    total = np.empty(TILE_AREA, np.float32)
+    for t in tiles:
+        row, column = places[t] // tile_columns * TILE_TEXELS, places[t] % tile_columns * TILE_TEXELS
+        top, bottom = max(rectangle[0] - row, 0), min(rectangle[1] - row, TILE_TEXELS)
+        left, right = max(rectangle[2] - column, 0), min(rectangle[3] - column, TILE_TEXELS)
+        for k in range(codes.shape[1]):
+            total[:] = offset[k]
+            for g in groups:
+                j = 4 * g
+                add_four(
+                    total, codes[t, k, g],
+                    coefficients[j, k], coefficients[j + 1, k], coefficients[j + 2, k], coefficients[j + 3, k],
+                )  # fmt: skip
+            for y in range(TILE_TEXELS):
+                out = image[k, IMAGE_BORDER_TEXELS + row + y, IMAGE_BORDER_TEXELS + column :]
+                inside = top <= y < bottom
+                for x in range(TILE_TEXELS):
+                    out[x] = total[y * TILE_TEXELS + x] if inside and left <= x < right else np.float32(0)
+
+
+@kernel()
+def enlarge_tiles(tiles, reached, size, image, row_base, row_weight, first, count, matrix, channel, total):
+    """Add some tiles of an upsampled image, filtered first along rows, then down columns.
 
     Args:
         tiles: (n,) numbers of the fine tiles.
-        tile_columns: Width of the fine atlas, in tiles.
-        coarse: (L, tiles, TILE_AREA, 4) the coarse texture.
-        coarse_columns: Width of the coarse atlas, in tiles.
-        row_at, row_weight: (H, 4), of `Taps`.
-        column_at, column_weight: (W, 4), of `Taps`.
-        total: (n, C, TILE_AREA), added to.
+        reached: (fine tiles,) bool, those where the image is not zero.
+        size: (rows, columns) of the fine atlas.
+        image: (C, H, W) the coarse image.
+        row_base, row_weight: (rows,) and (rows, 4), of `Taps`.
+        first, count, matrix: Of `TileUpsampler`.
+        channel: First of the channels of `total`.
+        total: (n, at least channel + C, TILE_AREA), added to.
     """
-    height, width, channels = row_at.shape[0], column_at.shape[0], total.shape[1]
-    most = 1
-    for row in range(0, height, TILE_TEXELS):
-        most = max(most, row_at[min(row + TILE_TEXELS, height) - 1, 3] - row_at[row, 0] + 1)
-    lines = np.zeros((most, LAYER_CHANNELS, TILE_TEXELS), np.float32)
+    height, tile_columns = size[0], first.shape[0]
+    texels, weights, flat, out = image.reshape(-1), row_weight.reshape(-1), matrix.reshape(-1), total.reshape(-1)
+    line, plane, most = image.shape[2], image.shape[1] * image.shape[2], matrix.shape[1] * TILE_TEXELS
+    deepest = 1
+    for top in range(0, height, TILE_TEXELS):
+        deepest = max(deepest, row_base[min(top + TILE_TEXELS, height) - 1] + 4 - row_base[top])
+    lines = np.empty(deepest * TILE_TEXELS, np.float32)
     for n in range(tiles.shape[0]):
-        top, left = tiles[n] // tile_columns * TILE_TEXELS, tiles[n] % tile_columns * TILE_TEXELS
-        bottom, right = min(top + TILE_TEXELS, height), min(left + TILE_TEXELS, width)
-        first, last = row_at[top, 0], row_at[bottom - 1, 3]
-        for layer in range(coarse.shape[0]):
-            texture = coarse[layer]
-            deep = min(LAYER_CHANNELS, channels - layer * LAYER_CHANNELS)
-            for row in range(first, last + 1):
-                base, inner = (row // TILE_TEXELS) * coarse_columns, row % TILE_TEXELS * TILE_TEXELS
-                line = lines[row - first]
-                for x in range(left, right):
-                    for k in range(deep):
-                        line[k, x - left] = np.float32(0)
-                    for tap in range(4):
-                        at, weight = column_at[x, tap], column_weight[x, tap]
-                        texel = texture[base + at // TILE_TEXELS, inner + at % TILE_TEXELS]
-                        for k in range(deep):
-                            line[k, x - left] += weight * texel[k]
+        if not reached[tiles[n]]:
+            continue
+        top, column = tiles[n] // tile_columns * TILE_TEXELS, tiles[n] % tile_columns
+        bottom = min(top + TILE_TEXELS, height)
+        above, below = row_base[top], row_base[bottom - 1] + 4
+        for k in range(image.shape[0]):
+            start = k * plane + IMAGE_BORDER_TEXELS * (line + 1) + first[column]
+            lines[: (below - above) * TILE_TEXELS] = 0
+            for row in range(above, below):
+                to = (row - above) * TILE_TEXELS
+                add_row_of_product(texels, start + row * line, count[column], flat, column * most, lines, to)
+            place = (n * total.shape[1] + channel + k) * TILE_AREA
             for y in range(top, bottom):
-                for k in range(deep):
-                    out = total[
-                        n, layer * LAYER_CHANNELS + k, (y - top) * TILE_TEXELS : (y - top) * TILE_TEXELS + TILE_TEXELS
-                    ]
-                    for tap in range(4):
-                        across, weight = lines[row_at[y, tap] - first, k], row_weight[y, tap]
-                        for x in range(TILE_TEXELS):
-                            out[x] += weight * across[x]
+                at = (row_base[y] - above) * TILE_TEXELS
+                add_row_of_product(weights, 4 * y, 4, lines, at, out, place + (y - top) * TILE_TEXELS)
 
 
 @kernel(fastmath=True)
-def add_tiles(tiles, layers, total):
-    """Add some tiles of a texture of the same size.
+def add_tiles(tiles, tile_columns, image, channel, total):
+    """Add some tiles of an image of the same size.
 
     Args:
         tiles: (n,) their numbers.
-        layers: (L, tiles, TILE_AREA, 4).
-        total: (n, C, TILE_AREA), added to.
+        tile_columns: Width of the image, in tiles.
+        image: (C, H, W).
+        channel: First of the channels of `total`.
+        total: (n, at least channel + C, TILE_AREA), added to.
     """
     for n in range(tiles.shape[0]):
-        for k in range(total.shape[1]):
-            texture = layers[k // LAYER_CHANNELS, tiles[n]]
-            for i in range(TILE_AREA):
-                total[n, k, i] += texture[i, k % LAYER_CHANNELS]
+        top = tiles[n] // tile_columns * TILE_TEXELS + IMAGE_BORDER_TEXELS
+        left = tiles[n] % tile_columns * TILE_TEXELS + IMAGE_BORDER_TEXELS
+        for k in range(image.shape[0]):
+            for y in range(TILE_TEXELS):
+                line, out = image[k, top + y, left:], total[n, channel + k, y * TILE_TEXELS :]
+                for x in range(TILE_TEXELS):
+                    out[x] += line[x]
 
 
 @kernel(fastmath=True)
-def join_tiles(tiles, total, matrix, base, numbers, layers):
+def join_tiles(tiles, total, matrix, base, numbers, opacity, layers):
     """Join the channels of planes: layers = base + matrix times total.
 
     Args:
@@ -83,38 +116,19 @@ def join_tiles(tiles, total, matrix, base, numbers, layers):
         matrix: (D, K).
         base: (stored tiles, D, TILE_AREA).
         numbers: (n,) which of the stored tiles.
+        opacity: As of `compose_tiles`.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
-    channels = base.shape[1]
+    values = np.zeros((LAYER_CHANNELS, TILE_AREA), np.float32)
     for n in range(tiles.shape[0]):
-        for k in range(channels):
-            out, start = layers[k // LAYER_CHANNELS, tiles[n]], base[numbers[n], k]
-            for i in range(TILE_AREA):
-                out[i, k % LAYER_CHANNELS] = start[i]
-            for j in range(total.shape[1]):
-                factor, value = matrix[k, j], total[n, j]
-                if factor != 0:
-                    for i in range(TILE_AREA):
-                        out[i, k % LAYER_CHANNELS] += factor * value[i]
-
-
-@kernel()
-def clear_outside(places, tile_columns, top, bottom, left, right, layers):
-    """Zero the texels outside of a rectangle.
-
-    Args:
-        places: (n,) numbers of the tiles.
-        tile_columns: Width of the atlas, in tiles.
-        top, bottom: Range of rows that stay.
-        left, right: Range of columns that stay.
-        layers: (L, tiles, TILE_AREA, 4), changed.
-    """
-    for t in places:
-        row, column = t // tile_columns * TILE_TEXELS, t % tile_columns * TILE_TEXELS
-        if row >= top and row + TILE_TEXELS <= bottom and column >= left and column + TILE_TEXELS <= right:
-            continue
-        for i in range(TILE_AREA):
-            y, x = row + i // TILE_TEXELS, column + i % TILE_TEXELS
-            if y < top or y >= bottom or x < left or x >= right:
-                for layer in range(layers.shape[0]):
-                    layers[layer, t, i] = np.float32(0)
+        for first in range(0, base.shape[1], LAYER_CHANNELS):
+            for k in range(first, min(first + LAYER_CHANNELS, base.shape[1])):
+                value, start = values[k - first], base[numbers[n], k]
+                for i in range(TILE_AREA):
+                    value[i] = start[i]
+                for j in range(total.shape[1]):
+                    factor, more = matrix[k, j], total[n, j]
+                    if factor != 0:
+                        for i in range(TILE_AREA):
+                            value[i] += factor * more[i]
+            write_texels(values, opacity[tiles[n] % opacity.shape[0]], layers[first // LAYER_CHANNELS, tiles[n]])

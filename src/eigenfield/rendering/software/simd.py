@@ -11,12 +11,14 @@ from __future__ import annotations
 
 from llvmlite import ir
 from numba import types
+from numba.core import cgutils
 from numba.extending import intrinsic
 
 from eigenfield.imaging.texels import TEXEL_LANES, splat
 
 EDGE_SAMPLES = 4  # of an edge pixel
 LANE_PX = 8  # drawn at once
+PRODUCT_LANES = 16  # of a matrix's row
 FASTMATH_FLAGS = ("fast",)
 
 
@@ -240,3 +242,41 @@ def draw_four(typing_context, samples, at, more, a, b, c, slack, u, v):
 
     real = types.float64
     return types.boolean(samples, types.intp, more, real, real, real, real, u, v), generate
+
+
+@intrinsic
+def add_row_of_product(typing_context, row, first, count, matrix, at, out, place):
+    """out[place: + 16] += sum_i row[first + i] matrix[at + 16 i: + 16], one fused addition after the other.
+
+    Nothing is checked.
+
+    Args:
+        row: Flat float32 array.
+        first: Address of its first number, int64.
+        count: Numbers of the row, int64.
+        matrix: Flat float32 array.
+        at: Address of the matrix, int64.
+        out: Flat float32 array that is neither of the others.
+        place: Address in it, int64.
+    """
+
+    def generate(context, builder, signature, arguments):
+        vector, whole, align = ir.VectorType(ir.FloatType(), PRODUCT_LANES), ir.IntType(64), 4
+        row, matrix, out = (
+            context.make_array(signature.args[i])(context, builder, arguments[i]).data for i in (0, 3, 5)
+        )  # fmt: skip
+        kind = ir.FunctionType(vector, [vector] * 3)
+        multiply_add = cgutils.get_or_insert_function(builder.module, kind, f"llvm.fmuladd.v{PRODUCT_LANES}f32")
+        goal = builder.bitcast(builder.gep(out, [arguments[6]]), vector.as_pointer())
+        total = cgutils.alloca_once_value(builder, builder.load(goal, align=align))
+        with cgutils.for_range(builder, arguments[2], intp=whole) as loop:
+            number = builder.load(builder.gep(row, [builder.add(arguments[1], loop.index)]), align=align)
+            place = builder.add(arguments[4], builder.mul(loop.index, whole(PRODUCT_LANES)))
+            line = builder.load(builder.bitcast(builder.gep(matrix, [place]), vector.as_pointer()), align=align)
+            sum_ = builder.call(multiply_add, [splat(builder, number, vector), line, builder.load(total)])
+            builder.store(sum_, total)
+        builder.store(builder.load(total), goal, align=align)
+        return context.get_dummy_value()
+
+    number = types.int64
+    return types.none(row, number, number, matrix, number, out, number), generate

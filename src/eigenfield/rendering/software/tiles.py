@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Basis
 from eigenfield.rendering.software.kernels import CODE_LANES, LAYER_CHANNELS, TILE_AREA, TILE_TEXELS, compose_tiles
+from eigenfield.rendering.software.resample_kernels import IMAGE_BORDER_TEXELS, compose_image
 from eigenfield.runtime.parallel import parallel_map, pieces
 
 TILES_PER_TASK = 64
@@ -31,7 +32,7 @@ class Tiled:
     """A mean and components of one size, by tile.
 
     Attributes:
-        mean: (tiles, C, TILE_AREA) float32.
+        mean: (tiles, C, TILE_AREA) float32; None: zeros.
         codes: (tiles, C, G, TILE_AREA / CODE_LANES, 4, CODE_LANES), uint8 or uint16 as stored, or float32: the
             components of all bases one after the other, in groups of four, the last padded with zeros.
         scale: (N, C) float64: value = (code - zero) * scale.
@@ -39,7 +40,7 @@ class Tiled:
         places: (tiles,) the tiles' numbers in the atlas.
     """
 
-    mean: NDArray[np.float32]
+    mean: NDArray[np.float32] | None
     codes: NDArray[Any]
     scale: NDArray[np.float64]
     zero: NDArray[np.float64]
@@ -66,9 +67,7 @@ def tile(mean: NDArray[np.float32] | None, bases: Sequence[Basis], used: NDArray
         codes[:, :, j // 4, :, j % 4, :] = cut.reshape(len(places), channels, TILE_AREA // CODE_LANES, CODE_LANES)
 
     parallel_map(place, range(len(textures)))
-    start = np.zeros((len(places), channels, TILE_AREA), np.float32)
-    if mean is not None:
-        start[:] = cut_tiles(mean, channels)[places]
+    start = None if mean is None else cut_tiles(mean, channels)[places]
     scale = np.concatenate([none, *(basis.scale.astype(np.float64) for basis in bases)])
     zero = np.concatenate([none, *(basis.zero.astype(np.float64) for basis in bases)])
     return Tiled(start, codes, scale, zero, places)
@@ -147,24 +146,98 @@ def read_layers(layers: NDArray[np.float32], height: int, width: int, channels: 
     return np.ascontiguousarray(whole[:height, :width, :channels])
 
 
-def compose(plane: Tiled, omega: NDArray[np.float64], tiles: NDArray[np.int64], layers: NDArray[np.float32]) -> None:
+def make_image(size: tuple[int, int], channels: int, texture: NDArray[np.float32] | None = None) -> NDArray[np.float32]:
+    """(C, rows, columns) room for whole tiles and a border that repeats the edge, for `resample_kernels`.
+
+    Args:
+        size: (rows, columns) of its texels.
+        channels: C.
+        texture: (*size, C) to be laid out. Default: zeros.
+    """
+    rows, columns = tile_shape(size)
+    border = 2 * IMAGE_BORDER_TEXELS
+    image = np.zeros((channels, rows * TILE_TEXELS + border, columns * TILE_TEXELS + border), np.float32)
+    if texture is not None:
+        inner = slice(IMAGE_BORDER_TEXELS, IMAGE_BORDER_TEXELS + size[0])
+        image[:, inner, IMAGE_BORDER_TEXELS : IMAGE_BORDER_TEXELS + size[1]] = texture.transpose(2, 0, 1)
+        repeat_edge(image, size)
+    return image
+
+
+def repeat_edge(image: NDArray[np.float32], size: tuple[int, int]) -> None:
+    """Fill the border of an image.
+
+    Args:
+        image: Of `make_image`, changed.
+        size: (rows, columns) of its texels.
+    """
+    first, (bottom, right) = IMAGE_BORDER_TEXELS, (IMAGE_BORDER_TEXELS + size[0], IMAGE_BORDER_TEXELS + size[1])
+    image[:, :, :first] = image[:, :, first, None]
+    image[:, :, right : right + first] = image[:, :, right - 1, None]
+    image[:, :first] = image[:, first, None]
+    image[:, bottom : bottom + first] = image[:, bottom - 1, None]
+
+
+def compose(
+    plane: Tiled,
+    omega: NDArray[np.float64],
+    tiles: NDArray[np.int64],
+    opacity: NDArray[np.float32],
+    layers: NDArray[np.float32],
+) -> None:
     """Equation 8: the mean plus the weighted sum of the first components.
 
     Args:
         plane: Mean and components.
         omega: (n,) weights of the first n components.
         tiles: (t,) the tiles to be summed, indices into `plane.places`.
+        opacity: As of `compose_tiles`.
         layers: (L, tiles of the atlas, TILE_AREA, 4), written.
     """
-    count, channels = len(omega), plane.mean.shape[1]
+    numbers = _numbers(plane, omega)
+    parallel_map(
+        lambda part: compose_tiles(
+            tiles[part[0] : part[1]], plane.places, plane.mean, plane.codes, *numbers, opacity, layers
+        ),
+        pieces(len(tiles), TILES_PER_TASK),
+    )
+
+
+def compose_without_mean(
+    plane: Tiled,
+    omega: NDArray[np.float64],
+    tiles: NDArray[np.int64],
+    size: tuple[int, int],
+    rectangle: tuple[int, int, int, int],
+    image: NDArray[np.float32],
+) -> None:
+    """Equation 8 without the mean.
+
+    Args:
+        plane: Components.
+        omega: (n,) weights of the first n components.
+        tiles: (t,) the tiles to be summed, indices into `plane.places`.
+        size: (rows, columns) of the image's texels.
+        rectangle: [top, bottom) x [left, right) outside of which it is zero.
+        image: Of `make_image`, written.
+    """
+    numbers, columns, within = _numbers(plane, omega), tile_shape(size)[1], np.array(rectangle)
+    parallel_map(
+        lambda part: compose_image(
+            tiles[part[0] : part[1]], plane.places, plane.codes, *numbers, columns, within, image
+        ),
+        pieces(len(tiles), TILES_PER_TASK),
+    )
+    repeat_edge(image, size)
+
+
+def _numbers(
+    plane: Tiled, omega: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.float32], NDArray[np.float32]]:
+    """Groups, coefficients and offset of `compose_tiles`."""
+    count, channels = len(omega), plane.codes.shape[1]
     scaled = omega[:, None] * plane.scale[:count]
     coefficients = np.zeros((4 * plane.codes.shape[2], channels), np.float32)
     coefficients[:count] = scaled
     offset = -(scaled * plane.zero[:count]).sum(axis=0).astype(np.float32)
-    groups = np.flatnonzero(coefficients.reshape(-1, 4 * channels).any(axis=1))
-    parallel_map(
-        lambda part: compose_tiles(
-            tiles[part[0] : part[1]], plane.places, plane.mean, plane.codes, groups, coefficients, offset, layers
-        ),
-        pieces(len(tiles), TILES_PER_TASK),
-    )
+    return np.flatnonzero(coefficients.reshape(-1, 4 * channels).any(axis=1)), coefficients, offset

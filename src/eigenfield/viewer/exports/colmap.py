@@ -24,7 +24,7 @@ from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, camera_c
 from eigenfield.rendering.render_jobs import png, refuse_attributes
 from eigenfield.runtime.parallel import parallel_map, pieces
 from eigenfield.viewer.exports.folder import atomic_folder, write_file, write_listing
-from eigenfield.viewer.exports.maps import mean_map
+from eigenfield.viewer.exports.maps import mean_map, opaque_mesh
 from eigenfield.viewer.exports.names import file_names
 
 COLMAP_MAX_POINTS, COLMAP_MIN_POINTS = 50_000, 10_000
@@ -137,10 +137,9 @@ def _pinhole(camera: Camera, resolution: tuple[int, int] | None) -> Camera:
 
 def _sparse_points(scene: Scene, views: Sequence[RedrawnView]) -> SparsePoints:
     """Points of the surface that two views or more see."""
-    positions, uv = _surface_points(scene.proxy.mesh)
-    visible = np.array(
-        parallel_map(lambda redrawn: _visible_points(scene.proxy.mesh, redrawn.camera, positions), views)
-    )
+    mesh = opaque_mesh(scene.proxy)
+    positions, uv = _surface_points(mesh)
+    visible = np.array(parallel_map(lambda redrawn: _visible_points(mesh, redrawn.camera, positions), views))
     kept = np.flatnonzero(visible.sum(axis=0) >= min(2, len(views)))
     if len(kept) == 0:
         raise OptionError("no-points", "the views see nothing in common", remedy="give viewpoints that look at it")

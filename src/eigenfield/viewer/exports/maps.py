@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.appearance import Plane
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.progress import Progress, track
+from eigenfield.core.proxy import Proxy
 from eigenfield.core.scene import Scene
 from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
 from eigenfield.rendering.render_jobs import refuse_attributes
 from eigenfield.rendering.software.composite import compose_scene, make_buffers, make_composite
+from eigenfield.rendering.software.kernels import TILE_TEXELS
+from eigenfield.rendering.software.sheets import make_stack
 from eigenfield.rendering.software.tiles import empty_layers, read_layers, tile_shape
 from eigenfield.rendering.weights import ViewWeights
 from eigenfield.runtime.parallel import parallel_stream
@@ -34,7 +38,7 @@ def write_maps(
     """Write a PNG of the whole atlas for each encoded camera: equation 8 with its own weights, clipped to 0..1.
 
     `eigenfield.json` says which file is whose. Texels that no camera saw are what the scene holds there. A harmonised
-    scene's maps have the common exposure.
+    scene's maps have the common exposure. The maps of sheets have their opacity as alpha.
 
     Args:
         scene: The scene.
@@ -51,7 +55,8 @@ def write_maps(
     make = camera_maps(scene)
     names = [scene.rig.names[index] for index in scene.rig.encoded]
     files = file_names(names)
-    drawn = parallel_stream(lambda row: png_bytes(make(row, textures)), range(len(names)))
+    finish = alpha_added(scene)
+    drawn = parallel_stream(lambda row: png_bytes(finish(make(row, textures))), range(len(names)))
     with atomic_folder(folder, overwrite) as part:
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
             write_file(part / file, data)
@@ -84,6 +89,31 @@ def mean_map(scene: Scene) -> NDArray[np.float32]:
         OptionError: `not-a-picture`.
     """
     return _composer(scene)(ViewWeights(), 0)
+
+
+def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:
+    """A function of a map (H, W, C) of one or three channels: R, G, B and opacity (H, W, 4) of sheets, else the map."""
+    if scene.proxy.sheets is None:
+        return lambda picture: picture
+    height, width = scene.appearance.atlas
+    rows, columns = tile_shape((height, width))
+    tiles = make_stack(scene.proxy.sheets, (height, width)).opacity.reshape(rows, columns, TILE_TEXELS, TILE_TEXELS)
+    whole = tiles.transpose(0, 2, 1, 3).reshape(rows * TILE_TEXELS, columns * TILE_TEXELS)
+    alpha = whole[:height, :width, None].clip(0, 1)
+    return lambda picture: np.concatenate([np.broadcast_to(picture, (height, width, 3)), alpha], axis=2)
+
+
+def opaque_mesh(proxy: Proxy) -> Mesh:
+    """The mesh; of sheets the faces in whose middle they are at least half opaque."""
+    mesh, sheets = proxy.mesh, proxy.sheets
+    if sheets is None:
+        return mesh
+    assert mesh.uv is not None
+    size = sheets.opacity.shape
+    column, row = (mesh.uv[mesh.faces].mean(axis=1) * (size[1], size[0])).astype(np.int64).T
+    opaque = sheets.opacity[row.clip(0, size[0] - 1), column.clip(0, size[1] - 1)] >= 0.5
+    used, corners = np.unique(mesh.faces[opaque], return_inverse=True)
+    return Mesh(mesh.vertices[used], corners.reshape(-1, 3).astype(np.int32), mesh.uv[used])
 
 
 def eigen_maps(scene: Scene, count: int) -> Iterator[tuple[NDArray[np.float32], NDArray[np.float32]]]:

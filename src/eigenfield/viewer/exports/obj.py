@@ -22,7 +22,7 @@ from eigenfield.imaging.png import png_bytes
 from eigenfield.rendering.checks import check_textures
 from eigenfield.runtime.files import atomic_files, refuse_existing
 from eigenfield.viewer.exports.folder import atomic_folder, write_listing
-from eigenfield.viewer.exports.maps import eigen_maps, mean_map
+from eigenfield.viewer.exports.maps import alpha_added, eigen_maps, mean_map
 from eigenfield.viewer.exports.names import file_name
 
 CodedPicture = tuple[NDArray[np.uint8], NDArray[np.float32], NDArray[np.float32], NDArray[np.float32]]
@@ -30,7 +30,8 @@ OBJ_SUM_NOTE = "texture = mean / 255 + sum over j of weight[camera][j] * (code[j
 
 
 def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
-    """Write NAME.obj with NAME.mtl and NAME.png, the mean clipped to 0..1, beside it; all three or none.
+    """Write NAME.obj with NAME.mtl and NAME.png, the mean clipped to 0..1, beside it; all three or none. The picture of
+    sheets has their opacity as alpha.
 
     Args:
         scene: The scene.
@@ -41,11 +42,11 @@ def write_obj(scene: Scene, output: Path, *, overwrite: bool = False) -> None:
         OptionError: `not-a-picture`.
         OutputError: A file cannot be written.
     """
-    mean = png_bytes(mean_map(scene))
+    mean = png_bytes(alpha_added(scene)(mean_map(scene)))
     targets = obj_files(output)
     with atomic_files(targets, overwrite=overwrite) as (picture, material, mesh):
         picture.write_bytes(mean)
-        material.write_bytes(_material(picture.name))
+        material.write_bytes(_material(scene, picture.name))
         mesh.write_bytes(_mesh(scene, material.name))
 
 
@@ -99,13 +100,13 @@ def write_obj_folder(
         OutputError: The folder cannot be written.
     """
     check_textures(textures)
-    mean = png_bytes(mean_map(scene))
+    mean = png_bytes(alpha_added(scene)(mean_map(scene)))
     count = scene.appearance.textures if textures is None else textures
     total = sum(min(count, basis.count) for plane in scene.appearance.planes for basis in plane.bases)
     digits = max(2, len(str(total - 1)))
     with atomic_folder(folder, overwrite) as part:
         (part / "mean.png").write_bytes(mean)
-        (part / "mesh.mtl").write_bytes(_material("mean.png"))
+        (part / "mesh.mtl").write_bytes(_material(scene, "mean.png"))
         (part / "mesh.obj").write_bytes(_mesh(scene, "mesh.mtl"))
         entries: list[dict[str, Any]] = []
         weights: list[NDArray[np.float32]] = []
@@ -173,9 +174,10 @@ def _mesh(scene: Scene, material: str) -> bytes:
     return ("\n".join(lines) + "\n").encode("ascii")
 
 
-def _material(picture: str) -> bytes:
-    """The picture as diffuse colour, nothing shiny."""
+def _material(scene: Scene, picture: str) -> bytes:
+    """The picture as diffuse colour, nothing shiny, and of sheets its alpha as opacity."""
     lines = ["newmtl mean", "Ka 0 0 0", "Kd 1 1 1", "Ks 0 0 0", "illum 1", f"map_Kd {picture}"]
+    lines += [] if scene.proxy.sheets is None else [f"map_d {picture}"]
     return ("\n".join(lines) + "\n").encode()
 
 

@@ -21,6 +21,7 @@ from eigenfield.imaging.raster import rasterise_view
 from eigenfield.rendering import RenderJob, ViewWeights, at_resolution, novel_camera, view_weights
 from eigenfield.rendering.render_jobs import png
 from eigenfield.runtime.files import write_bytes
+from eigenfield.viewer.exports.maps import opaque_mesh
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
 QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
@@ -195,7 +196,7 @@ def _camera_towards(
 
 def _median_depth(scene: Scene, camera: Camera) -> float:
     """Of what the camera sees, along its z. Raises OptionError `quilt-array` where it sees nothing."""
-    near = rasterise_view(scene.proxy.mesh, camera).inverse_depth
+    near = rasterise_view(opaque_mesh(scene.proxy), camera).inverse_depth
     if not near.any():
         raise OptionError(
             "quilt-array", "the array's middle sees nothing of the scene", remedy="a quilt needs a surface before it"

@@ -1,0 +1,64 @@
+"""The sheets of a scene file: how the faces of the mesh are divided, and the picture of their opacity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eigenfield.coding import limits
+from eigenfield.coding.pictures.quantise import opacity_values
+from eigenfield.core.mesh import Mesh
+from eigenfield.gltf.document import Document
+from eigenfield.gltf.layout_planes import PictureLayout, read_picture, read_size
+from eigenfield.gltf.strict_json import Value
+
+
+@dataclass(frozen=True, eq=False)
+class SheetsLayout:
+    """The sheets in the file.
+
+    Attributes:
+        faces: Number of faces of each, back to front.
+        opacity: Its picture.
+    """
+
+    faces: tuple[int, ...]
+    opacity: PictureLayout
+
+    def decode(self) -> NDArray[np.float32]:
+        """(H, W) opacity in 0..1. FormatError: see `stacking.decode`."""
+        return opacity_values(self.opacity.decode()[0, ..., 0])
+
+
+def read_sheets(document: Document, entry: Value) -> SheetsLayout:
+    """The sheets, not compared with the mesh yet.
+
+    Raises:
+        FormatError: `picture-*`, `codec-unknown`, `view-*`, `json-*`.
+    """
+    faces = tuple(item.integer(1, limits.MAX_TRIANGLES) for item in entry["faces"].items(limits.MAX_SHEETS, 1))
+    opacity = entry["opacity"]
+    return SheetsLayout(faces, read_picture(document, opacity, "opacity", read_size(opacity["size"], 1), 1, 1))
+
+
+def check_sheets(entry: Value, sheets: SheetsLayout | None, mesh: Mesh | None) -> None:
+    """Check that the sheets divide the mesh. None: only while validating a damaged file.
+
+    Raises:
+        FormatError: `sheets-faces`, `sheets-vertex`.
+    """
+    if sheets is None or mesh is None:
+        return
+    if sum(sheets.faces) != len(mesh.faces):
+        message = f"the sheets have {sum(sheets.faces)} faces, the mesh has {len(mesh.faces)}"
+        entry["faces"].fail("sheets-faces", message)
+    sheet = np.repeat(np.arange(len(sheets.faces)), sheets.faces)[:, None]
+    owner = np.zeros(len(mesh.vertices), np.int64)
+    owner[mesh.faces] = sheet
+    shared = owner[mesh.faces] != sheet
+    if shared.any():
+        face, corner = np.argwhere(shared)[0]
+        one, other = sheet[face, 0], owner[mesh.faces[face, corner]]
+        entry["faces"].fail("sheets-vertex", f"sheets {one} and {other} share vertex {mesh.faces[face, corner]}")
