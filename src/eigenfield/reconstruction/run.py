@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from eigenfield.coding.limits import MAX_SHEETS
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
 from eigenfield.proxy import PROXY_DEFAULT_TRIANGLES, parse_primitive, parse_region
@@ -17,7 +18,7 @@ from eigenfield.runtime.stages import Stages, stage_key
 
 log = logging.getLogger("eigenfield.reconstruction")
 
-MAX_LAYERS = 32  # that a file holds
+
 SURFACE_KINDS = ("auto", "relief", "layers", "poisson")
 
 
@@ -73,9 +74,9 @@ class ReconstructionSettings:
         return "primitive" if self.primitives else "fit-sphere" if self.fit_spheres else None
 
     def _check_layers(self) -> None:
-        if self.layers is not None and not 1 <= self.layers <= MAX_LAYERS:
+        if self.layers is not None and not 1 <= self.layers <= MAX_SHEETS:
             raise OptionError(
-                "layers", f"{self.layers} layers were asked for", remedy=f"ask for 2 to {MAX_LAYERS}, or 1 for none"
+                "layers", f"{self.layers} layers were asked for", remedy=f"ask for 2 to {MAX_SHEETS}, or 1 for none"
             )
         if self.layers is not None and self.layers > 1 and self.surface not in ("auto", "layers"):
             raise OptionError(

@@ -92,7 +92,7 @@ def reconstruct(
         surface: "relief" for arrays with one viewing direction (two layers seen from the centre), "poisson" for
             everything else, "layers" for soft sheets, if all cameras look about one way. "auto" takes the relief where
             it fits, else the Poisson surface; or layers where few views are given and layers draw left-out ones better.
-        layers: Number of soft sheets, 2 to MAX_LAYERS; 1: none. None: as many as usual.
+        layers: Number of soft sheets, 2 to MAX_SHEETS; 1: none. None: as many as usual.
         refine: Correct the cameras of an array together with its depth. None: if no calibration is given or there are
             25 views or more, unless they are exact.
         triangles: Most triangles of the proxy, approximately.
