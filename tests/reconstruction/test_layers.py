@@ -155,7 +155,7 @@ def test_views_left_out_tell_a_right_surface_from_a_wrong_one():
 
 def test_the_reference_view_holds_every_frame():
     cameras = ring(4, 6)
-    reference, sheets = fit_views(wall_pictures(cameras), cameras, (0.2, 0.3), 2, 64)
+    reference, sheets = fit_views(wall_pictures(cameras), cameras, (0.2, 0.3), 2)
     assert sheets.labels.shape == (2, *reference.shape)
     for matrix in view_matrices(reference, cameras):
         corners = np.array([(x, y, 1.0) for x in (0, 63) for y in (0, 47)])

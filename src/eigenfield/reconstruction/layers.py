@@ -47,6 +47,7 @@ class LayersTuning:
         trial_step: Every so many photographs, one is left out of a trial.
         margin_part: Part of the range of inverse depths, from the farthest on, up to which the reference view holds
             every camera's frame.
+        margin_fraction: Of the longer side, by which the reference view is widened for the descent, at most.
         tolerance_pixels: Distance of the mesh from a sheet.
         depth_error_pixels: By which the lattice's depths move a point.
         hidden_ratio: Of inverse depths, from which on a photograph does not see a point of the opaque surface.
@@ -62,9 +63,10 @@ class LayersTuning:
     max_planes: int = 64
     planes_side_pixels: int = 320
     sheets_side_pixels: int = 800
-    trial_side_pixels: int = 200
+    trial_side_pixels: int = 300
     trial_step: int = 4
     margin_part: float = 0.1
+    margin_fraction: float = 0.15
     tolerance_pixels: float = 0.1
     depth_error_pixels: float = 0.04
     hidden_ratio: float = 1.02
@@ -105,7 +107,8 @@ def layers_proxy(
         triangles: Most triangles.
         progress: Called within.
     """
-    reference, sheets = fit_views(pictures, cameras, bounds, count, LAYERS_TUNING.sheets_side_pixels, progress)
+    pictures, cameras = _halved(pictures, cameras, LAYERS_TUNING.sheets_side_pixels)
+    reference, sheets = _widened(*fit_views(pictures, cameras, bounds, count, progress), cameras, bounds)
     tolerance = LAYERS_TUNING.tolerance_pixels / _reach(reference, cameras)
     return soft_relief(
         reference, sheets, cameras, tolerance=tolerance, depth_error=LAYERS_TUNING.depth_error_pixels,
@@ -114,7 +117,7 @@ def layers_proxy(
 
 
 def fit_views(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, count: int | None, side: int,
+    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, count: int | None,
     progress: Progress | None = None,
 ) -> tuple[ReferenceView, SoftSheets]:  # fmt: skip
     """The soft sheets of photographs, and their reference view.
@@ -124,12 +127,12 @@ def fit_views(
         cameras: As of `layers_proxy`.
         bounds: As of `layers_proxy`.
         count: As of `layers_proxy`.
-        side: Longer side of the photographs to which they are halved before, at most.
         progress: Called within.
     """
-    pictures, cameras = _halved(pictures, cameras, side)
-    reference = _reference_view(cameras, bounds)
     longer = max(pictures.shape[1:3])
+    central = _middle_camera(cameras)
+    margin = min(_margin(central, cameras, bounds), round(LAYERS_TUNING.margin_fraction * longer))
+    reference = ReferenceView.with_margin(central, margin, 0.0, 1.0)
     halvings = max(1, math.ceil(math.log2(longer / LAYERS_TUNING.planes_side_pixels)))
     steps = _reach(reference, cameras) * (bounds[1] - bounds[0]) / 2**halvings / LAYERS_TUNING.max_plane_step_pixels
     planes = min(max(math.ceil(steps) + 1, LAYERS_TUNING.min_planes), LAYERS_TUNING.max_planes)
@@ -162,7 +165,7 @@ def compare_held_out(
     left_out[LAYERS_TUNING.trial_step // 2 :: LAYERS_TUNING.trial_step] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
     known = [cameras[i] for i in others]
-    reference, sheets = fit_views(pictures[others], known, bounds, count, LAYERS_TUNING.trial_side_pixels, progress)
+    reference, sheets = fit_views(pictures[others], known, bounds, count, progress)
     unknown = [cameras[i] for i in shown]
     hard = draw_means(mesh, unknown, pictures[others], known)
     scores = []
@@ -224,15 +227,16 @@ def _halved(
     return pictures, cameras
 
 
-def _reference_view(cameras: Sequence[Camera], bounds: Range) -> ReferenceView:
-    """The view from the middle of the cameras, as the central one looks; labels are inverse depths.
-
-    Its frame holds every camera's, at the farthest depth and at LAYERS_TUNING.margin_part of the range.
-    """
+def _middle_camera(cameras: Sequence[Camera]) -> Camera:
+    """The camera in the middle of all, which looks as the central one."""
     centres = np.array([camera.centre for camera in cameras])
     middle = centres.mean(axis=0)
     central = cameras[int(np.argmin(np.linalg.norm(centres - middle, axis=1)))]
-    central = replace(central, t=-central.R @ middle)
+    return replace(central, t=-central.R @ middle)
+
+
+def _margin(central: Camera, cameras: Sequence[Camera], bounds: Range) -> int:
+    """Pixels by which a camera's frame is widened to hold all others' up to LAYERS_TUNING.margin_part of the range."""
     part = bounds[0] + LAYERS_TUNING.margin_part * (bounds[1] - bounds[0])
     beyond = 0.0
     for camera in cameras:
@@ -243,7 +247,21 @@ def _reference_view(cameras: Sequence[Camera], bounds: Range) -> ReferenceView:
             points = start + rays * ((1 / inverse - start[2]) / rays[:, 2])[:, None]
             pixels = (points @ central.K.T)[:, :2] * inverse
             beyond = max(beyond, float(-pixels.min()), float((pixels - (central.width, central.height)).max()))
-    return ReferenceView.with_margin(central, math.ceil(beyond) + 2, 0.0, 1.0)
+    return math.ceil(beyond) + 2
+
+
+def _widened(
+    reference: ReferenceView, sheets: SoftSheets, cameras: Sequence[Camera], bounds: Range
+) -> tuple[ReferenceView, SoftSheets]:
+    """A reference view that holds every camera's frame, to whose border the backmost sheet goes on."""
+    more = _margin(_middle_camera(cameras), cameras, bounds) - reference.margin
+    if more <= 0:
+        return reference, sheets
+    wide = ReferenceView.with_margin(reference.camera, more, reference.offset, reference.scale)
+    around = (0, 0), (more, more), (more, more)
+    layers = np.pad(sheets.layers, (*around, (0, 0)), mode="edge")
+    layers[1:, ..., 3] = np.pad(sheets.layers[1:, ..., 3], around)
+    return replace(wide, margin=reference.margin + more), SoftSheets(np.pad(sheets.labels, around, mode="edge"), layers)
 
 
 def _reach(reference: ReferenceView, cameras: Sequence[Camera]) -> float:
