@@ -71,7 +71,8 @@ def sheets() -> Proxy:
     for sheet in range(SHEETS):
         faces = whole.faces if sheet == 0 else whole.faces[(radius[whole.faces] < 0.8).any(axis=1)]
         kept, faces = np.unique(faces, return_inverse=True)
-        vertices = whole.vertices[kept] * np.float32(1 if sheet == 0 else 0.7) - np.float32([0, 0, 0.15 * sheet])
+        nearer = np.array([0, 0, 0.15 * sheet], np.float32)
+        vertices = whole.vertices[kept] * np.float32(1 if sheet == 0 else 0.7) - nearer
         uv = (0.98 * whole.uv[kept] + (0.01, 0.01 + sheet)) / (1, SHEETS)
         parts.append((vertices, faces.reshape(-1, 3) + used, uv))
         used += len(kept)
